@@ -102,7 +102,7 @@ void BoardRun::run(double time_s, bool gives_sign_of_life) {
   }
 }
 
-bool BoardRun::wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
+bool BoardRun::wait_for(const std::function<bool(const device::Pose&)>& condition, double limit_s) {
   double waited_s = 0;
   while (waited_s < limit_s) {
     if (pose_ && condition(*pose_)) return true;

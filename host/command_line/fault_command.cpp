@@ -19,10 +19,10 @@
 namespace inkwell::command_line {
 namespace {
 
+using device::Pose;
 using nlohmann::ordered_json;
 using protocol::BlackBoxReport;
 using protocol::Fault;
-using protocol::PoseReport;
 using protocol::State;
 
 struct FaultOptions {
@@ -31,7 +31,7 @@ struct FaultOptions {
   bool overwrite = false;
 };
 
-double time_s(const BlackBoxReport& box) { return static_cast<double>(box.fault_periods) / protocol::servo_rate_Hz; }
+double time_s(const BlackBoxReport& box) { return device::board_time_s(box.fault_periods); }
 
 bool has_crash(const BlackBoxReport& box) { return box.crash.exception != 0; }
 
@@ -98,7 +98,7 @@ void print(const BlackBoxReport& box, const Image& image) {
   print_crash(box, image);
 }
 
-void tell_fault(const DeviceOptions& options, device::Device& device, const PoseReport& pose, const BlackBoxReport& box,
+void tell_fault(const DeviceOptions& options, device::Device& device, const Pose& pose, const BlackBoxReport& box,
                 const Image& image) {
   const bool is_fault = pose.state == State::fault;
   if (options.json) {
@@ -125,8 +125,8 @@ int show_fault(const DeviceOptions& device_options, const FaultOptions& options)
 
 /// The board takes a tenth of a second of its time to fill it.
 BlackBoxReport complete_black_box(device::Device& device) {
-  constexpr std::uint32_t patience_periods = protocol::servo_rate_Hz;
-  const std::uint32_t begin_periods = next_pose(device).time_periods;
+  constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
+  const std::int64_t begin_periods = next_pose(device).time_periods;
   for (;;) {
     const auto box = device.black_box();
     if (box.fault == Fault::none)
@@ -171,7 +171,7 @@ int save_black_box(const DeviceOptions& device_options, const FaultOptions& opti
 int clear_fault(const DeviceOptions& options) {
   const auto connection = connect(options);
   device::Device& device = *connection.device;
-  PoseReport pose = next_pose(device);
+  Pose pose = next_pose(device);
   const auto shown = [&] { return device::ShownFault{pose.time_periods, pose.state, pose.fault}; };
   device::clear_fault(device, shown(), [&] {
     pose = next_pose(device);

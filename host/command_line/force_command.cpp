@@ -17,10 +17,10 @@
 namespace inkwell::command_line {
 namespace {
 
-using protocol::PoseReport;
+using device::Pose;
 using protocol::State;
 
-void tell_force(const DeviceOptions& options, const PoseReport& pose) {
+void tell_force(const DeviceOptions& options, const Pose& pose) {
   if (options.json)
     fmt::print("{}\n", nlohmann::ordered_json{{"force_is_on", protocol::force_is_on(pose.state)},
                                               {"state", info(pose.state).name}}
@@ -47,13 +47,13 @@ int keep_on(const DeviceOptions& options, double seconds) {
   device::Device& device = *connection.device;
   const InterruptGuard interrupt;
   ForceSwitch force(device);
-  PoseReport pose = next_pose(device);
+  Pose pose = next_pose(device);
   tell_force(options, pose);
   if (!options.json && seconds == 0) fmt::print("Ctrl-C switches it off.\n");
   std::fflush(stdout);
-  const std::uint32_t begin_periods = pose.time_periods;
+  const std::int64_t begin_periods = pose.time_periods;
   const auto is_over = [&] {
-    return seconds > 0 && pose.time_periods - begin_periods >= seconds * protocol::servo_rate_Hz;
+    return seconds > 0 && device::board_time_s(pose.time_periods - begin_periods) >= seconds;
   };
   while (protocol::force_is_on(pose.state) && !is_over() && !interrupt.was_asked_to_end()) {
     device.keep_alive();

@@ -11,21 +11,20 @@
 namespace inkwell::command_line {
 namespace {
 
+using device::Pose;
 using protocol::Command;
-using protocol::PoseReport;
 using protocol::State;
 
 /// Of board time: a device that does not know yet where it is forgets that it was asked.
-constexpr std::uint32_t ask_again_periods = protocol::servo_rate_Hz / 10,
-                        patience_periods = 2 * protocol::servo_rate_Hz;
+constexpr std::int64_t ask_again_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
 /// Sends the command again and again until the state is the one that is wanted, or a fault, or time is over.
 template <class Wanted>
-PoseReport ask(device::Device& device, Command command, Wanted wanted) {
+Pose ask(device::Device& device, Command command, Wanted wanted) {
   device.carry_out(command);
-  PoseReport pose = next_pose(device);
-  const std::uint32_t begin_periods = pose.time_periods;
-  std::uint32_t asked_periods = begin_periods;
+  Pose pose = next_pose(device);
+  const std::int64_t begin_periods = pose.time_periods;
+  std::int64_t asked_periods = begin_periods;
   while (!wanted(pose.state) && pose.state != State::fault && pose.time_periods - begin_periods < patience_periods) {
     if (pose.time_periods - asked_periods >= ask_again_periods) {
       device.carry_out(command);
@@ -38,16 +37,16 @@ PoseReport ask(device::Device& device, Command command, Wanted wanted) {
 }
 
 /// With a space before it; nothing if all that it needs is to be switched on.
-std::string what_keeps_it_off(const PoseReport& pose) {
+std::string what_keeps_it_off(const Pose& pose) {
   if (pose.state == State::ready) return {};
   return " " + (pose.state == State::fault ? device::fault_line(pose.fault) : std::string(info(pose.state).meaning));
 }
 
 }  // namespace
 
-PoseReport switch_force_off(device::Device& device) {
+Pose switch_force_off(device::Device& device) {
   device.switch_force_off();
-  PoseReport pose = next_pose(device);
+  Pose pose = next_pose(device);
   while (const auto newer = device.read_pose(std::chrono::milliseconds(0))) pose = *newer;
   return pose;
 }
@@ -67,16 +66,16 @@ ForceSwitch::~ForceSwitch() {
   }
 }
 
-PoseReport ForceSwitch::switch_off() {
+Pose ForceSwitch::switch_off() {
   may_be_on_ = false;
   return switch_force_off(device_);
 }
 
-std::string force_sentence(const PoseReport& pose) {
+std::string force_sentence(const Pose& pose) {
   return protocol::force_is_on(pose.state) ? "The force is on." : "The force is off." + what_keeps_it_off(pose);
 }
 
-std::string why_force_went_off(const PoseReport& pose) {
+std::string why_force_went_off(const Pose& pose) {
   return "The force went off." +
          (pose.state == State::ready ? " Another program or a window has switched it off." : what_keeps_it_off(pose));
 }

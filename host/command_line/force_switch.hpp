@@ -9,7 +9,7 @@
 namespace inkwell::command_line {
 
 /// Switches the force off, whoever switched it on, and returns the pose that tells so.
-protocol::PoseReport switch_force_off(device::Device& device);
+device::Pose switch_force_off(device::Device& device);
 
 /// The force is on from its construction to its end, whatever ends it. Its owner gives signs of life between.
 class ForceSwitch {
@@ -21,7 +21,7 @@ class ForceSwitch {
   ForceSwitch& operator=(const ForceSwitch&) = delete;
 
   /// As switch_force_off(). Throws device::Error.
-  protocol::PoseReport switch_off();
+  device::Pose switch_off();
 
  private:
   device::Device& device_;
@@ -29,9 +29,9 @@ class ForceSwitch {
 };
 
 /// Whether the force is on, and what keeps it off: a sentence with the remedy.
-std::string force_sentence(const protocol::PoseReport& pose);
+std::string force_sentence(const device::Pose& pose);
 
 /// Why the force, which was on, no longer is.
-std::string why_force_went_off(const protocol::PoseReport& pose);
+std::string why_force_went_off(const device::Pose& pose);
 
 }  // namespace inkwell::command_line

@@ -171,7 +171,7 @@ class GuideRun {
   const InterruptGuard& interrupt_;
   guides::SessionPort port_;
   Display display_;
-  std::uint32_t sequence_ = 0;
+  std::int64_t sequence_ = 0;
   Clock::time_point heard_at_ = Clock::now();
 };
 

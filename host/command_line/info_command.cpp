@@ -30,7 +30,7 @@ std::string board_text(const std::string& name) {
 }
 
 ordered_json to_json(const device::Information& information, const protocol::StoreReport& store,
-                     const std::optional<protocol::PoseReport>& pose, const std::optional<device::Driver>& driver) {
+                     const std::optional<device::Pose>& pose, const std::optional<device::Driver>& driver) {
   const auto& report = information.report;
   ordered_json json{{"serial_number", information.serial_number},
                     {"board", information.board_name},
@@ -56,7 +56,7 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
   if (pose) {
     json["state"] = info(pose->state).name;
     json["fault"] = info(pose->fault).name;
-    json["referenced"] = pose->is_referenced != 0;
+    json["referenced"] = pose->is_referenced;
     json["supply_V"] = pose->supply_dV / 10.0;
   }
   if (driver)
@@ -65,7 +65,7 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
 }
 
 void print(const device::Information& information, const protocol::StoreReport& store,
-           const std::optional<protocol::PoseReport>& pose, const std::optional<device::Driver>& driver) {
+           const std::optional<device::Pose>& pose, const std::optional<device::Driver>& driver) {
   const auto& report = information.report;
   const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
   fmt::print("serial number       {}\n", information.serial_number);
@@ -97,7 +97,7 @@ void print(const device::Information& information, const protocol::StoreReport& 
   fmt::print("state               {}: {}\n", info(pose->state).name, info(pose->state).meaning);
   if (pose->fault != protocol::Fault::none) fmt::print("fault               {}\n", device::fault_line(pose->fault));
   fmt::print("place of the arm    {}\n",
-             pose->is_referenced != 0 ? "known" : "unknown: put the stylus into the inkwell once");
+             pose->is_referenced ? "known" : "unknown: put the stylus into the inkwell once");
 }
 
 }  // namespace

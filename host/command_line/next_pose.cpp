@@ -5,7 +5,7 @@
 namespace inkwell::command_line {
 
 // By waits that were in vain, not by the clock: time for which the computer stopped this program is none.
-protocol::PoseReport next_pose(device::Device& device) {
+device::Pose next_pose(device::Device& device) {
   constexpr int waits = 10;
   constexpr std::chrono::milliseconds wait{200};
   for (int i = 0; i < waits; ++i)

@@ -10,6 +10,6 @@ inline constexpr const char* device_is_silent =
     "The device is silent. Reset the board, or let a paused virtual board run.";
 
 /// The next pose; throws device::Error if the device is silent for two seconds of waiting.
-protocol::PoseReport next_pose(device::Device& device);
+device::Pose next_pose(device::Device& device);
 
 }  // namespace inkwell::command_line

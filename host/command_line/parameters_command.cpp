@@ -96,7 +96,7 @@ int get(const DeviceOptions& options, const std::vector<std::string>& names) {
 }
 
 void finish(const DeviceOptions& options, device::Device& device, std::size_t count,
-            const protocol::TransactionReport& transaction, bool store) {
+            const device::AcceptedTransaction& transaction, bool store) {
   if (store) store_parameters(device);
   if (options.json) {
     ordered_json json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}};

@@ -6,11 +6,11 @@ namespace inkwell::command_line {
 
 void RecordedSpan::cut(device::ScopeSamples& samples) {
   if (samples.count == 0 || periods_ == 0) return;
-  const auto skipped = static_cast<std::int32_t>(samples.first_period - end_of_newest_.value_or(samples.first_period));
+  const std::int64_t skipped = samples.first_period - end_of_newest_.value_or(samples.first_period);
   if (skipped < 0) return;
-  const std::uint64_t begin = passed_ + static_cast<std::uint32_t>(skipped);
+  const std::uint64_t begin = passed_ + static_cast<std::uint64_t>(skipped);
   passed_ = begin + samples.count;
-  end_of_newest_ = samples.first_period + static_cast<std::uint32_t>(samples.count);
+  end_of_newest_ = samples.first_period + static_cast<std::int64_t>(samples.count);
   is_over_ = passed_ >= periods_;
   const std::uint64_t wanted = begin < periods_ ? periods_ - begin : 0;
   samples.count = static_cast<std::size_t>(std::min<std::uint64_t>(samples.count, wanted));

@@ -24,8 +24,8 @@ class RecordedSpan {
 
  private:
   std::uint64_t periods_;
-  std::uint64_t passed_ = 0;                    ///< from the first sample to the end of the newest
-  std::optional<std::uint32_t> end_of_newest_;  ///< the board's own time, which wraps around
+  std::uint64_t passed_ = 0;                   ///< from the first sample to the end of the newest
+  std::optional<std::int64_t> end_of_newest_;  ///< in the board's own time
   bool is_over_ = false;
 };
 

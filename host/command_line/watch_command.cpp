@@ -18,41 +18,41 @@
 namespace inkwell::command_line {
 namespace {
 
-using protocol::PoseReport;
+using device::Pose;
 
 struct WatchOptions {
   double seconds = 0;  ///< 0: until interrupted
   double rate_Hz = 10;
 };
 
-std::vector<std::string_view> force_sources(const PoseReport& pose) {
+std::vector<std::string_view> force_sources(const Pose& pose) {
   std::vector<std::string_view> names;
   for (const auto& row : protocol::force_source_table)
     if (protocol::is_felt(pose.force_sources, row.source)) names.push_back(row.name);
   return names;
 }
 
-std::vector<std::string_view> limits(const PoseReport& pose) {
+std::vector<std::string_view> limits(const Pose& pose) {
   std::vector<std::string_view> names;
   for (const auto& row : protocol::limit_table)
     if (protocol::is_reached(pose.limits, row.limit)) names.push_back(row.name);
   return names;
 }
 
-std::string force_of(const PoseReport& pose) {
+std::string force_of(const Pose& pose) {
   if (!protocol::force_is_on(pose.state)) return "-";
   const auto reached = limits(pose);
   return fmt::format("{}{}", fmt::join(force_sources(pose), ", "),
                      reached.empty() ? "" : fmt::format("; limited by {}", fmt::join(reached, ", ")));
 }
 
-nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::uint64_t lost) {
+nlohmann::ordered_json to_json(const Pose& pose, double host_time_s, std::uint64_t lost) {
   return {{"sequence", pose.sequence},
-          {"time_s", static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz},
+          {"time_s", device::board_time_s(pose.time_periods)},
           {"host_time_s", host_time_s},
           {"state", info(pose.state).name},
           {"fault", info(pose.fault).name},
-          {"referenced", pose.is_referenced != 0},
+          {"referenced", pose.is_referenced},
           {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}},
           {"gimbal_rad", {pose.gimbal_rad[0], pose.gimbal_rad[1], pose.gimbal_rad[2]}},
           {"force_N", {pose.force_N[0], pose.force_N[1], pose.force_N[2]}},
@@ -71,16 +71,16 @@ void print_head() {
              "force x y z / N", "switches", "lost", "force of");
 }
 
-std::string position_of(const PoseReport& pose) {
-  if (pose.is_referenced == 0) return "unknown";
+std::string position_of(const Pose& pose) {
+  if (!pose.is_referenced) return "unknown";
   const auto& p = pose.position_m;
   return fmt::format("{:8.2f} {:8.2f} {:8.2f}", 1e3f * p[0], 1e3f * p[1], 1e3f * p[2]);
 }
 
-void print_line(const PoseReport& pose, std::uint64_t lost) {
+void print_line(const Pose& pose, std::uint64_t lost) {
   const auto& f = pose.force_N;
   fmt::print("{:9.3f}  {:<12} {:>26}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}  {}\n",
-             static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz,
+             device::board_time_s(pose.time_periods),
              pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, position_of(pose),
              f[0], f[1], f[2], is_closed(pose.switches, protocol::Switch::button_1) ? "1 " : "- ",
              is_closed(pose.switches, protocol::Switch::button_2) ? "2 " : "- ",
@@ -92,17 +92,17 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
   if (!options.json) print_head();
   const auto information = connection.device->information().report;
   device::BusClock clock(static_cast<double>(information.processor_clock_Hz) / information.servo_rate_Hz);
-  std::optional<std::uint32_t> first_period, sequence, clock_read_at;
-  std::uint32_t next_shown = 0;
+  std::optional<std::int64_t> first_period, sequence, clock_read_at;
+  std::int64_t next_shown = 0;
   std::uint64_t lost = 0;
-  const auto periods_shown = static_cast<std::uint32_t>(protocol::servo_rate_Hz / watch_options.rate_Hz);
+  const auto periods_shown = static_cast<std::int64_t>(protocol::servo_rate_Hz / watch_options.rate_Hz);
   for (;;) {
-    const PoseReport pose = next_pose(*connection.device);
-    if (sequence) lost += pose.sequence - *sequence - 1;
+    const Pose pose = next_pose(*connection.device);
+    if (sequence) lost += static_cast<std::uint64_t>(pose.sequence - *sequence - 1);
     sequence = pose.sequence;
     if (!first_period) first_period = pose.time_periods;
-    const std::uint32_t passed = pose.time_periods - *first_period;
-    if (watch_options.seconds > 0 && passed >= watch_options.seconds * protocol::servo_rate_Hz) return 0;
+    const std::int64_t passed = pose.time_periods - *first_period;
+    if (watch_options.seconds > 0 && device::board_time_s(passed) >= watch_options.seconds) return 0;
     if (!clock_read_at || pose.time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
       clock.note(connection.device->frame());
       clock_read_at = pose.time_periods;

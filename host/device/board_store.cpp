@@ -10,7 +10,7 @@ using protocol::StoreReport;
 using protocol::StoreResult;
 
 /// Of board time. A set of parameters is written in a part of it.
-constexpr std::uint32_t patience_periods = protocol::servo_rate_Hz;
+constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
 
 constexpr std::string_view was_not_stored = "The parameters were not stored.";
 constexpr std::string_view was_not_forgotten = "What is stored was not forgotten.";
@@ -21,7 +21,7 @@ bool is_carried_out(StoreResult result) { return result == StoreResult::done || 
 StoreReport carry_out(Device& device, Command command, std::string_view failure) {
   const std::uint32_t commands_before = device.store_report().commands;
   device.carry_out(command);
-  const std::uint32_t begin_periods = device.frame().time_periods;
+  const std::int64_t begin_periods = device.frame().time_periods;
   for (;;) {
     const bool is_late = device.frame().time_periods - begin_periods > patience_periods;
     const StoreReport report = device.store_report();

@@ -9,8 +9,8 @@ namespace {
 
 using protocol::State;
 
-constexpr std::uint32_t fault_patience_periods = protocol::servo_rate_Hz / 5;
-constexpr std::uint32_t retest_patience_periods = protocol::servo_rate_Hz;
+constexpr std::int64_t fault_patience_periods = protocol::servo_rate_Hz / 5;
+constexpr std::int64_t retest_patience_periods = protocol::servo_rate_Hz;
 
 bool tests_itself(State state) { return state == State::starting || state == State::testing; }
 
@@ -25,7 +25,7 @@ void clear_fault(Device& device, const ShownFault& now, const std::function<Show
   device.carry_out(protocol::Command::clear_fault);
   if (now.state != State::fault) return;
   ShownFault seen = now;
-  const auto passed_periods = [&] { return seen.time_periods - now.time_periods; };  // beyond the counter's wrap too
+  const auto passed_periods = [&] { return seen.time_periods - now.time_periods; };
   while (passed_periods() < fault_patience_periods ||
          (tests_itself(seen.state) && passed_periods() < retest_patience_periods))
     seen = next();

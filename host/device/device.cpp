@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <device/wide_counter.hpp>
+
 #include "feature_reports.hpp"
 
 namespace inkwell::device {
@@ -24,11 +26,12 @@ using protocol::Command;
 using protocol::ReportId;
 
 constexpr auto heartbeat_interval = 10ms;
-constexpr std::uint32_t heartbeat_periods = protocol::servo_rate_Hz / 100;
+constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
 constexpr auto busy_timeout = 2s;
 /// Until the board has carried out a command, and until a force that falls is off.
-constexpr std::uint32_t command_patience_periods = protocol::servo_rate_Hz / 2;
-constexpr std::uint32_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
+constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
+constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
+/// The self-test's counter is not widened: only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
 
 /// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
@@ -102,8 +105,9 @@ struct Device::Implementation {
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   Clock::time_point last_output_at{};
-  std::uint32_t last_output_period = 0;
-  std::atomic<std::uint32_t> newest_period = 0;
+  std::int64_t last_output_period = 0;
+  std::atomic<std::int64_t> newest_period = 0;  ///< of the poses
+  WideCounter time_periods, sequence;
   std::uint16_t transaction_ticket = static_cast<std::uint16_t>(random_number());  ///< guarded by feature_mutex
   mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
@@ -244,7 +248,7 @@ struct Device::Implementation {
       const std::lock_guard lock(feature_mutex);
       get(report, "command results");
     }
-    newest_period = report.time_periods;
+    newest_period = time_periods.note(report.time_periods);
     return report;
   }
 
@@ -294,7 +298,7 @@ struct Device::Implementation {
   }
 
   /// A transaction that gives every parameter a value and so has no entries.
-  protocol::TransactionReport transact(protocol::ParameterOperation operation) {
+  AcceptedTransaction transact(protocol::ParameterOperation operation) {
     protocol::ParametersReport report{};
     report.report_id = ReportId::parameters;
     report.operation = operation;
@@ -304,7 +308,7 @@ struct Device::Implementation {
 
   /// The device judges a transaction before it acknowledges its data, so the report read next speaks of this one.
   /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
-  protocol::TransactionReport transact(protocol::ParametersReport& report) {
+  AcceptedTransaction transact(protocol::ParametersReport& report) {
     report.claim = claim();
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
     std::unique_lock lock(feature_mutex);
@@ -329,7 +333,7 @@ struct Device::Implementation {
       }
       if (result.refusal == protocol::Refusal::accepted) {
         if (stalled) throw *stalled;
-        return result;
+        return {result.transactions, time_periods.nearest(result.applied_at_periods)};
       }
       if (result.refusal != protocol::Refusal::busy || Clock::now() > give_up_at) throw Refused(result);
     }
@@ -360,7 +364,7 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
   try {
-    device->implementation_->decoder.forget_before(device->frame().time_periods);
+    device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(device->frame().time_periods));
   } catch (const Stalled&) {  // a bus without frames: nobody has read anything since the board started
   }
   return device;
@@ -453,7 +457,10 @@ void Device::take_link_of(Device& opened) {
   const std::scoped_lock lock(self.feature_mutex, self.output_mutex, self.scope_mutex);
   self.decoder = other.decoder;
   self.lose_claim();  // the board has forgotten it
-  self.newest_period = other.newest_period.load();
+  opened.continue_time(self.newest_period);
+  self.time_periods = other.time_periods;
+  self.sequence = other.sequence;
+  self.newest_period = self.time_periods.newest();
   self.newest_sequence = other.newest_sequence.load();
   self.last_output_period = self.newest_period;
   self.last_output_at = {};
@@ -461,13 +468,16 @@ void Device::take_link_of(Device& opened) {
   before = std::exchange(self.link, std::move(other.link));
 }
 
-protocol::FrameReport Device::frame() {
+BusFrame Device::frame() {
   const std::lock_guard lock(implementation_->feature_mutex);
   protocol::FrameReport report{};
   report.report_id = ReportId::frame;
   implementation_->get(report, "frame");
-  return report;
+  return {implementation_->sequence.note(report.sequence), implementation_->time_periods.note(report.time_periods),
+          report.time_cycles};
 }
+
+void Device::continue_time(std::int64_t before_periods) { implementation_->time_periods.continue_from(before_periods); }
 
 Information Device::information() {
   const std::lock_guard lock(implementation_->feature_mutex);
@@ -482,17 +492,19 @@ Information Device::information() {
   return information;
 }
 
-std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds timeout) {
-  protocol::PoseReport pose;
+std::optional<Pose> Device::read_pose(std::chrono::milliseconds timeout) {
+  auto& self = *implementation_;
+  protocol::PoseReport report;
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = implementation_->transport()->read_report(writable_bytes(pose), std::max(left, 0ms));
+    const std::size_t length = self.transport()->read_report(writable_bytes(report), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
-    if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
-    implementation_->newest_period = pose.time_periods;
-    implementation_->newest_sequence = pose.sequence;
-    implementation_->check_claim(pose);
+    if (length != sizeof report || report.report_id != ReportId::pose) continue;
+    const Pose pose = widened(report, self.sequence.note(report.sequence), self.time_periods.note(report.time_periods));
+    self.newest_period = pose.time_periods;
+    self.newest_sequence = report.sequence;
+    self.check_claim(report);
     return pose;
   }
 }
@@ -507,7 +519,7 @@ void Device::keep_alive() {
   auto& self = *implementation_;
   {
     const std::lock_guard lock(self.output_mutex);
-    const std::uint32_t passed = self.newest_period - self.last_output_period;
+    const std::int64_t passed = self.newest_period - self.last_output_period;
     if (passed == 0) return;  // its time stands still: heartbeats would pile up before the next command
     if (passed < heartbeat_periods && Clock::now() - self.last_output_at < heartbeat_interval) return;
   }
@@ -576,7 +588,7 @@ protocol::ParameterSet Device::parameters() { return implementation_->read_param
 
 protocol::ParameterSet Device::stored_parameters() { return implementation_->read_parameters(ReportId::stored); }
 
-protocol::TransactionReport Device::set_parameters(std::span<const ParameterChange> changes) {
+AcceptedTransaction Device::set_parameters(std::span<const ParameterChange> changes) {
   if (changes.size() > protocol::parameter_entries_maximum)
     throw Error(
         fmt::format("{} parameters are too many for one transaction. Give each parameter once.", changes.size()));
@@ -590,11 +602,11 @@ protocol::TransactionReport Device::set_parameters(std::span<const ParameterChan
   return implementation_->transact(report);
 }
 
-protocol::TransactionReport Device::restore_default_parameters() {
+AcceptedTransaction Device::restore_default_parameters() {
   return implementation_->transact(protocol::ParameterOperation::restore_defaults);
 }
 
-protocol::TransactionReport Device::restore_stored_parameters() {
+AcceptedTransaction Device::restore_stored_parameters() {
   return implementation_->transact(protocol::ParameterOperation::restore_stored);
 }
 
@@ -663,7 +675,10 @@ std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout
     const std::size_t length = implementation_->transport()->read_bulk(frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);
-    if (auto samples = implementation_->decoder.decode(std::span(frame).first(length))) return samples;
+    auto samples = implementation_->decoder.decode(std::span(frame).first(length));
+    if (!samples) continue;
+    samples->first_period = implementation_->time_periods.nearest(static_cast<std::uint32_t>(samples->first_period));
+    return samples;
   }
 }
 

@@ -35,7 +35,7 @@ std::string clock_utc_now() {
                      now.time_since_epoch().count() % 1000);
 }
 
-Event event_now(EventKind kind, std::string text, std::optional<std::uint32_t> at_periods) {
+Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods) {
   return {kind, protocol::plain_text(text), clock_utc_now(), at_periods};
 }
 
@@ -46,18 +46,18 @@ std::string log_line(std::string_view clock_utc, std::optional<double> time_s, E
 
 std::string line_of(const Event& event) {
   std::optional<double> time_s;
-  if (event.at_periods) time_s = static_cast<double>(*event.at_periods) / protocol::servo_rate_Hz;
+  if (event.at_periods) time_s = board_time_s(*event.at_periods);
   return log_line(event.clock_utc, time_s, event.kind, event.text);
 }
 
-std::vector<Event> events_between(const std::optional<protocol::PoseReport>& before, const protocol::PoseReport& now,
-                                  std::optional<std::uint32_t> noticed_at_periods) {
+std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
+                                  std::optional<std::int64_t> noticed_at_periods) {
   std::vector<Event> events;
   const bool was_on = before && protocol::force_is_on(before->state);
   const bool is_on = protocol::force_is_on(now.state);
   if (was_on != is_on)
     events.push_back(event_now(EventKind::force, is_on ? "The force is on." : "The force is off.", now.time_periods));
-  const auto fault_of = [](const protocol::PoseReport& pose) {
+  const auto fault_of = [](const Pose& pose) {
     return pose.state == protocol::State::fault ? pose.fault : protocol::Fault::none;
   };
   const protocol::Fault was_in = before ? fault_of(*before) : protocol::Fault::none;
@@ -72,7 +72,7 @@ std::vector<Event> events_between(const std::optional<protocol::PoseReport>& bef
 }
 
 std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
-                                    std::optional<std::uint32_t> at_periods, std::string_view whose) {
+                                    std::optional<std::int64_t> at_periods, std::string_view whose) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     if (before.values[i] == now.values[i]) continue;

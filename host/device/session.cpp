@@ -15,7 +15,7 @@ SessionStatus Session::status() const {
   return implementation_->state;
 }
 
-std::optional<protocol::PoseReport> Session::newest_pose() const {
+std::optional<Pose> Session::newest_pose() const {
   const std::lock_guard lock(implementation_->mutex);
   return implementation_->newest;
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <device/wide_counter.hpp>
+
 #include "thread_precedence.hpp"
 
 namespace inkwell::device {
@@ -16,12 +18,12 @@ using Clock = std::chrono::steady_clock;
 constexpr auto search_interval = 200ms;
 /// Another program may have changed the parameters. A second of the device's time: while that stands still, nothing
 /// shall pile up before a change that the user makes.
-constexpr std::uint32_t refresh_periods = protocol::servo_rate_Hz;
+constexpr std::int64_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
 
 /// Between two of a guide's test pulses the arm stays claimed.
-constexpr std::uint32_t idle_claim_periods = 2 * protocol::servo_rate_Hz;
+constexpr std::int64_t idle_claim_periods = 2 * protocol::servo_rate_Hz;
 
 bool may_move_arm(protocol::Command command) {
   using protocol::Command;
@@ -76,7 +78,9 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
   const auto held = opened->parameters();
   const auto store = read_store(*opened);
   const std::lock_guard lock(mutex);
-  if (parameter_set && information.serial_number == served_serial_number)
+  const bool is_known = information.serial_number == served_serial_number;
+  if (is_known) opened->continue_time(served_until_periods);
+  if (parameter_set && is_known)
     newest_reconnection = Reconnection{reconnections + 1, requests.parameters.applied_to(*parameter_set), held};
   reconnections += newest_reconnection ? 1 : 0;
   served_serial_number = information.serial_number;
@@ -104,12 +108,12 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
 }
 
 void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
-  std::optional<std::uint32_t> sequence;
-  std::optional<std::uint32_t> refreshed_at_periods;
+  std::optional<std::int64_t> sequence;
+  std::optional<std::int64_t> refreshed_at_periods;
   auto window_start = Clock::now(), last_pose = window_start;
   std::uint64_t poses_in_window = 0;
-  std::uint32_t newest_periods = 0;
-  std::optional<protocol::PoseReport> before;
+  std::int64_t newest_periods = 0;
+  std::optional<Pose> before;
   std::uint8_t parity = 0;
   while (!stopping) {
     if (const auto pose = served->read_pose(1ms)) {
@@ -159,7 +163,7 @@ void Session::Implementation::let_force_fall(Device& of) {
   }
 }
 
-void Session::Implementation::release_idle(Device& of, const protocol::PoseReport& pose) {
+void Session::Implementation::release_idle(Device& of, const Pose& pose) {
   using protocol::State;
   if (!of.drives()) return;
   const bool is_needed = protocol::force_is_on(pose.state) || pose.state == State::testing;
@@ -167,21 +171,22 @@ void Session::Implementation::release_idle(Device& of, const protocol::PoseRepor
   if (pose.time_periods - claimed_at_periods > idle_claim_periods) of.release();
 }
 
-void Session::Implementation::take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence) {
+void Session::Implementation::take_pose(const Pose& pose, std::optional<std::int64_t>& sequence) {
   const std::lock_guard lock(mutex);
   newest = pose;
+  served_until_periods = pose.time_periods;
   ++state.poses_received;
-  if (sequence) state.poses_lost += pose.sequence - *sequence - 1;
+  if (sequence && pose.sequence > *sequence)
+    state.poses_lost += static_cast<std::uint64_t>(pose.sequence - *sequence - 1);
   sequence = pose.sequence;
 }
 
-void Session::Implementation::note_events(const std::optional<protocol::PoseReport>& before,
-                                          const protocol::PoseReport& pose) {
+void Session::Implementation::note_events(const std::optional<Pose>& before, const Pose& pose) {
   const std::lock_guard lock(mutex);
   events.add(events_between(before, pose, state.fault ? std::optional(state.fault->at_periods) : std::nullopt));
 }
 
-void Session::Implementation::note_losses(std::uint32_t at_periods) {
+void Session::Implementation::note_losses(std::int64_t at_periods) {
   const auto note = [&](const char* what, std::uint64_t now, std::uint64_t& told) {
     if (now > told)
       events.add(event_now(EventKind::loss, fmt::format("{} {} were lost.", now - told, what), at_periods));
@@ -203,8 +208,7 @@ std::optional<protocol::SelfTestReport> self_test_of(Device& device) {
 
 }  // namespace
 
-void Session::Implementation::follow_fault(Device& from, const protocol::PoseReport& pose,
-                                           std::optional<std::uint32_t> before_periods) {
+void Session::Implementation::follow_fault(Device& from, const Pose& pose, std::optional<std::int64_t> before_periods) {
   std::optional<NoticedFault> known;
   std::optional<protocol::SelfTestReport> test;
   {
@@ -225,14 +229,14 @@ void Session::Implementation::follow_fault(Device& from, const protocol::PoseRep
   state.self_test = test;
 }
 
-std::uint32_t Session::Implementation::noticed_at_periods(Device& by, const protocol::PoseReport& pose,
-                                                          std::optional<std::uint32_t> before_periods) {
-  const auto comes_after = [](std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; };
+std::int64_t Session::Implementation::noticed_at_periods(Device& by, const Pose& pose,
+                                                         std::optional<std::int64_t> before_periods) {
   try {
     const protocol::BlackBoxReport box = by.black_box();
-    if (box.fault == pose.fault && box.is_restart == 0 && !comes_after(box.fault_periods, pose.time_periods) &&
-        (!before_periods || comes_after(box.fault_periods, *before_periods)))
-      return box.fault_periods;
+    const std::int64_t fault_periods = WideCounter::nearest_to(pose.time_periods, box.fault_periods);
+    if (box.fault == pose.fault && box.is_restart == 0 && fault_periods <= pose.time_periods &&
+        (!before_periods || fault_periods > *before_periods))
+      return fault_periods;
   } catch (const Stalled&) {  // then the pose tells it as well as one can
   }
   return pose.time_periods;

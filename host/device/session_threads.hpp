@@ -37,15 +37,14 @@ struct Session::Implementation {
   void report_loop();
   std::shared_ptr<Device> connect(const Endpoint& endpoint);
   void serve(const std::shared_ptr<Device>& served);
-  void take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence);
-  void note_events(const std::optional<protocol::PoseReport>& before, const protocol::PoseReport& pose);
+  void take_pose(const Pose& pose, std::optional<std::int64_t>& sequence);
+  void note_events(const std::optional<Pose>& before, const Pose& pose);
   /// Together for as long as a rate is counted, so that a bad cable does not fill the log. Call with the lock held.
-  void note_losses(std::uint32_t at_periods);
+  void note_losses(std::int64_t at_periods);
   /// `before_periods`: of the pose before this one, if there was one.
-  void follow_fault(Device& from, const protocol::PoseReport& pose, std::optional<std::uint32_t> before_periods);
+  void follow_fault(Device& from, const Pose& pose, std::optional<std::int64_t> before_periods);
   /// The black box knows the very period, unless it still keeps an older fault.
-  static std::uint32_t noticed_at_periods(Device& by, const protocol::PoseReport& pose,
-                                          std::optional<std::uint32_t> before_periods);
+  static std::int64_t noticed_at_periods(Device& by, const Pose& pose, std::optional<std::int64_t> before_periods);
   void send_requests(Device& to);
   /// What the board refuses is shown to the user, and no reason to give the connection up.
   void carry_out(Device& by, const QueuedCommand& queued);
@@ -54,7 +53,7 @@ struct Session::Implementation {
   /// A session that drives the arm and leaves switches the force off; otherwise the board would raise a fault.
   void let_force_fall(Device& of);
   /// Releases the arm some time after this session has needed it.
-  void release_idle(Device& of, const protocol::PoseReport& pose);
+  void release_idle(Device& of, const Pose& pose);
   /// For the next connection. What was asked for since comes after it.
   void put_back(ParameterRequests unsent);
   /// What the board refuses is told to the user, and no reason to give the connection up.
@@ -63,7 +62,7 @@ struct Session::Implementation {
   template <class Transaction>
   void transact(Device& with, Transaction transaction) {
     std::optional<std::string> refused;
-    std::optional<std::uint32_t> applied_at_periods;
+    std::optional<std::int64_t> applied_at_periods;
     try {
       applied_at_periods = transaction().applied_at_periods;
     } catch (const Refused& error) {
@@ -104,11 +103,12 @@ struct Session::Implementation {
   std::atomic<bool> lost = false;
   std::shared_ptr<Device> device;
   SessionStatus state;
-  std::optional<protocol::PoseReport> newest;
+  std::optional<Pose> newest;
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
-  std::uint32_t claimed_at_periods = 0;  ///< when this session last needed the arm
-  std::string served_serial_number;      ///< of the device that is connected, or was last
+  std::int64_t claimed_at_periods = 0;    ///< when this session last needed the arm
+  std::string served_serial_number;       ///< of the device that is connected, or was last
+  std::int64_t served_until_periods = 0;  ///< its newest pose
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;

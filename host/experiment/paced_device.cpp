@@ -87,7 +87,7 @@ void PacedDevice::wait_until(const std::function<bool()>& condition, double limi
   }
 }
 
-void PacedDevice::wait_for_pose(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s,
+void PacedDevice::wait_for_pose(const std::function<bool(const device::Pose&)>& condition, double limit_s,
                                 const std::string& otherwise) {
   wait_until([&] { return pose_ && condition(*pose_); }, limit_s, otherwise);
 }

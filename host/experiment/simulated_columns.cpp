@@ -34,13 +34,14 @@ void add_simulated_columns(recording::Recording& recording, const device::Trace&
 
   // The trace has one row for each control period, without gaps.
   const std::size_t rows = trace.row_count();
+  // The trace counts all periods since the reset, and the recording perhaps those since the counter last wrapped.
   const auto period_of = [&](std::size_t row) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(trace.values[row * width + period_place]));
   };
   const std::uint32_t first_period = rows == 0 ? 0 : period_of(0);
-  for (const std::uint32_t period : recording.periods) {
-    const std::size_t row = period - first_period;
-    if (row >= rows || period_of(row) != period)
+  for (const std::int64_t period : recording.periods) {
+    const std::size_t row = static_cast<std::uint32_t>(period) - first_period;
+    if (row >= rows || period_of(row) != static_cast<std::uint32_t>(period))
       throw device::Error(
           fmt::format("The virtual board's trace lacks control period {}. Run the experiment again.", period));
     for (std::size_t j = 0; j < places.size(); ++j)

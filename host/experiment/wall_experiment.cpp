@@ -153,7 +153,7 @@ Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control,
 
   control.trace_start();
   ScopeCapture capture(device, about);
-  const std::uint32_t path_begins_at = device.pose().time_periods;
+  const std::int64_t path_begins_at = device.pose().time_periods;
   control.hand_path(hand_path(parameters, wall));
   constexpr double step_s = 0.1;
   for (double passed_s = 0; passed_s < end_s; passed_s += step_s) {
@@ -169,15 +169,14 @@ Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control,
 
   progress("The simulation's own values are read.", 0.82);
   add_simulated_columns(recording, read_trace(control), recorded_quantities());
-  // Signed, because the path may begin a little before the first sample.
-  const double offset_s = static_cast<double>(static_cast<std::int32_t>(path_begins_at - recording.periods.front())) /
-                          protocol::servo_rate_Hz;
+  // It is below 0 if the path begins a little before the first sample.
+  const double offset_s = device::board_time_s(path_begins_at - recording.periods.front());
   return {std::move(recording), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01}};
 }
 
 // ---- with a real device ---------------------------------------------------------------------------------
 
-bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) {
+bool is_clear(const device::Pose& pose, const ParameterSet& parameters) {
   for (int axis = 0; axis < 3; ++axis) {
     const double position_m = static_cast<double>(pose.position_m[axis]);
     if (position_m > contact_m(parameters, {axis, 1}) - clear_m ||
@@ -201,7 +200,7 @@ Push push_by_user(PacedDevice& device, const recording::Information& about, BoxW
   progress(
       fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)),
       0.4);
-  const auto beyond_m = [&](const protocol::PoseReport& pose) {
+  const auto beyond_m = [&](const device::Pose& pose) {
     return wall.side * (static_cast<double>(pose.position_m[wall.axis]) - contact_m(parameters, wall));
   };
   const std::string too_late = "The push into the wall was not finished in 30 s. Run the experiment again.";

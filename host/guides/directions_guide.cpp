@@ -73,7 +73,7 @@ class PulseMotor final : public Step {
 
  private:
   /// Taken out of the inkwell, and slower than the pulse will be.
-  bool holds_still(const protocol::PoseReport& pose) {
+  bool holds_still(const device::Pose& pose) {
     const double angle_rad = static_cast<double>(pose.joint_rad[motor_ - 1]);
     if (is_closed(pose.switches, protocol::Switch::inkwell) ||
         std::abs(angle_rad - anchor_rad_) > smallest_turn_rad / 4) {

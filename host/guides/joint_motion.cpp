@@ -16,7 +16,7 @@ using protocol::State;
 constexpr double least_turn_rad = 0.15;  // enough to be meant, and far from any stop
 constexpr double resting_s = 0.2;
 
-double joint_rad(const protocol::PoseReport& pose, int joint) { return static_cast<double>(pose.joint_rad[joint - 1]); }
+double joint_rad(const device::Pose& pose, int joint) { return static_cast<double>(pose.joint_rad[joint - 1]); }
 
 }  // namespace
 

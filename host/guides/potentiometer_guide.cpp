@@ -121,7 +121,7 @@ class TurnGimbal final : public UserMoves {
   int axis_;
   bool middle_;
   Smoothed smoothed_;
-  std::uint32_t sequence_ = 0;
+  std::int64_t sequence_ = 0;
 };
 
 class FitPotentiometers final : public Step {

@@ -20,12 +20,12 @@ PulseRecorder::PulseRecorder(protocol::Command command, const protocol::TestPuls
   recording_ = recording::Recording::without_samples(std::move(information));
 }
 
-void PulseRecorder::begin(const protocol::PoseReport& pose, DevicePort& port) {
+void PulseRecorder::begin(const device::Pose& pose, DevicePort& port) {
   port.select_signals(recording_.information.signals);
   start_over(pose);
 }
 
-void PulseRecorder::start_over(const protocol::PoseReport& pose) {
+void PulseRecorder::start_over(const device::Pose& pose) {
   recording_.keep(0, 0);
   state_ = State::waits_for_scope;
   since_.start(pose);
@@ -35,7 +35,7 @@ void PulseRecorder::receive(const device::ScopeSamples& samples) {
   if (samples.signals == recording_.information.signals && state_ != State::done) recording_.append(samples);
 }
 
-bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) {
+bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
   if (state_ == State::done) return true;
   if (pose.state != protocol::State::ready)
     throw device::Error(

@@ -26,11 +26,11 @@ constexpr double silence_s = 2.0;
 
 /// What a pose of the library's tells of faults, and no more.
 device::ShownFault shown_fault(const inkwell_pose& pose) {
-  const auto periods = static_cast<std::uint64_t>(std::llround(pose.time_s * protocol::servo_rate_Hz));
+  const std::int64_t periods = std::llround(pose.time_s * protocol::servo_rate_Hz);
   const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
                      : pose.state == INKWELL_STARTING ? protocol::State::testing
                                                       : protocol::State::ready;
-  return {static_cast<std::uint32_t>(periods), state, static_cast<protocol::Fault>(pose.fault)};
+  return {periods, state, static_cast<protocol::Fault>(pose.fault)};
 }
 
 void refuse_in_fault(const inkwell_pose& pose) {

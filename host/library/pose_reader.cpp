@@ -15,12 +15,10 @@ inkwell_state state_of(protocol::State state) {
 
 }  // namespace
 
-inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control::Arm& geometry) {
-  // The report's counter wraps after 59 hours.
-  periods_ += static_cast<std::uint32_t>(report.time_periods - static_cast<std::uint32_t>(periods_));
+inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& geometry) {
   inkwell_pose pose{};
-  pose.time_s = static_cast<double>(periods_) / protocol::servo_rate_Hz;
-  pose.sequence = report.sequence;
+  pose.time_s = device::board_time_s(report.time_periods);
+  pose.sequence = static_cast<std::uint32_t>(report.sequence);  // wraps, as inkwell.h says
   pose.state = state_of(report.state);
   pose.fault = static_cast<int>(report.fault);
   pose.limits = report.limits;
@@ -32,7 +30,7 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
     pose.gimbal_rad[i] = gimbal_rad[i] = report.gimbal_rad[i];
     pose.force_N[i] = report.force_N[i];
   }
-  if (report.is_referenced == 0)
+  if (!report.is_referenced)
     velocity_ = {};  // there is none, and no way leads from there to where the arm is
   else
     velocity_.add(pose.time_s, position_m);

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <optional>
 
 #include <inkwell/inkwell.h>
 #include <control/kinematics.hpp>
 #include <device/device.hpp>
 #include <kinematics/velocity.hpp>
-#include <protocol/reports.hpp>
 
 namespace inkwell::library {
 
@@ -21,7 +19,7 @@ struct ReadPose {
 /// Of one arm, for one thread.
 class PoseReader {
  public:
-  inkwell_pose read(const protocol::PoseReport& report, const control::Arm& geometry);
+  inkwell_pose read(const device::Pose& report, const control::Arm& geometry);
   /// The newest pose that the device has sent; waits for one if there is none, and returns none on time-out. A reader
   /// that was late does not pass on the older ones, which a servo would answer too late.
   std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
@@ -29,7 +27,6 @@ class PoseReader {
 
  private:
   kinematics::VelocityFit velocity_;
-  std::uint64_t periods_ = 0;  ///< since the board started, beyond the wrap of the report's counter
 };
 
 }  // namespace inkwell::library

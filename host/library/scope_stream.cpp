@@ -115,7 +115,7 @@ std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::siz
     taken.values.resize(static_cast<std::size_t>(values));
     taken.count = capacity;
     oldest.values.erase(oldest.values.begin(), oldest.values.begin() + values);
-    oldest.first_period += static_cast<std::uint32_t>(capacity);
+    oldest.first_period += static_cast<std::int64_t>(capacity);
     oldest.count -= capacity;
     oldest.lost_before = 0;
   }

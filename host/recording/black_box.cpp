@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <device/wide_counter.hpp>
+
 namespace inkwell::recording {
+
+using device::WideCounter;
 
 std::vector<protocol::Signal> black_box_signals() {
   std::vector<protocol::Signal> signals;
@@ -19,16 +23,18 @@ Recording of_black_box(const protocol::BlackBoxReport& box, std::span<const prot
   about.step_periods = protocol::black_box_step_periods;
   auto recording = Recording::without_samples(std::move(about));
   for (const auto& row : rows) {
-    // Unsigned, so that it is right across the wrap of the board's counter.
-    const bool rises = recording.size() == 0 || row.time_periods - recording.periods.back() - 1 < 0x7FFF'FFFF;
-    if (!rises)
+    const std::int64_t period = recording.size() == 0
+                                    ? std::int64_t{row.time_periods}
+                                    : WideCounter::nearest_to(recording.periods.back(), row.time_periods);
+    if (recording.size() > 0 && period <= recording.periods.back())
       throw device::Error(fmt::format(
           "The black box of {} is damaged: its rows are not in the order of time. Nothing was saved.", fault));
-    recording.periods.push_back(row.time_periods);
+    recording.periods.push_back(period);
     for (std::size_t i = 0; i < recording.columns.size(); ++i)
       recording.columns[i].push_back(row.values[static_cast<std::size_t>(recording.information.signals[i])]);
   }
-  recording.marks.push_back({box.fault_periods, std::string(fault)});
+  recording.marks.push_back(
+      {WideCounter::nearest_to(recording.periods.front(), box.fault_periods), std::string(fault)});
   return recording;
 }
 

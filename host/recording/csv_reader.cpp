@@ -27,11 +27,13 @@ std::optional<Whole> whole_number(std::string_view text) {
   return value;
 }
 
-/// None for a time that no board can have: its counter of periods begins anew before.
-std::optional<std::uint32_t> period_at(double time_s) {
-  constexpr double longest_s = 4294967295.0 / protocol::servo_rate_Hz;
-  if (!(time_s >= 0.0 && time_s <= longest_s)) return std::nullopt;
-  return static_cast<std::uint32_t>(std::llround(time_s * protocol::servo_rate_Hz));
+/// None for a time that no board can have.
+std::optional<std::int64_t> period_at(double time_s) {
+  constexpr double convertible = 1e18;
+  const double periods = time_s * protocol::servo_rate_Hz;
+  if (!(periods >= 0.0 && periods < convertible)) return std::nullopt;
+  const std::int64_t period = std::llround(periods);
+  return can_be_period(period) ? std::optional(period) : std::nullopt;
 }
 
 class CsvReader {
@@ -100,9 +102,9 @@ class CsvReader {
       about.remove_prefix(std::min(about.size(), word.size() + 1));
       return word;
     };
-    const auto period = whole_number<std::uint32_t>(next());
+    const auto period = whole_number<std::int64_t>(next());
     const auto kind = device::find_event_kind(next()).value_or(device::EventKind::mark);
-    if (period)
+    if (period && can_be_period(*period))
       recording_.marks.push_back({*period, std::string(text), kind, std::string(next())});
     else
       recording_.remarks.push_back(fmt::format("The mark \"{}\" of {} has no period; it was left out.", text, name_));
@@ -150,7 +152,7 @@ class CsvReader {
     const double time_s = next();
     const auto period = period_at(time_s);
     if (!period) fail(fmt::format("is damaged in line {}: {} s is no time of a board", line_number_, time_s));
-    recording_.periods.push_back(*period);
+    recording_.periods.push_back(recording_.size() == 0 ? *period : period_after(recording_.periods.back(), *period));
     auto column = recording_.columns.begin(), simulated_column = recording_.simulated_columns.begin();
     for (const Holds holds : holds_) {
       const auto value = static_cast<float>(next());

@@ -27,8 +27,8 @@ class CsvWriter final : public Writer {
   void append(const device::ScopeSamples& samples, std::span<const float> simulated) override {
     const std::size_t width = samples.signals.size();
     for (std::size_t i = 0; i < samples.count; ++i) {
-      const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
-      fmt::format_to(std::back_inserter(text_), "{:.5f}", static_cast<double>(period) / protocol::servo_rate_Hz);
+      const std::int64_t period = samples.first_period + static_cast<std::int64_t>(i);
+      fmt::format_to(std::back_inserter(text_), "{:.5f}", device::board_time_s(period));
       for (std::size_t j = 0; j < width; ++j)
         fmt::format_to(std::back_inserter(text_), ",{}", samples.values[i * width + j]);
       for (std::size_t j = 0; j < simulated_; ++j)

@@ -20,6 +20,12 @@ std::string force_law_digits(const Information& information);
 /// there. What is wrong with it becomes a remark, with the file's name.
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
+/// Whether a file's control period is a time that a board can have: thirty years at most.
+bool can_be_period(std::int64_t written);
+/// The control period that stands after `before` in a file. Files of earlier versions hold its lower 32 bits only,
+/// which fall where the board's counter wraps.
+std::int64_t period_after(std::int64_t before, std::int64_t written);
+
 /// Information::step_periods as it stands in a file: 1 for what is none, such as in a file of an earlier version.
 std::uint32_t step_periods_of(double written);
 

@@ -237,12 +237,12 @@ void Hdf5Input::read_column(const Dataset& column, hid_t type, std::uint64_t cou
     fail(fmt::format("is damaged: {} cannot be read", column.path));
 }
 
-std::vector<std::uint32_t> Hdf5Input::whole_numbers(const std::string& path, std::uint64_t count) {
+std::vector<std::int64_t> Hdf5Input::whole_numbers(const std::string& path, std::uint64_t count) {
   const Dataset column = open_column(path);
   if (!is_whole_number(column.type.id())) fail(fmt::format("is damaged: {} must be whole numbers", path));
   check_content(column, count);
-  std::vector<std::uint32_t> numbers(count);
-  read_column(column, H5T_NATIVE_UINT32, count, numbers.data());
+  std::vector<std::int64_t> numbers(count);
+  read_column(column, H5T_NATIVE_INT64, count, numbers.data());
   return numbers;
 }
 

@@ -4,11 +4,11 @@
 //                        serial_number, arm, force_law (as the device sent it, in hexadecimal digits), simulation,
 //                        servo_rate_Hz, step_periods (control periods from one sample to the next)
 //   /parameters/NAME     scalar float, attributes unit and help
-//   /period              uint32[N], control period of each sample
+//   /period              int64[N], control period of each sample (uint32, which wraps, in files of earlier versions)
 //   /time_s              float64[N]
 //   /signals/NAME        float32[N], attributes unit and help
 //   /simulated/NAME      float32[N], attributes unit and help: what a simulation knew beside the signals, if it did
-//   /marks/period        uint32[M]
+//   /marks/period        int64[M] (likewise)
 //   /marks/text          text[M] of fixed length, the bytes of UTF-8
 //                        (called UTF-8, and shorter, in files of earlier versions)
 //   /marks/kind          text[M]: mark of the user, connection, force, fault, parameter, loss

@@ -24,7 +24,9 @@ class Hdf5Reader {
     const auto samples = static_cast<std::uint64_t>(std::max<std::int64_t>(0, input_.whole_number("/samples")));
     std::uint64_t whole = std::min(samples, input_.length_of("/period"));
     for (const auto& path : columns_) whole = std::min(whole, input_.length_of(path));
-    recording_.periods = input_.whole_numbers("/period", whole);
+    recording_.periods = periods("/period", whole);
+    for (std::size_t i = 1; i < whole; ++i)
+      recording_.periods[i] = period_after(recording_.periods[i - 1], recording_.periods[i]);
     for (const auto& path : columns_) {
       auto& place = recording_.columns.size() < recording_.information.signals.size() ? recording_.columns
                                                                                       : recording_.simulated_columns;
@@ -98,7 +100,7 @@ class Hdf5Reader {
   void read_marks() {
     const std::uint64_t count = std::min(input_.length_of("/marks/period"), input_.length_of("/marks/text"));
     if (count == 0) return;
-    const auto periods = input_.whole_numbers("/marks/period", count);
+    const auto mark_periods = periods("/marks/period", count);
     const auto texts = input_.texts("/marks/text", count);
     // A file of an earlier version has neither.
     const bool has_kinds = input_.has("/marks/kind");
@@ -106,7 +108,13 @@ class Hdf5Reader {
     const auto clocks = has_kinds ? input_.texts("/marks/clock_utc", count) : std::vector<std::string>(count);
     for (std::size_t i = 0; i < count; ++i)
       recording_.marks.push_back(
-          {periods[i], texts[i], device::find_event_kind(kinds[i]).value_or(device::EventKind::mark), clocks[i]});
+          {mark_periods[i], texts[i], device::find_event_kind(kinds[i]).value_or(device::EventKind::mark), clocks[i]});
+  }
+  std::vector<std::int64_t> periods(const std::string& path, std::uint64_t count) {
+    auto periods = input_.whole_numbers(path, count);
+    if (!std::ranges::all_of(periods, can_be_period))
+      input_.fail(fmt::format("is damaged: {} contains impossible times", path));
+    return periods;
   }
 
   Hdf5Input input_;

@@ -47,9 +47,9 @@ class Hdf5Writer final : public Writer {
   void append(const device::ScopeSamples& samples, std::span<const float> simulated) override {
     const std::size_t simulated_width = values_.size() - width_;
     for (std::size_t i = 0; i < samples.count; ++i) {
-      const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
+      const std::int64_t period = samples.first_period + static_cast<std::int64_t>(i);
       periods_.push_back(period);
-      times_s_.push_back(static_cast<double>(period) / protocol::servo_rate_Hz);
+      times_s_.push_back(device::board_time_s(period));
       for (std::size_t j = 0; j < width_; ++j) values_[j].push_back(samples.values[i * width_ + j]);
       for (std::size_t j = 0; j < simulated_width; ++j)
         values_[width_ + j].push_back(simulated[i * simulated_width + j]);
@@ -59,7 +59,7 @@ class Hdf5Writer final : public Writer {
   }
   void mark(const Mark& mark) override {
     const QuietHdf5 quiet;
-    extend(mark_period_, mark_count_, 1, H5T_NATIVE_UINT32, &mark.period);
+    extend(mark_period_, mark_count_, 1, H5T_NATIVE_INT64, &mark.period);
     write_mark_text(mark_text_, mark.text, mark_text_bytes);
     write_mark_text(mark_kind_, name_of(mark.kind), mark_kind_bytes);
     write_mark_text(mark_clock_, mark.clock_utc, mark_clock_bytes);
@@ -149,7 +149,7 @@ class Hdf5Writer final : public Writer {
       write_attribute(value.id(), "unit", std::string(row.unit));
       write_attribute(value.id(), "help", std::string(row.help));
     }
-    growing(file.id(), "period", H5T_STD_U32LE, chunk_samples_, Packing::compressed);
+    growing(file.id(), "period", H5T_STD_I64LE, chunk_samples_, Packing::compressed);
     write_attribute(growing(file.id(), "time_s", H5T_IEEE_F64LE, chunk_samples_, Packing::compressed).id(), "unit",
                     std::string("s"));
     const Handle signals = group(file.id(), "signals");
@@ -158,7 +158,7 @@ class Hdf5Writer final : public Writer {
     for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
     const Handle marks = group(file.id(), "marks");
     // Each mark is written when it comes, into a chunk that has to keep its size.
-    growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks, Packing::none);
+    growing(marks.id(), "period", H5T_STD_I64LE, chunk_marks, Packing::none);
     growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks, Packing::none);
     growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks, Packing::none);
     growing(marks.id(), "clock_utc", byte_text_type(mark_clock_bytes).id(), chunk_marks, Packing::none);
@@ -204,7 +204,7 @@ class Hdf5Writer final : public Writer {
       extend(column, size_, count, type, waiting.data());
       waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(count));
     };
-    put(period_, H5T_NATIVE_UINT32, periods_);
+    put(period_, H5T_NATIVE_INT64, periods_);
     put(time_, H5T_NATIVE_DOUBLE, times_s_);
     for (std::size_t j = 0; j < values_.size(); ++j) put(columns_[j], H5T_NATIVE_FLOAT, values_[j]);
     size_ += count;
@@ -259,8 +259,8 @@ class Hdf5Writer final : public Writer {
   std::size_t width_;  ///< how many signals there are
   hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
-  std::vector<Handle> columns_;         ///< of the signals, then of the simulated quantities
-  std::vector<std::uint32_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
+  std::vector<Handle> columns_;        ///< of the signals, then of the simulated quantities
+  std::vector<std::int64_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;
   hsize_t size_ = 0;  ///< samples in the file

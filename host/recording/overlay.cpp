@@ -12,7 +12,7 @@ namespace {
 
 std::int64_t periods_to_mark(const Recording& recording, std::string_view text) {
   const auto found = std::ranges::find(recording.marks, text, &Mark::text);
-  if (found != recording.marks.end()) return std::int64_t{found->period - recording.periods.front()};
+  if (found != recording.marks.end()) return found->period - recording.periods.front();
   std::vector<std::string> texts;
   for (const Mark& mark : recording.marks) texts.push_back("`" + mark.text + "`");
   throw device::Error(fmt::format("{} has no mark `{}`. It has {}.", recording.name, text,
@@ -41,10 +41,8 @@ device::ScopeSamples Overlay::beside(const device::ScopeSamples& of_base) const 
                                .lost_before = of_base.lost_before};
   const std::size_t width = over_.columns.size();
   samples.values.assign(samples.count * width, std::nanf(""));
-  const std::int64_t first = std::int64_t{of_base.first_period - base_begins_periods_} - shift_periods_;
-  const auto elapsed_periods = [&](std::size_t sample) {
-    return std::int64_t{over_.periods[sample] - over_.periods.front()};
-  };
+  const std::int64_t first = of_base.first_period - base_begins_periods_ - shift_periods_;
+  const auto elapsed_periods = [&](std::size_t sample) { return over_.periods[sample] - over_.periods.front(); };
   // The newest sample at or before the first period, whose values hold until the next one is due.
   std::size_t sample = over_.sample_at(static_cast<double>(first) / protocol::servo_rate_Hz);
   if (sample > 0 && (sample == over_.size() || elapsed_periods(sample) > first)) --sample;

@@ -1,5 +1,6 @@
 #include <recording/recorder.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -93,8 +94,8 @@ struct Recorder::Implementation {
   std::size_t queued_bytes = 0;
   bool stopping = false;
   RecorderStatus status{.running = true};
-  std::optional<std::uint32_t> first_period;
-  std::uint32_t newest_period = 0;
+  std::optional<std::int64_t> first_period;
+  std::int64_t newest_period = 0;
   std::vector<Mark> early_marks;  ///< set before the first sample came, which gets them
 
   std::thread thread;  // last, so that it finds everything made
@@ -110,7 +111,7 @@ void Recorder::push(const device::ScopeSamples& samples) {
   const std::lock_guard lock(self.mutex);
   if (!self.status.running || self.stopping || samples.signals != self.information.signals || samples.count == 0)
     return;
-  const auto step = static_cast<std::int32_t>(samples.first_period - self.newest_period);
+  const std::int64_t step = samples.first_period - self.newest_period;
   if (self.first_period && step <= 0) {
     self.status.error =
         "The board was restarted, so its time began anew. The recording ends with the last sample before.";
@@ -119,13 +120,13 @@ void Recorder::push(const device::ScopeSamples& samples) {
     return;
   }
   // Counted by their periods, so that those are counted too that were lost between the link and here.
-  if (self.first_period) self.status.lost += static_cast<std::uint32_t>(step) - 1;
+  if (self.first_period) self.status.lost += static_cast<std::uint64_t>(step - 1);
   if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // the next block's step counts it as lost
   const bool is_first = !self.first_period;
   if (is_first) self.first_period = samples.first_period;
-  self.newest_period = samples.first_period + static_cast<std::uint32_t>(samples.count - 1);
+  self.newest_period = samples.first_period + static_cast<std::int64_t>(samples.count) - 1;
   self.status.samples += samples.count;
-  self.status.duration_s = static_cast<double>(self.newest_period - *self.first_period) / protocol::servo_rate_Hz;
+  self.status.duration_s = device::board_time_s(self.newest_period - *self.first_period);
   self.queued_bytes += size_of(samples);
   self.queue.emplace_back(samples);
   if (is_first)
@@ -145,7 +146,7 @@ void Recorder::note(const device::Event& event) {
   ++self.status.marks;
   Mark mark{event.at_periods.value_or(self.newest_period), event.text, event.kind, event.clock_utc};
   if (!self.first_period) return self.early_marks.push_back(std::move(mark));
-  if (static_cast<std::int32_t>(mark.period - *self.first_period) < 0) mark.period = *self.first_period;
+  mark.period = std::max(mark.period, *self.first_period);
   self.queue.emplace_back(std::move(mark));
   self.wake.notify_one();
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <device/wide_counter.hpp>
 #include <protocol/plain_text.hpp>
 
 #include "formats.hpp"
@@ -23,11 +24,14 @@ Recording Recording::without_samples(Information information) {
 
 std::uint64_t Recording::lost() const {
   if (periods.size() < 2) return 0;
-  const std::uint32_t step = information.step_periods;
-  if (step == 1) return std::uint64_t{periods.back() - periods.front()} + 1 - periods.size();
-  std::uint64_t count = 0;
+  const std::int64_t step = information.step_periods;
+  if (step == 1) {
+    const auto passed = static_cast<std::uint64_t>(periods.back() - periods.front()) + 1;
+    return passed - std::min<std::uint64_t>(passed, periods.size());
+  }
+  std::int64_t count = 0;
   for (std::size_t i = 1; i < size(); ++i) count += (periods[i] - periods[i - 1] - 1) / step;
-  return count;
+  return static_cast<std::uint64_t>(count);
 }
 
 std::size_t Recording::sample_at(double elapsed) const {
@@ -70,7 +74,7 @@ std::size_t Recording::end_of_stretch(std::size_t begin, std::size_t end) const 
 device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) const {
   device::ScopeSamples samples{
       .signals = information.signals, .first_period = periods[begin], .count = end - begin, .values = {}};
-  if (begin > 0) samples.lost_before = periods[begin] - periods[begin - 1] - 1;
+  if (begin > 0) samples.lost_before = static_cast<std::uint64_t>(periods[begin] - periods[begin - 1] - 1);
   samples.values.reserve(samples.count * samples.signals.size());
   for (std::size_t i = begin; i < end; ++i)
     for (const auto& column : columns) samples.values.push_back(column[i]);
@@ -80,7 +84,9 @@ device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) cons
 device::ScopeSamples Recording::held_sample(std::size_t sample) const {
   const bool is_last = sample + 1 == size();
   device::ScopeSamples held = samples(sample, sample + 1);
-  if (!is_last) held.count = std::min(information.step_periods, periods[sample + 1] - periods[sample]);
+  if (!is_last)
+    held.count = static_cast<std::size_t>(
+        std::min<std::int64_t>(information.step_periods, periods[sample + 1] - periods[sample]));
   if (sample > 0) held.lost_before -= std::min<std::uint64_t>(held.lost_before, information.step_periods - 1);
   const std::vector<float> values = held.values;
   for (std::size_t i = 1; i < held.count; ++i) held.values.insert(held.values.end(), values.begin(), values.end());
@@ -89,7 +95,7 @@ device::ScopeSamples Recording::held_sample(std::size_t sample) const {
 
 void Recording::append(const device::ScopeSamples& samples) {
   for (std::size_t i = 0; i < samples.count; ++i) {
-    periods.push_back(samples.first_period + static_cast<std::uint32_t>(i));
+    periods.push_back(samples.first_period + static_cast<std::int64_t>(i));
     for (std::size_t j = 0; j < columns.size(); ++j) columns[j].push_back(samples.values[i * columns.size() + j]);
   }
 }
@@ -102,6 +108,15 @@ void Recording::keep(std::size_t begin, std::size_t end) {
   cut(periods);
   for (auto& column : columns) cut(column);
   for (auto& column : simulated_columns) cut(column);
+}
+
+bool can_be_period(std::int64_t written) {
+  constexpr std::int64_t longest_s = 1'000'000'000;
+  return written >= 0 && written <= longest_s * protocol::servo_rate_Hz;
+}
+
+std::int64_t period_after(std::int64_t before, std::int64_t written) {
+  return written < before ? device::WideCounter::at_or_after(before, static_cast<std::uint32_t>(written)) : written;
 }
 
 std::uint32_t step_periods_of(double written) {
@@ -160,10 +175,10 @@ Recording read(const std::filesystem::path& file) {
         file.string()));
   }
   make_plain(recording);
-  // What a device did is told a moment after what the user notes.
   if (!recording.periods.empty())
-    std::ranges::stable_sort(recording.marks, {},
-                             [&](const Mark& mark) { return recording.elapsed_s_at(mark.period); });
+    for (Mark& mark : recording.marks) mark.period = period_after(recording.periods.front(), mark.period);
+  // What a device did is told a moment after what the user notes.
+  std::ranges::stable_sort(recording.marks, {}, &Mark::period);
   recording.name = protocol::plain_text(file.stem().string());
   return recording;
 }

@@ -58,7 +58,7 @@ std::size_t Replay::present_sample() const {
   return after == 0 ? 0 : after - 1;
 }
 
-std::optional<protocol::PoseReport> Replay::pose() const {
+std::optional<device::Pose> Replay::pose() const {
   if (!column_of(Signal::joint_1_rad) || !column_of(Signal::joint_2_rad) || !column_of(Signal::joint_3_rad))
     return std::nullopt;
   const std::size_t present = present_sample();
@@ -66,7 +66,7 @@ std::optional<protocol::PoseReport> Replay::pose() const {
     const auto column = column_of(signal);
     return column ? recording_.columns[*column][present] : 0.0f;
   };
-  protocol::PoseReport pose{};
+  device::Pose pose{};
   pose.time_periods = recording_.periods[present];
   pose.sequence = pose.time_periods / (protocol::servo_rate_Hz / protocol::pose_rate_Hz);
   const auto vector = [&](float(&to)[3], protocol::EachAxis<Signal> rows) {
@@ -80,7 +80,7 @@ std::optional<protocol::PoseReport> Replay::pose() const {
       std::any_of(std::begin(pose.force_N), std::end(pose.force_N), [](float force_N) { return force_N != 0.0f; });
   pose.state = pushes ? protocol::State::active : protocol::State::ready;
   pose.fault = protocol::Fault::none;
-  pose.is_referenced = 1;  // no recording tells, so the arm is drawn where its joints say
+  pose.is_referenced = true;  // no recording tells, so the arm is drawn where its joints say
   const float supply_dV = std::clamp(10.0f * value(Signal::supply_V), 0.0f, 255.0f);
   pose.supply_dV = static_cast<std::uint8_t>(supply_dV);
   return pose;

@@ -22,7 +22,7 @@ constexpr double close_look_s = 0.1;
 /// Status and truth both count them from the power on, with the trial of the watchdog as the first.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 
-bool force_on(const protocol::PoseReport& pose) { return protocol::force_is_on(pose.state); }
+bool force_on(const device::Pose& pose) { return protocol::force_is_on(pose.state); }
 
 }  // namespace
 
@@ -82,7 +82,7 @@ void Bench::look_closely() {
 
 /// The pose is a little older than the truth.
 void Bench::check_pose() {
-  if (!board.pose() || board.pose()->is_referenced == 0) return;
+  if (!board.pose() || !board.pose()->is_referenced) return;
   const auto truth = board.control().truth();
   double squares_m2 = 0, squares_m2_per_s2 = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

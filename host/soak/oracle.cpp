@@ -44,7 +44,7 @@ void Oracle::take_back_permission(double grace_s) {
   may_drive_until_s_ = now_s_ + grace_s;
 }
 
-void Oracle::see(const protocol::PoseReport& pose) {
+void Oracle::see(const device::Pose& pose) {
   ++poses_;
   if (sequence_) miss(pose.sequence - *sequence_ - 1);
   sequence_ = pose.sequence;

@@ -256,7 +256,15 @@ bool Companion::asks_for_frame() const {
 
 std::uint64_t Companion::canvas_digest() const {
   PictureDigest digest;
-  if (drawn_pose_) digest.add_bytes(&*drawn_pose_, sizeof *drawn_pose_);
+  if (drawn_pose_) {
+    const device::Pose& pose = *drawn_pose_;
+    for (const auto& vector : {pose.position_m, pose.gimbal_rad, pose.force_N, pose.joint_rad})
+      digest.add_bytes(vector, sizeof pose.position_m);
+    digest.add(pose.state);
+    digest.add(pose.fault);
+    digest.add(pose.switches);
+    digest.add(pose.is_referenced);
+  }
   const auto parameters = shown_parameters().shown();
   digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
   digest.add(*style_.palette);
@@ -289,7 +297,7 @@ std::optional<double> Companion::pose_age_s() const {
   const auto newest = desk_.newest_pose();
   const auto& drawn = desk_.view().pose;
   if (!newest || !drawn || replay_bar_.is_open()) return std::nullopt;
-  return static_cast<double>(newest->time_periods - drawn->time_periods) / protocol::servo_rate_Hz;
+  return device::board_time_s(newest->time_periods - drawn->time_periods);
 }
 
 }  // namespace inkwell::window

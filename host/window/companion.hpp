@@ -97,11 +97,11 @@ class Companion final : public FrameContent {
 
   std::uint64_t seen_revision_ = 0;
   std::string seen_refusal_;
-  float banner_room_ = 0.0f;                        ///< in the frame before
-  Rectangle scene_;                                 ///< where it was laid out last
-  std::optional<protocol::PoseReport> arrived_;     ///< the device's newest when the frame began
-  std::optional<protocol::PoseReport> pose_;        ///< that the frame shows: the device's, or the recording's
-  std::optional<protocol::PoseReport> drawn_pose_;  ///< the last one that looked different from the one before
+  float banner_room_ = 0.0f;                ///< in the frame before
+  Rectangle scene_;                         ///< where it was laid out last
+  std::optional<device::Pose> arrived_;     ///< the device's newest when the frame began
+  std::optional<device::Pose> pose_;        ///< that the frame shows: the device's, or the recording's
+  std::optional<device::Pose> drawn_pose_;  ///< the last one that looked different from the one before
   bool is_moving_ = true;
   bool button_1_ = false;
   bool button_2_ = false;

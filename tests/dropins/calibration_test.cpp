@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 using protocol::State;
 
 template <class Condition>
-protocol::PoseReport read_until(device::Device& arm, Condition condition) {
+device::Pose read_until(device::Device& arm, Condition condition) {
   for (;;)
     if (const auto pose = arm.read_pose(60s); pose && condition(*pose)) return *pose;
 }

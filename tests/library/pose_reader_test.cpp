@@ -14,7 +14,7 @@ namespace {
 TEST_CASE("the velocity is that of the way, and nothing where no way leads from one place to the next") {
   const control::Arm geometry = control::prepare(protocol::default_parameters()).arm;
   library::PoseReader reader;
-  protocol::PoseReport report{};
+  device::Pose report{};
   double x_m = 0.0;
   /// Passes a millisecond at 0.1 m/s and gives the velocity along x.
   const auto next = [&](bool is_referenced) {

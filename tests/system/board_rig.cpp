@@ -96,7 +96,7 @@ void BoardRig::push(const device::ForceRequest& force) {
   control.run(0.001);
 }
 
-void BoardRig::run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
+void BoardRig::run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s) {
   for (double passed_s = 0; passed_s < limit_s; passed_s += slice_s) {
     if (!poses_.empty() && condition(pose())) return;
     run(slice_s);

@@ -39,15 +39,15 @@ class BoardRig {
   /// Waits until the board shows a device, for a second of board time at most, and opens it.
   void connect();
   /// Runs until the newest pose fulfils the condition; fails the test after `limit_s` of board time.
-  void run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s = 3.0);
+  void run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s = 3.0);
 
   /// Takes the stylus out of the inkwell by the hand and brings it to a point of the workspace.
   void take_to(device::Vector3 target_m, double duration_s = 0.6);
   /// Waits for the reference, then switches the force on.
   void make_active();
 
-  const protocol::PoseReport& pose() const { return poses_.back(); }
-  const std::vector<protocol::PoseReport>& poses() const { return poses_; }
+  const device::Pose& pose() const { return poses_.back(); }
+  const std::vector<device::Pose>& poses() const { return poses_; }
   double board_time_s() { return control.status().board_time_s; }
 
   device::VirtualBoard board;
@@ -57,7 +57,7 @@ class BoardRig {
  private:
   void pass_slice();
   double since_sign_of_life_s_ = 0;
-  std::vector<protocol::PoseReport> poses_;
+  std::vector<device::Pose> poses_;
 };
 
 /// The largest true current of the three motors.

@@ -160,7 +160,7 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for 4 s, none los
   rig.device->select_signals(floating_point_signals(14));
 
   std::uint64_t samples = 0, lost = 0;
-  std::optional<std::uint32_t> first_period;
+  std::optional<std::int64_t> first_period;
   const auto first_pose = rig.poses().size();
   constexpr int seconds = 4;
   for (int slice = 0; slice < seconds * 50; ++slice) {

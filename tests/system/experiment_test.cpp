@@ -30,7 +30,7 @@ class Columns {
     const auto recording = inkwell::recording::read(file);
     REQUIRE(recording.complete);
     REQUIRE(recording.remarks.empty());
-    for (const std::uint32_t period : recording.periods) periods.push_back(period);
+    periods = recording.periods;
     for (const auto quantity : recording.quantities()) {
       names.emplace_back(inkwell::recording::name_of(quantity));
       const auto& column = recording.column(quantity);
@@ -41,7 +41,7 @@ class Columns {
   std::size_t size() const { return periods.size(); }
 
   std::vector<std::string> names;
-  std::vector<std::uint32_t> periods;
+  std::vector<std::int64_t> periods;
 
  private:
   std::map<std::string, std::vector<double>> columns_;

@@ -24,7 +24,7 @@ namespace {
 
 std::string text_of(std::uint32_t address) { return std::to_string(address); }
 
-bool is_in_fault(const protocol::PoseReport& pose) { return pose.state == State::fault; }
+bool is_in_fault(const device::Pose& pose) { return pose.state == State::fault; }
 
 /// A bit of each place flips under a pressing hand.
 void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int bit) {

@@ -31,17 +31,17 @@ struct ProgramRig : BoardRig {
   }
 
   /// A millisecond; what the device sent in it.
-  std::vector<protocol::PoseReport> millisecond() {
+  std::vector<device::Pose> millisecond() {
     control.run(0.001);
-    std::vector<protocol::PoseReport> seen;
+    std::vector<device::Pose> seen;
     while (auto pose = device->read_pose(0ms)) seen.push_back(newest = *pose);
     return seen;
   }
-  protocol::PoseReport newest{};  ///< that millisecond() has seen
+  device::Pose newest{};  ///< that millisecond() has seen
 
   /// Sends the same force each millisecond; the poses that came meanwhile.
-  std::vector<protocol::PoseReport> drive(const device::ForceRequest& request, int milliseconds) {
-    std::vector<protocol::PoseReport> seen;
+  std::vector<device::Pose> drive(const device::ForceRequest& request, int milliseconds) {
+    std::vector<device::Pose> seen;
     for (int i = 0; i < milliseconds; ++i) {
       device->send_force(request);
       for (const auto& pose : millisecond()) seen.push_back(pose);
@@ -53,7 +53,7 @@ struct ProgramRig : BoardRig {
 double length(const float (&vector)[3]) { return std::hypot(vector[0], vector[1], vector[2]); }
 
 /// The largest change of the force between two poses, for each millisecond between them.
-double largest_step_N(const std::vector<protocol::PoseReport>& poses) {
+double largest_step_N(const std::vector<device::Pose>& poses) {
   double largest_N = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const auto& before = poses[i - 1];
@@ -77,10 +77,10 @@ TEST_CASE("a program's force is felt, shown as its own, and gone within its expi
   CHECK(rig.control.truth().at("true_position_x_m").get<double>() - before ==
         doctest::Approx(1.0 / 1500).scale(0).epsilon(0.3));
 
-  std::vector<protocol::PoseReport> silence;
+  std::vector<device::Pose> silence;
   for (int i = 0; i < 80; ++i)
     for (const auto& pose : rig.millisecond()) silence.push_back(pose);
-  const std::uint32_t last_heard = poses.back().time_periods;
+  const std::int64_t last_heard = poses.back().time_periods;
   const auto is_gone = [](const auto& pose) { return pose.force_N[0] == 0.0f; };
   const auto gone = std::find_if(silence.begin(), silence.end(), is_gone);
   REQUIRE(gone != silence.end());
@@ -103,7 +103,7 @@ TEST_CASE("a huge force is the force limit in its direction, a program that ends
   CHECK(poses.back().force_N[2] / poses.back().force_N[0] == doctest::Approx(-4.0 / 3.0).epsilon(1e-3));
   CHECK(largest_step_N(poses) <= info(Parameter::program_force_change_N_per_s).default_value * 1.1e-3);
   rig.device->send_force({.mode = ForceMode::none});
-  std::vector<protocol::PoseReport> end;
+  std::vector<device::Pose> end;
   for (int i = 0; i < 15; ++i)
     for (const auto& pose : rig.millisecond()) end.push_back(pose);
   CHECK(length(end.back().force_N) == 0.0);
@@ -185,7 +185,7 @@ TEST_CASE("in an orderly end the force leaves a pressing hand softly, a stop tak
   const double pressed_N = length(rig.pose().force_N);
   REQUIRE(pressed_N > 1.0);
   rig.device->send(protocol::Command::disable_force);
-  std::vector<protocol::PoseReport> seen{rig.pose()};
+  std::vector<device::Pose> seen{rig.pose()};
   for (int i = 0; i < 80; ++i)
     for (const auto& pose : rig.millisecond()) seen.push_back(pose);
   CHECK(length(seen.back().force_N) == 0.0);
@@ -241,7 +241,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   for (const Move& move : {Move{0.005, 300}, {-0.005, 8}}) {
     CAPTURE(move.by_m);
     floor_m += move.by_m;
-    std::vector<protocol::PoseReport> poses{rig.pose()};
+    std::vector<device::Pose> poses{rig.pose()};
     move_floor(floor_m);
     for (int i = 0; i < move.milliseconds; ++i)
       for (const auto& pose : rig.millisecond()) poses.push_back(pose);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <map>
 #include <set>
@@ -22,7 +21,7 @@ namespace {
 
 /// All that a run leaves behind.
 struct Story {
-  std::vector<std::array<std::byte, sizeof(protocol::PoseReport)>> poses;
+  std::vector<device::Pose> poses;
   std::vector<float> samples;
   std::vector<double> truth;
   std::uint64_t instructions = 0;
@@ -55,8 +54,7 @@ Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
   Story story;
   while (const auto frame = rig.device->read_scope(0ms))
     story.samples.insert(story.samples.end(), frame->values.begin(), frame->values.end());
-  for (const auto& pose : rig.poses())
-    story.poses.push_back(std::bit_cast<std::array<std::byte, sizeof(protocol::PoseReport)>>(pose));
+  story.poses = rig.poses();
   story.truth = rig.control.trace_read(100'000).values;
   story.instructions = rig.control.status().all.at("instructions");
   return story;

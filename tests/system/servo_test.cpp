@@ -76,7 +76,7 @@ TEST_CASE(
   CHECK(report.servo_cycles_longest < bearable_cycles);
   CHECK(report.servo_overruns == 0);
   // The poses tell of the longest as well, in parts of 255 of a period.
-  const auto largest = std::ranges::max_element(rig.poses(), {}, &protocol::PoseReport::servo_load)->servo_load;
+  const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
   const double told_cycles = largest / 255.0 * board::servo_cycles;
   CHECK(told_cycles <= report.servo_cycles_longest);
   CHECK(told_cycles > 0.9 * report.servo_cycles_longest);

@@ -22,8 +22,8 @@ using protocol::Signal;
 constexpr std::array scope_signals{Signal::force_x_N, Signal::program_force_x_N};
 
 /// The poses that have come.
-std::vector<protocol::PoseReport> read_poses(device::Device& device) {
-  std::vector<protocol::PoseReport> poses;
+std::vector<device::Pose> read_poses(device::Device& device) {
+  std::vector<device::Pose> poses;
   while (auto pose = device.read_pose(0ms)) poses.push_back(*pose);
   return poses;
 }
@@ -42,7 +42,7 @@ TEST_CASE("a program drives while another has the scope and the poses") {
   std::size_t samples = 0;
   std::uint64_t lost = 0;
   float largest_N = 0;
-  std::vector<protocol::PoseReport> driver_poses, onlooker_poses;
+  std::vector<device::Pose> driver_poses, onlooker_poses;
   for (int millisecond = 0; millisecond < 200; ++millisecond) {
     rig.device->send_force({.force_N = {0.5f, 0.0f, 0.0f}});
     rig.control.run(0.001);

@@ -71,7 +71,7 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
   WindowRig rig;
   BoardClock clock(rig.control);
   const auto handle = rig.look().item(stiffness_handle).centre();
-  std::vector<std::uint32_t> latencies;
+  std::vector<std::int64_t> latencies;
   for (int attempt = 0; attempt < 5; ++attempt) {
     const auto before = rig.look().applied_at_periods();
     rig.move_to(handle);
@@ -100,7 +100,7 @@ TEST_CASE("a frame shows the newest pose that had arrived when it began") {
   WindowRig rig;
   for (int frame = 0; frame < 50; ++frame) {
     const auto sight = rig.look().all;
-    const std::uint32_t shown = sight.at("pose_at_periods"), arrived = sight.at("arrived_at_periods");
+    const std::int64_t shown = sight.at("pose_at_periods"), arrived = sight.at("arrived_at_periods");
     CHECK(shown >= arrived);  // or one that came while the frame was begun
   }
 }
@@ -108,11 +108,11 @@ TEST_CASE("a frame shows the newest pose that had arrived when it began") {
 TEST_CASE("a pose is at most three USB frames of board time old when it can be drawn") {
   WindowRig rig;
   BoardClock clock(rig.control);
-  std::vector<std::uint32_t> ages;
+  std::vector<std::int64_t> ages;
   for (int attempt = 0; attempt < 9; ++attempt) {
     rig.control.run(0.015 + 1e-4 * attempt);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the reports that are on their way to the window
-    ages.push_back(clock.newest_period() - rig.look().all.at("pose_at_periods").get<std::uint32_t>());
+    ages.push_back(clock.newest_period() - rig.look().all.at("pose_at_periods").get<std::int64_t>());
     rig.control.resume();
   }
   std::ranges::sort(ages);

@@ -36,7 +36,7 @@ struct Sight {
   bool connected() const { return all.at("connected"); }
   std::string state() const { return all.at("state"); }
   /// The control period at which the window's newest transaction took effect; 0 before the first.
-  std::uint32_t applied_at_periods() const { return all.value("applied_at_periods", 0u); }
+  std::int64_t applied_at_periods() const { return all.value("applied_at_periods", std::int64_t{0}); }
   bool has(const std::string& item) const { return all.at("items").contains(item); }
   /// Throws if it cannot be seen, with what can.
   Item item(const std::string& name) const;

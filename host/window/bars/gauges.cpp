@@ -11,7 +11,7 @@ using protocol::State;
 
 namespace {
 
-Colour colour_of(const protocol::PoseReport& pose, const Palette& palette) {
+Colour colour_of(const device::Pose& pose, const Palette& palette) {
   switch (pose.state) {
     case State::ramping:
     case State::active: return palette.good;
@@ -22,13 +22,13 @@ Colour colour_of(const protocol::PoseReport& pose, const Palette& palette) {
 }
 
 /// While a program takes part, it stands where the state does: the hand should know whose force it feels.
-std::string state_text(const protocol::PoseReport& pose) {
+std::string state_text(const device::Pose& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);
   return protocol::force_is_on(pose.state) && program ? "program" : std::string(protocol::info(pose.state).name);
 }
 
-std::string state_help(const protocol::PoseReport& pose) {
+std::string state_help(const device::Pose& pose) {
   std::string help(protocol::info(pose.state).meaning);
   if (!protocol::force_is_on(pose.state)) return help;
   for (const auto& row : protocol::force_source_table)
@@ -46,7 +46,7 @@ Colour colour_of(HeatLevel level, const Palette& palette) {
 
 std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
   const bool alive = view.pose.has_value() && view.status.information.has_value();
-  const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
+  const device::Pose pose = view.pose.value_or(device::Pose{});
   const device::SessionStatus& status = view.status;
   const MotorHeatView heat = alive ? motor_heat_view(status.information->report) : MotorHeatView{};
   const double load_percent = 100.0 * pose.servo_load / 255.0;

@@ -79,8 +79,9 @@ double FaultLog::period_s(const device::Injections& now) const {
 
 void FaultLog::place_pending(const device::Injections& now) {
   if (!pending_) return;
-  const auto periods_ago =
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - pending_->fault.at_periods);
+  // The board counts all periods since its reset, and the fault perhaps those since the counter last wrapped.
+  const auto at_periods = static_cast<std::uint32_t>(pending_->fault.at_periods);
+  const auto periods_ago = static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - at_periods);
   const double length_s = period_s(now);
   if (periods_ago >= 0) {
     set_beside(pending_->fault.fault, now.period_at_s - (periods_ago - 1) * length_s,

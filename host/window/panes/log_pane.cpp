@@ -108,8 +108,7 @@ void LogPane::draw_rows(const Style& style) {
     for (std::uint64_t number = events.end(); number > events.begin(); --number) {
       const device::Event& event = events[number - 1];
       draw({event.kind, event.text, event.clock_utc,
-            event.at_periods ? std::optional(static_cast<double>(*event.at_periods) / protocol::servo_rate_Hz)
-                             : std::nullopt});
+            event.at_periods ? std::optional(device::board_time_s(*event.at_periods)) : std::nullopt});
     }
   }
   if (is_empty)

@@ -31,7 +31,7 @@ glm::mat3 workspace_to_view(control::Frame frame) {
   return {glm::vec3{0, 0, 1}, glm::vec3{1, 0, 0}, glm::vec3{0, 1, 0}};
 }
 
-SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const protocol::ParameterSet& parameters) {
+SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::ParameterSet& parameters) {
   const control::Settings settings = control::prepare(parameters);
   const control::Triple inkwell_rad{parameters[Parameter::inkwell_joint_1_rad],
                                     parameters[Parameter::inkwell_joint_2_rad],
@@ -95,11 +95,10 @@ float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool up
                : std::clamp(wanted_whole_mm, info.minimum, std::max(opposite_m - room_m, info.minimum));
 }
 
-bool looks_different(const std::optional<protocol::PoseReport>& first,
-                     const std::optional<protocol::PoseReport>& second) {
+bool looks_different(const std::optional<device::Pose>& first, const std::optional<device::Pose>& second) {
   if (!first || !second) return first.has_value() != second.has_value();
-  const protocol::PoseReport& a = *first;
-  const protocol::PoseReport& b = *second;
+  const device::Pose& a = *first;
+  const device::Pose& b = *second;
   constexpr float visible_m = 2e-4f;
   constexpr float visible_N = 0.02f;
   constexpr float visible_rad = 0.02f;

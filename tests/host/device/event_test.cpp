@@ -11,8 +11,8 @@ using protocol::State;
 
 namespace {
 
-protocol::PoseReport pose(std::uint32_t time_periods, State state, Fault fault = Fault::none) {
-  protocol::PoseReport pose{};
+device::Pose pose(std::uint32_t time_periods, State state, Fault fault = Fault::none) {
+  device::Pose pose{};
   pose.time_periods = time_periods;
   pose.state = state;
   pose.fault = fault;

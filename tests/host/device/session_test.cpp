@@ -62,6 +62,27 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
   CHECK(session.status().poses_lost == 3);
 }
 
+TEST_CASE("the time of a board that was away goes on, also beyond the wrap of its counter") {
+  constexpr std::int64_t wrap = std::int64_t{1} << 32;
+  FakeUsbipServer server;
+  server.frame.time_periods = 0xFFFF'FFF0;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  const auto shows = [&](std::int64_t time_periods) {
+    return eventually([&] {
+      const auto pose = session.newest_pose();
+      return pose && pose->time_periods == time_periods;
+    });
+  };
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  server.send(1, bytes_of(pose_at(10)));
+  REQUIRE(shows(wrap + 10));
+  server.frame.time_periods = 20;
+  server.hang_up();
+  REQUIRE(eventually([&] { return session.reconnection().has_value(); }));
+  server.send(1, bytes_of(pose_at(30)));
+  CHECK(shows(wrap + 30));
+}
+
 TEST_CASE("a fault is told with the control period that noticed it, as far as that is known") {
   const auto told_at = [](std::optional<std::uint32_t> box_periods, protocol::Fault box_fault, bool is_restart,
                           std::optional<std::uint32_t> pose_before) {
@@ -92,6 +113,7 @@ TEST_CASE("a fault is told with the control period that noticed it, as far as th
   CHECK(told_at(990, Fault::over_speed, false, 980) == 1000);
   CHECK(told_at(990, Fault::supply_low, true, 980) == 1000);
   CHECK(told_at({}, Fault::none, false, 980) == 1000);
+  CHECK(told_at(0xFFFF'FFFF, Fault::supply_low, false, {}) == -1);  // before the counter wrapped
 }
 
 TEST_CASE("a session notes what happens to its device, and a change at the period at which it was applied") {
@@ -428,7 +450,7 @@ TEST_CASE("a transaction that took effect says when") {
 TEST_CASE("scope frames reach the one who asked for them, counted with those that were lost or malformed") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
-  std::atomic<std::uint32_t> newest_period = 0;
+  std::atomic<std::int64_t> newest_period = 0;
   session.on_scope([&](const device::ScopeSamples& samples) { newest_period = samples.first_period; });
   session.select_signals({protocol::Signal::force_N});
   REQUIRE(eventually([&] { return was_sent(server, protocol::Command::select_signals); }));

@@ -401,6 +401,29 @@ TEST_CASE("a sign of life goes out 10 ms after the last command, or 200 control 
   }
 }
 
+TEST_CASE("poses, frames, samples and transactions are on one time that does not wrap with the board's counters") {
+  constexpr std::int64_t wrap = std::int64_t{1} << 32;
+  FakeUsbipServer server;
+  server.frame.sequence = 0xFFFF'FFFF;
+  server.frame.time_periods = 0xFFFF'FFF0;
+  const auto arm = device::Device::open(server.endpoint());
+  auto report = pose_number(3);
+  report.time_periods = 60;
+  server.send(1, bytes_of(report));
+  const auto pose = arm->read_pose(60s);
+  REQUIRE(pose);
+  CHECK(pose->sequence == wrap + 3);
+  CHECK(pose->time_periods == wrap + 60);
+  server.frame.sequence = 4;
+  server.frame.time_periods = 80;
+  CHECK(arm->frame().sequence == wrap + 4);
+  CHECK(arm->frame().time_periods == wrap + 80);
+  server.send(2, scope_frame(arm->select_signals(std::array{protocol::Signal::force_N}), 90, 0.5f));
+  CHECK(arm->read_scope(60s)->first_period == wrap + 90);
+  const device::ParameterChange change{protocol::Parameter::force_limit_N, 1.0f};
+  CHECK(arm->set_parameters({&change, 1}).applied_at_periods == wrap + 100);  // as this server says of the first one
+}
+
 TEST_CASE("the begin of the newest frame of the bus is told as the device counts it") {
   FakeUsbipServer server;
   server.frame.sequence = 12;

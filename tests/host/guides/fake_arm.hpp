@@ -30,7 +30,7 @@ class FakeArm final : public guides::DevicePort {
     now_.information.emplace();
     now_.information->protocol_version = protocol::protocol_version;
     now_.information->board_name = board::omni_driver.name;
-    protocol::PoseReport pose{};
+    device::Pose pose{};
     pose.state = protocol::State::ready;
     pose.supply_dV = static_cast<std::uint8_t>(10 * supply_V);
     pose.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
@@ -71,7 +71,7 @@ class FakeArm final : public guides::DevicePort {
     now_.connected = false;
     now_.pose.reset();
   }
-  protocol::PoseReport& pose() { return *now_.pose; }
+  device::Pose& pose() { return *now_.pose; }
   std::string& board_name() { return now_.information->board_name; }
   protocol::ParameterSet& parameters() { return *now_.parameters; }
   const guides::Observation& now() const { return now_; }

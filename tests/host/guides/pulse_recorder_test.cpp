@@ -42,7 +42,7 @@ TEST_CASE("a pulse whose samples were lost is made again when the one before is 
   pulse.duration_s = 0.005f;  // 100 periods
   PulseRecorder recorder(protocol::Command::test_voltage, pulse, {Signal::duty_1}, Signal::duty_1);
   CountingPort port;
-  protocol::PoseReport pose{};
+  device::Pose pose{};
   pose.state = protocol::State::ready;
   recorder.begin(pose, port);
   Scope scope(recorder);

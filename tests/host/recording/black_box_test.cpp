@@ -85,6 +85,18 @@ TEST_CASE("rows that are missing in a black box count as lost, those that stand 
   CHECK(of_black_box(head(), kept, about()).lost() == 2);
 }
 
+TEST_CASE("a black box goes on in time where the board's counter wraps") {
+  constexpr std::int64_t wrap = std::int64_t{1} << 32;
+  auto kept = rows();
+  for (auto& row : kept) row.time_periods -= 2047;
+  auto fault = head();
+  fault.fault_periods = 0;
+  const auto made = of_black_box(fault, kept, about());
+  CHECK(made.periods == std::vector<std::int64_t>{wrap - 47, wrap - 27, wrap - 7, wrap, wrap + 20, wrap + 40});
+  CHECK(made.marks[0].period == wrap);
+  CHECK(made.lost() == 0);
+}
+
 TEST_CASE("a replay of a black box holds each value until the next is due") {
   auto kept = rows();
   kept.erase(kept.begin() + 1);

@@ -1,6 +1,7 @@
 // Recordings: what is written comes back, also after a crash, on a full disk, or from a damaged file.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <hdf5.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -45,10 +47,10 @@ Information about() {
   return about;
 }
 
-device::ScopeSamples samples(std::uint32_t first_period, std::size_t count) {
+device::ScopeSamples samples(std::int64_t first_period, std::size_t count) {
   device::ScopeSamples samples{.signals = about().signals, .first_period = first_period, .count = count, .values = {}};
   for (std::size_t i = 0; i < count; ++i) {
-    const float at = static_cast<float>(first_period + i);
+    const float at = static_cast<float>(first_period + static_cast<std::int64_t>(i));
     samples.values.insert(samples.values.end(), {at * 0.001f, 1.0f / (1.0f + at), -at});
   }
   return samples;
@@ -63,7 +65,7 @@ Recording simulated() {
   recording.append(samples(6000, 700));
   recording.information.simulated = {SimulatedQuantity::hand_force_z_N, SimulatedQuantity::true_current_2_A};
   recording.simulated_columns.resize(2);
-  for (const std::uint32_t period : recording.periods) {
+  for (const std::int64_t period : recording.periods) {
     recording.simulated_columns[0].push_back(0.5f * static_cast<float>(period));
     recording.simulated_columns[1].push_back(-1.0f / static_cast<float>(period));
   }
@@ -71,12 +73,26 @@ Recording simulated() {
   return recording;
 }
 
+/// Replaces a column by one of 32-bit numbers, as earlier versions wrote them.
+void write_as_32_bits(const fs::path& file, const char* column, const std::vector<std::uint32_t>& values) {
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  REQUIRE(opened >= 0);
+  H5Ldelete(opened, column, H5P_DEFAULT);
+  const hsize_t size = values.size();
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t made = H5Dcreate2(opened, column, H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  CHECK(H5Dwrite(made, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  H5Dclose(made);
+  H5Sclose(space);
+  H5Fclose(opened);
+}
+
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void check_is_whole(const Recording& recording, std::uint32_t first_period, std::size_t count) {
+void check_is_whole(const Recording& recording, std::int64_t first_period, std::size_t count) {
   REQUIRE(recording.size() == count);
   const auto expected = samples(first_period, count);
   const auto& force_N = recording.column(Signal::force_N);
@@ -84,8 +100,9 @@ void check_is_whole(const Recording& recording, std::uint32_t first_period, std:
   const auto& duty_1 = recording.column(Signal::duty_1);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < count; ++i)
-    wrong += recording.periods[i] != first_period + i || force_N[i] != expected.values[3 * i] ||
-             position_x_m[i] != expected.values[3 * i + 1] || duty_1[i] != expected.values[3 * i + 2];
+    wrong += recording.periods[i] != first_period + static_cast<std::int64_t>(i) ||
+             force_N[i] != expected.values[3 * i] || position_x_m[i] != expected.values[3 * i + 1] ||
+             duty_1[i] != expected.values[3 * i + 2];
   CHECK(wrong == 0);
 }
 
@@ -276,18 +293,6 @@ TEST_CASE("a board that was restarted ends the recording") {
   CHECK(recording.marks[0].period == recording.periods.front());
 }
 
-TEST_CASE("the wrap of the board's time is no restart") {
-  const TemporaryDirectory directory;
-  Recorder recorder(directory / "a.h5", about());
-  recorder.push(samples(0xFFFFFFF0u, 16));
-  recorder.push(samples(0, 4));
-  CHECK(recorder.stop().error.empty());
-  const auto recording = read(directory / "a.h5");
-  REQUIRE(recording.size() == 20);
-  CHECK(recording.lost() == 0);
-  CHECK(recording.duration_s() == doctest::Approx(19 * 50e-6));
-}
-
 TEST_CASE("an arm is known by its parameters if it is the default one") {
   device::Information device{.firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
   auto parameters = protocol::default_parameters();
@@ -445,7 +450,7 @@ TEST_CASE("a file that is no recording, or a damaged one, is refused with a sent
 
   std::ofstream(directory / "a.csv") << "# inkwell recording = 1\ntime_s,force_N\n0.00005,1.5\n0.0001,oops\n";
   CHECK(error_of(directory / "a.csv").find("line 4") != std::string::npos);
-  for (const char* time : {"nan", "-1", "214748.37", "1e300"}) {
+  for (const char* time : {"nan", "-1", "1000000001", "1e300"}) {
     std::ofstream(directory / "a.csv") << "# inkwell recording = 1\ntime_s,force_N\n" << time << ",1.5\n";
     CHECK(error_of(directory / "a.csv").find("line 3: ") != std::string::npos);
     CHECK(error_of(directory / "a.csv").find("is no time of a board") != std::string::npos);
@@ -457,8 +462,8 @@ TEST_CASE("a file that is no recording, or a damaged one, is refused with a sent
 TEST_CASE("numbers of a CSV that do not fit are left out and named, or as if they were not there") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# protocol_version = 65536\n# mark 5025 = knock\n"
-                                        "# mark 4294967296 = too late\n# mark -1 = too early\n"
-                                        "time_s,force_N\n0.25,1\n214748.36475,2\n";
+                                        "# mark 20000000000001 = too late\n# mark -1 = too early\n"
+                                        "time_s,force_N\n0.25,1\n214748.36475,2\n1000000000,3\n";
   const Recording recording = read(directory / "a.csv");
   CHECK(recording.information.protocol_version == 0);
   REQUIRE(recording.marks.size() == 1);
@@ -466,7 +471,51 @@ TEST_CASE("numbers of a CSV that do not fit are left out and named, or as if the
   REQUIRE(recording.remarks.size() == 2);
   CHECK(recording.remarks[0].find("\"too late\"") != std::string::npos);
   CHECK(recording.remarks[1].find("\"too early\"") != std::string::npos);
-  CHECK(recording.periods == std::vector<std::uint32_t>{5000, 4294967295});
+  CHECK(recording.periods == std::vector<std::int64_t>{5000, 4294967295, 20'000'000'000'000});
+}
+
+TEST_CASE("a recording goes on in time where the board's counter wraps, in either format") {
+  const TemporaryDirectory directory;
+  constexpr std::int64_t wrap = std::int64_t{1} << 32;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    Recorder recorder(directory / name, about());
+    recorder.push(samples(wrap - 300, 250));
+    recorder.push(samples(wrap - 50, 100));
+    recorder.push(samples(wrap + 60, 50));
+    recorder.note({device::EventKind::force, "off", "", wrap + 20});
+    const auto status = recorder.stop();
+    CHECK(status.error.empty());
+    CHECK(status.lost == 10);
+    CHECK(status.duration_s == doctest::Approx(409 / 20'000.0));
+    const Recording recording = read(directory / name);
+    REQUIRE(recording.size() == 400);
+    CHECK(recording.lost() == 10);
+    CHECK(recording.periods.front() == wrap - 300);
+    CHECK(recording.periods.back() == wrap + 109);
+    CHECK(std::ranges::is_sorted(recording.periods));
+    REQUIRE(recording.marks.size() == 1);
+    CHECK(recording.marks[0].period == wrap + 20);
+  }
+}
+
+TEST_CASE("a recording of an earlier version, whose periods fall where the counter wraps, goes on in time") {
+  const TemporaryDirectory directory;
+  constexpr std::int64_t wrap = std::int64_t{1} << 32;
+  SUBCASE("CSV") {
+    std::ofstream(directory / "old") << "# inkwell recording = 1\ntime_s,force_N\n214748.36470,1\n214748.36475,2\n"
+                                        "# mark 1 = knock\n0.00000,3\n0.00005,4\n# complete = 1\n";
+  }
+  SUBCASE("HDF5") {
+    Recorder(directory / "old.h5", about()).push(samples(wrap - 2, 4));
+    write_as_32_bits(directory / "old.h5", "/period", {0xFFFF'FFFE, 0xFFFF'FFFF, 0, 1});
+    fs::rename(directory / "old.h5", directory / "old");
+  }
+  const Recording recording = read(directory / "old");
+  CHECK(recording.periods == std::vector<std::int64_t>{wrap - 2, wrap - 1, wrap, wrap + 1});
+  CHECK(recording.lost() == 0);
+  CHECK(recording.duration_s() == doctest::Approx(3 / 20'000.0));
+  for (const auto& mark : recording.marks) CHECK(mark.period == wrap + 1);
 }
 
 TEST_CASE("marks of a recording without samples have no time") {

@@ -25,7 +25,7 @@ struct Watched {
     step(State::ready);
   }
   void step(State state, Fault fault = Fault::none) {
-    protocol::PoseReport pose{};
+    device::Pose pose{};
     pose.state = state;
     pose.fault = fault;
     pose.sequence = ++sequence;
@@ -244,7 +244,7 @@ TEST_CASE("a force that goes on and off between two looks is judged") {
   Watched board(Kind::too_fast);
   board.motor_force_N = 5.0;
   board.oracle.ask_for_force();
-  protocol::PoseReport pose{};
+  device::Pose pose{};
   pose.state = State::active;
   pose.sequence = ++board.sequence;
   board.oracle.see(pose);

@@ -29,7 +29,7 @@ class BoardRun {
   /// Lets go of the device without a word, as a program does that is killed, and waits until the board's USB knows it.
   void drop_device();
   /// Called with every pose that is read from now on.
-  void watch_poses(std::function<void(const protocol::PoseReport&)> watch) { watch_ = std::move(watch); }
+  void watch_poses(std::function<void(const device::Pose&)> watch) { watch_ = std::move(watch); }
 
   /// Lets board time pass, with the host's signs of life or without, and reads every pose. A device that is gone is
   /// let go of.
@@ -37,12 +37,12 @@ class BoardRun {
   /// The same to the instant, without a pose in between.
   void run_exactly(double time_s) { pass(time_s); }
   /// False if the condition does not come true in time.
-  bool wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s);
+  bool wait_for(const std::function<bool(const device::Pose&)>& condition, double limit_s);
   bool wait_for(protocol::State state, double limit_s);
   void command(protocol::Command command);
 
   /// The newest; none before the first, and after a connection was lost.
-  const std::optional<protocol::PoseReport>& pose() const { return pose_; }
+  const std::optional<device::Pose>& pose() const { return pose_; }
   bool is(protocol::State state) const { return pose_ && pose_->state == state; }
   bool force_is_on() const { return pose_ && protocol::force_is_on(pose_->state); }
   bool is_locked_up();
@@ -66,8 +66,8 @@ class BoardRun {
   device::VirtualBoard board_;
   device::ControlClient control_;
   std::unique_ptr<device::Device> device_;
-  std::optional<protocol::PoseReport> pose_;
-  std::function<void(const protocol::PoseReport&)> watch_;
+  std::optional<device::Pose> pose_;
+  std::function<void(const device::Pose&)> watch_;
   unsigned slices_ = 0;
 };
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include <protocol/reports.hpp>
+#include <device/wide_reports.hpp>
 
 namespace inkwell::device {
 
@@ -12,17 +12,17 @@ class BusClock {
   /// `cycles_per_period`: processor cycles of a control period, by the InformationReport.
   explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
 
-  /// To be given a report now and then, once a second for instance.
-  void note(const protocol::FrameReport& report);
+  /// To be given a frame now and then, once a second for instance.
+  void note(const BusFrame& frame);
 
-  /// Time of a control period in seconds of the host's frames, since the bus runs; none before the first report, at the
+  /// Time of a control period in seconds of the host's frames, since the bus runs; none before the first frame, at the
   /// nominal rate before the second.
-  std::optional<double> host_time_s(std::uint32_t time_periods) const;
+  std::optional<double> host_time_s(std::int64_t time_periods) const;
 
  private:
   struct Moment {
-    std::uint32_t sequence;
-    std::uint32_t periods;
+    std::int64_t sequence;
+    std::int64_t periods;
     double period_share;  ///< of the period that had begun, 0 to 1
   };
   static double periods_between(const Moment& from, const Moment& to);

@@ -19,7 +19,7 @@ class FaultStays : public Error {
 
 /// What a pose tells of faults.
 struct ShownFault {
-  std::uint32_t time_periods;
+  std::int64_t time_periods;
   protocol::State state;
   protocol::Fault fault;
 };

@@ -15,6 +15,7 @@
 #include <device/program_force.hpp>
 #include <device/scope_decoder.hpp>
 #include <device/transport.hpp>
+#include <device/wide_reports.hpp>
 #include <protocol/black_box.hpp>
 #include <protocol/driver.hpp>
 #include <protocol/reports.hpp>
@@ -85,10 +86,14 @@ class Device {
   /// Of a device of another version only what comes before the tables' hashes; the rest is 0.
   Information information();
   /// When the newest frame of the bus began. Throws Stalled while the bus is silent.
-  protocol::FrameReport frame();
+  BusFrame frame();
+
+  /// The device was connected before, when its newest pose was of `before_periods`: its time goes on from there, unless
+  /// it has started again since then.
+  void continue_time(std::int64_t before_periods);
 
   /// Waits for the next pose report; none on time-out.
-  std::optional<protocol::PoseReport> read_pose(std::chrono::milliseconds timeout);
+  std::optional<Pose> read_pose(std::chrono::milliseconds timeout);
 
   /// The program that drives the arm; none if no program does.
   std::optional<Driver> driver();
@@ -138,16 +143,17 @@ class Device {
 
   protocol::ParameterSet parameters();
   /// One transaction: all take effect at one control period, or none does and Refused is thrown.
-  protocol::TransactionReport set_parameters(std::span<const ParameterChange> changes);
-  protocol::TransactionReport restore_default_parameters();
+  AcceptedTransaction set_parameters(std::span<const ParameterChange> changes);
+  AcceptedTransaction restore_default_parameters();
   /// Each gets what the board's next start would give it. Throws Refused if the board has stored nothing.
-  protocol::TransactionReport restore_stored_parameters();
+  AcceptedTransaction restore_stored_parameters();
   /// What the board's next start would give each parameter: what it has stored, or the default.
   protocol::ParameterSet stored_parameters();
   /// What the board has stored. The commands that change it are in board_store.hpp.
   protocol::StoreReport store_report();
 
-  /// What the board kept of the time around its last fault; its `fault` is none if it keeps nothing.
+  /// What the board kept of the time around its last fault; its `fault` is none if it keeps nothing. Its counters, and
+  /// those of its rows, are those of the board's run in which the fault came, and not widened.
   protocol::BlackBoxReport black_box();
   /// The rows of this one, in the order of time. Throws Error if the board gave it up meanwhile.
   std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);

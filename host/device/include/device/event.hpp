@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <device/wide_reports.hpp>
 #include <protocol/parameters.hpp>
-#include <protocol/reports.hpp>
 
 namespace inkwell::device {
 
@@ -33,13 +33,13 @@ struct Event {
   std::string text;       ///< one line
   std::string clock_utc;  ///< of the computer when it was noticed, as clock_utc_now() writes it
   /// Control period of the device; none if the device was not there to tell one.
-  std::optional<std::uint32_t> at_periods;
+  std::optional<std::int64_t> at_periods;
 };
 
 /// "2026-11-23T22:15:34.123Z"
 std::string clock_utc_now();
 /// One that is noticed now.
-Event event_now(EventKind kind, std::string text, std::optional<std::uint32_t> at_periods);
+Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods);
 
 /// A line of a log: clock, seconds, kind, text; a dash where clock or time is not known.
 std::string log_line(std::string_view clock_utc, std::optional<double> time_s, EventKind kind, std::string_view text);
@@ -48,12 +48,12 @@ std::string line_of(const Event& event);
 
 /// What a pose tells that the one before did not, if there was one: force on or off, a fault or its end.
 /// `noticed_at_periods`: of the fault that the device is in, where that is known better than by the pose.
-std::vector<Event> events_between(const std::optional<protocol::PoseReport>& before, const protocol::PoseReport& now,
-                                  std::optional<std::uint32_t> noticed_at_periods);
+std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
+                                  std::optional<std::int64_t> noticed_at_periods);
 
 /// "wall_stiffness_N_per_m = 600.0, was 800.0", one for each parameter that differs; `whose` stands behind it.
 std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
-                                    std::optional<std::uint32_t> at_periods, std::string_view whose = {});
+                                    std::optional<std::int64_t> at_periods, std::string_view whose = {});
 
 /// The newest events, each under its number since the log began.
 class EventLog {

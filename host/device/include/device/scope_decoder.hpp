@@ -16,7 +16,7 @@ namespace inkwell::device {
 /// Samples of consecutive control periods, decoded: values[i * signals.size() + j] is signal j of sample i.
 struct ScopeSamples {
   std::vector<protocol::Signal> signals;
-  std::uint32_t first_period = 0;
+  std::int64_t first_period = 0;
   std::size_t count = 0;
   std::vector<float> values;
   std::uint64_t lost_before = 0;  ///< control periods missing between the samples before and these
@@ -32,7 +32,7 @@ class ScopeDecoder {
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
 
   /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
-  /// newest (a left-over of the one before, or of a program that ran earlier).
+  /// newest (a left-over of the one before, or of a program that ran earlier). `first_period` is not widened.
   ///
   /// `lost_before` counts the control periods between the last frame decoded and this one. If the very first
   /// frames of a selection are missing nobody can know their samples; each then counts as one.

@@ -22,7 +22,7 @@ enum class Connection : std::uint8_t { searching, connected, incompatible, no_pe
 struct NoticedFault {
   protocol::Fault fault;
   /// The control period that noticed it, or, of a fault that a start tells afterwards, that of the first pose with it.
-  std::uint32_t at_periods;
+  std::int64_t at_periods;
   bool operator==(const NoticedFault&) const = default;
 };
 
@@ -33,7 +33,7 @@ struct SessionStatus {
   std::string board_name;                  ///< of the device, though it be incompatible; empty: it tells none
   bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
-  std::optional<std::uint32_t> applied_at_periods;
+  std::optional<std::int64_t> applied_at_periods;
   std::optional<NoticedFault> fault;                  ///< none: the device is in no fault
   std::optional<protocol::SelfTestReport> self_test;  ///< that led to the fault self_test_failed
   std::optional<BoardStore> store;  ///< as of the newest second, or of the newest request to change it
@@ -67,7 +67,7 @@ class Session {
   ~Session();
 
   SessionStatus status() const;
-  std::optional<protocol::PoseReport> newest_pose() const;
+  std::optional<Pose> newest_pose() const;
 
   /// Queues a command; it is sent within a millisecond. Whatever may move the arm first claims it for this session,
   /// which releases it once the force is off. A disable_force is a stop while another program drives the arm.

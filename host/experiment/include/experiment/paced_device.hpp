@@ -24,7 +24,7 @@ class PacedDevice {
   /// Lets time pass until the condition is true; at once if it is. Throws device::Error with `otherwise` if it does not
   /// come true in time.
   void wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise);
-  void wait_for_pose(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s,
+  void wait_for_pose(const std::function<bool(const device::Pose&)>& condition, double limit_s,
                      const std::string& otherwise);
   /// Sends a command and waits until it was carried out.
   void command(protocol::Command command) { wait_for_token(device_.send(command)); }
@@ -34,7 +34,7 @@ class PacedDevice {
   void select_signals(std::span<const protocol::Signal> signals) { wait_for_token(device_.select_signals(signals)); }
 
   device::Device& device() { return device_; }
-  const protocol::PoseReport& pose() const { return *pose_; }
+  const device::Pose& pose() const { return *pose_; }
   std::uint64_t poses_received() const { return poses_received_; }
   std::uint64_t poses_lost() const { return poses_lost_; }
 
@@ -47,7 +47,7 @@ class PacedDevice {
   device::ControlClient* control_;
   std::chrono::nanoseconds passed_{};  ///< board time since the beginning
   unsigned slices_ = 0;
-  std::optional<protocol::PoseReport> pose_;
+  std::optional<device::Pose> pose_;
   std::uint64_t poses_received_ = 0;
   std::uint64_t poses_lost_ = 0;
   int silent_reads_ = 0;  ///< since the last pose

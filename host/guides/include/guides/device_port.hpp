@@ -17,7 +17,7 @@ struct Observation {
   bool connected = false;
   std::string message;  ///< about the connection, with the remedy where there is one
   std::optional<device::Information> information;
-  std::optional<protocol::PoseReport> pose;  ///< the newest
+  std::optional<device::Pose> pose;  ///< the newest
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;  ///< rises when they were read anew, after each transaction at least
   std::optional<std::string> refusal;     ///< why the newest transaction was refused, if it was

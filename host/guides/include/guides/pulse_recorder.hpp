@@ -15,11 +15,11 @@ class PulseRecorder {
   PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse, std::vector<protocol::Signal> signals,
                 protocol::Signal seen_in);
 
-  void begin(const protocol::PoseReport& pose, DevicePort& port);
+  void begin(const device::Pose& pose, DevicePort& port);
   void receive(const device::ScopeSamples& samples);
   /// True once the pulse and the rest after it are recorded without a gap. A recording with a gap is made again, three
   /// times at most. Throws device::Error if the scope or the pulse does not come.
-  bool advance(const protocol::PoseReport& pose, DevicePort& port);
+  bool advance(const device::Pose& pose, DevicePort& port);
 
   const std::vector<float>& column(protocol::Signal signal) const { return recording_.column(signal); }
   std::vector<double> values_of(protocol::Signal signal) const;
@@ -27,7 +27,7 @@ class PulseRecorder {
 
  private:
   enum class State : std::uint8_t { waits_for_scope, waits_for_end, done };
-  void start_over(const protocol::PoseReport& pose);
+  void start_over(const device::Pose& pose);
   bool is_at_rest() const;
   std::size_t samples_of_pulse() const;
 

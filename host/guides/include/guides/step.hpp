@@ -98,13 +98,11 @@ class Step {
 /// Board time since it was started, by the poses.
 class Stopwatch {
  public:
-  void start(const protocol::PoseReport& pose) { began_ = pose.time_periods; }
-  double seconds(const protocol::PoseReport& pose) const {
-    return static_cast<double>(pose.time_periods - began_) / protocol::servo_rate_Hz;
-  }
+  void start(const device::Pose& pose) { began_ = pose.time_periods; }
+  double seconds(const device::Pose& pose) const { return device::board_time_s(pose.time_periods - began_); }
 
  private:
-  std::uint32_t began_ = 0;
+  std::int64_t began_ = 0;
 };
 
 }  // namespace inkwell::guides

@@ -27,8 +27,8 @@ class Overlay {
 
  private:
   Recording over_;
-  std::uint32_t base_begins_periods_;  ///< the other's first control period
-  std::int64_t shift_periods_ = 0;     ///< of the other's time, at which this one begins
+  std::int64_t base_begins_periods_;  ///< the other's first control period
+  std::int64_t shift_periods_ = 0;    ///< of the other's time, at which this one begins
 };
 
 /// What two recordings are called beside each other: their files without folder and ending, and with the folders, or

@@ -17,7 +17,7 @@ namespace inkwell::recording {
 
 /// What the user noted, or what happened to the device.
 struct Mark {
-  std::uint32_t period;  ///< control period at which it was set, or it happened
+  std::int64_t period;  ///< control period at which it was set, or it happened
   std::string text;
   device::EventKind kind = device::EventKind::mark;
   std::string clock_utc = {};  ///< as device::clock_utc_now() writes it; empty if it is not known
@@ -27,7 +27,7 @@ struct Recording {
   std::string name;  ///< of its file, without folder and ending
   Information information;
   bool complete = true;                     ///< false: the program or the disk gave up before the end was written
-  std::vector<std::uint32_t> periods;       ///< control period of each sample
+  std::vector<std::int64_t> periods;        ///< control period of each sample
   std::vector<std::vector<float>> columns;  ///< one for each of information.signals, as long as `periods`
   std::vector<std::vector<float>> simulated_columns;  ///< one for each of information.simulated, as long, too
   std::vector<Mark> marks;                            ///< as read back, in the order of their periods
@@ -39,9 +39,8 @@ struct Recording {
   /// Board time since the first sample.
   double elapsed_s(std::size_t sample) const { return elapsed_s_at(periods[sample]); }
   /// 0 in a recording without samples.
-  double elapsed_s_at(std::uint32_t period) const {
-    // Unsigned, so that it is right across the wrap of the board's counter.
-    return periods.empty() ? 0.0 : static_cast<double>(period - periods.front()) / protocol::servo_rate_Hz;
+  double elapsed_s_at(std::int64_t period) const {
+    return periods.empty() ? 0.0 : device::board_time_s(period - periods.front());
   }
   /// From the first sample to the last; 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }

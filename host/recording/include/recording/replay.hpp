@@ -45,7 +45,7 @@ class Replay {
 
   /// What the device would have reported at the position. None if no joint angles were recorded. State and
   /// switches are not recorded: `active` stands for a force that is not zero, no switch is shown as pressed.
-  std::optional<protocol::PoseReport> pose() const;
+  std::optional<device::Pose> pose() const;
 
  private:
   std::optional<std::size_t> column_of(protocol::Signal signal) const;

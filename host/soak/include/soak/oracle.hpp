@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <device/wide_reports.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/supervision.hpp>
 #include <soak/plan.hpp>
@@ -99,7 +100,7 @@ class Oracle {
   /// Poses of a new connection begin.
   void connected() { sequence_.reset(); }
 
-  void see(const protocol::PoseReport& pose);
+  void see(const device::Pose& pose);
   void see(const Look& look);
   /// Counts since the board's start. True if the chip started anew since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
@@ -152,7 +153,7 @@ class Oracle {
   unsigned restarts_looked_at_ = 0;
   double force_limit_N_ = 0;
   bool restart_expected_ = false;
-  std::optional<std::uint32_t> sequence_;
+  std::optional<std::int64_t> sequence_;
   protocol::State state_ = protocol::State::starting;
   bool force_may_be_on_ = false;  ///< in the newest pose before the last look, or in one since
   protocol::Fault fault_ = protocol::Fault::none;

@@ -15,7 +15,7 @@ window::DeviceView connected(State state) {
   view.parameters = protocol::default_parameters();
   view.status.store = device::BoardStore{{}, *view.parameters};
   view.status.store->report.stores_left = 10;
-  view.pose = protocol::PoseReport{};
+  view.pose = device::Pose{};
   view.pose->state = state;
   return view;
 }

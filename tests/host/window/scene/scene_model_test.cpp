@@ -12,8 +12,8 @@ using window::SceneModel;
 
 namespace {
 
-protocol::PoseReport pose_at(float joint_1_rad, float joint_2_rad, float joint_3_rad, protocol::State state) {
-  protocol::PoseReport pose{};
+device::Pose pose_at(float joint_1_rad, float joint_2_rad, float joint_3_rad, protocol::State state) {
+  device::Pose pose{};
   pose.state = state;
   pose.is_referenced = state == protocol::State::ready || protocol::force_is_on(state);
   pose.joint_rad[0] = joint_1_rad;
@@ -23,7 +23,7 @@ protocol::PoseReport pose_at(float joint_1_rad, float joint_2_rad, float joint_3
 }
 
 // Joint angles that put the Omni's probe near the middle of its box.
-protocol::PoseReport middle_pose(protocol::State state) { return pose_at(0.0f, 0.4f, 0.4f, state); }
+device::Pose middle_pose(protocol::State state) { return pose_at(0.0f, 0.4f, 0.4f, state); }
 
 }  // namespace
 
@@ -133,8 +133,8 @@ TEST_CASE("the camera never turns over and never leaves its distances") {
 }
 
 TEST_CASE("a pose looks different when a person could see it") {
-  protocol::PoseReport a{};
-  protocol::PoseReport b = a;
+  device::Pose a{};
+  device::Pose b = a;
   b.sequence = 77;
   b.servo_load = 9;
   b.position_m[1] = 1e-4f;

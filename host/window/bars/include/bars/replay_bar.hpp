@@ -33,7 +33,7 @@ class ReplayBar {
 
   /// Once a frame: gives the scope the samples that came by.
   void follow(double now_s, ScopePane& scope);
-  std::optional<protocol::PoseReport> pose() const { return replay_->pose(); }
+  std::optional<device::Pose> pose() const { return replay_->pose(); }
   /// Holds the recording's parameters. What is edited in it goes nowhere.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }

@@ -17,7 +17,7 @@ namespace inkwell::window {
 /// One frame's view of the device; it does not change while the frame is drawn.
 struct DeviceView {
   device::SessionStatus status;
-  std::optional<protocol::PoseReport> pose;  ///< the newest; none while not connected
+  std::optional<device::Pose> pose;  ///< the newest; none while not connected
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;
   std::optional<std::string> refusal;
@@ -40,7 +40,7 @@ class DeviceDesk {
   const DeviceView& view() const { return view_; }
   device::Session& session() { return *session_; }
   /// As of now, which may be newer than the view; none while not connected.
-  std::optional<protocol::PoseReport> newest_pose() const { return session_->newest_pose(); }
+  std::optional<device::Pose> newest_pose() const { return session_->newest_pose(); }
 
   /// Asks for another device, or for any with an empty number; follow_choice then connects to it.
   void choose(const std::string& serial_number) { choice_ = serial_number; }

@@ -8,8 +8,8 @@
 #include <glm/glm.hpp>
 
 #include <control/kinematics.hpp>
+#include <device/wide_reports.hpp>
 #include <protocol/parameters.hpp>
-#include <protocol/reports.hpp>
 
 namespace inkwell::window {
 
@@ -44,10 +44,10 @@ struct SceneModel {
 };
 
 /// The picture of a pose. Without a referenced pose the arm is drawn in the inkwell.
-SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const protocol::ParameterSet& parameters);
+SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::ParameterSet& parameters);
 
 /// True if a person could see the difference in the scene.
-bool looks_different(const std::optional<protocol::PoseReport>& a, const std::optional<protocol::PoseReport>& b);
+bool looks_different(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
 
 /// Rotation from workspace axes to view space (x right, y up, z to the user), which differs by the frame.
 glm::mat3 workspace_to_view(control::Frame frame);

@@ -17,7 +17,7 @@ namespace inkwell::window {
 
 struct ScenePaneInput {
   const Style& style;
-  const std::optional<protocol::PoseReport>& pose;
+  const std::optional<device::Pose>& pose;
   ParameterEditor& editor;
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
