@@ -171,8 +171,11 @@ inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names
   });
 }
 
-inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* values, uint32_t* periods, size_t capacity,
-                                  size_t* count, uint64_t* lost) {
+namespace {
+
+template <class Period>
+inkwell_result read_samples(inkwell_arm* arm, double timeout_s, float* values, Period* periods, size_t capacity,
+                            size_t* count, uint64_t* lost) {
   return guarded([&] {
     required(count, "The count");
     if (capacity > 0) required(values, "The place for the samples");
@@ -183,9 +186,21 @@ inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* val
     *count = samples->count;
     std::copy(samples->values.begin(), samples->values.end(), values);
     for (std::size_t i = 0; periods != nullptr && i < samples->count; ++i)
-      periods[i] = samples->first_period + static_cast<std::uint32_t>(i);
+      periods[i] = static_cast<Period>(samples->first_period + static_cast<std::int64_t>(i));
     if (lost != nullptr) *lost = samples->lost_before;
   });
+}
+
+}  // namespace
+
+inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* values, uint32_t* periods, size_t capacity,
+                                  size_t* count, uint64_t* lost) {
+  return read_samples(arm, timeout_s, values, periods, capacity, count, lost);
+}
+
+inkwell_result inkwell_read_samples(inkwell_arm* arm, double timeout_s, float* values, int64_t* periods,
+                                    size_t capacity, size_t* count, uint64_t* lost) {
+  return read_samples(arm, timeout_s, values, periods, capacity, count, lost);
 }
 
 inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path) {

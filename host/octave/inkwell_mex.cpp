@@ -321,14 +321,14 @@ Answers read(const Arguments& arguments) {
   const auto columns = static_cast<std::size_t>(number(argument(arguments, 1)));
   const auto wanted = static_cast<std::size_t>(number(argument(arguments, 2)));
   std::vector<float> values(wanted * columns);
-  std::vector<std::uint32_t> periods(wanted);
+  std::vector<std::int64_t> periods(wanted);
   std::size_t rows = 0;
   std::uint64_t lost = 0;
   while (rows < wanted) {
     std::size_t count = 0;
     std::uint64_t lost_before = 0;
-    require(inkwell_read_scope(arm, 10.0, values.data() + rows * columns, periods.data() + rows, wanted - rows, &count,
-                               &lost_before));
+    require(inkwell_read_samples(arm, 10.0, values.data() + rows * columns, periods.data() + rows, wanted - rows,
+                                 &count, &lost_before));
     if (count == 0) throw Wrong("No samples came within 10 s. Reset the board, or let a paused virtual board run.");
     rows += count;
     lost += lost_before;
@@ -336,7 +336,7 @@ Answers read(const Arguments& arguments) {
   mxArray* matrix = mxCreateDoubleMatrix(static_cast<mwSize>(rows), static_cast<mwSize>(columns), mxREAL);
   mxArray* numbers = mxCreateDoubleMatrix(static_cast<mwSize>(rows), 1, mxREAL);
   for (std::size_t row = 0; row < rows; ++row) {
-    mxGetPr(numbers)[row] = periods[row];
+    mxGetPr(numbers)[row] = static_cast<double>(periods[row]);
     for (std::size_t i = 0; i < columns; ++i) mxGetPr(matrix)[i * rows + row] = values[row * columns + i];
   }
   return {matrix, numbers, mxCreateDoubleScalar(static_cast<double>(lost))};

@@ -127,7 +127,7 @@ void define_structs(py::module_& module) {
   py::class_<inkwell_pose>(module, "Pose", "Where the stylus is, once a millisecond. Its arrays are read-only.")
       .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
       .def_readonly("sequence", &inkwell_pose::sequence,
-                    "one more for each millisecond; a gap is a pose that was missed")
+                    "one more for each millisecond; a gap is a pose that was missed. It wraps at 2**32, after 49 days")
       .def_readonly("state", &inkwell_pose::state)
       .def_readonly("fault", &inkwell_pose::fault, "one of inkwell.Fault")
       .def_property_readonly(

@@ -27,9 +27,9 @@ py::tuple Arm::read_scope(std::size_t rows, double timeout_s, bool fill) {
     columns = signal_count_;
   }
   py::array_t<float> values({rows, std::max<std::size_t>(columns, 1)});
-  py::array_t<std::uint32_t> periods(static_cast<py::ssize_t>(rows));
+  py::array_t<std::int64_t> periods(static_cast<py::ssize_t>(rows));
   float* const to = values.mutable_data();
-  std::uint32_t* const to_periods = periods.mutable_data();
+  std::int64_t* const to_periods = periods.mutable_data();
   std::size_t count = 0;
   std::uint64_t lost = 0;
   bool timed_out = false, changed = false;
@@ -41,8 +41,8 @@ py::tuple Arm::read_scope(std::size_t rows, double timeout_s, bool fill) {
         if (changed) return INKWELL_REFUSED;
         std::size_t read = 0;
         std::uint64_t lost_before = 0;
-        const auto result = inkwell_read_scope(arm, time_s, to + count * columns, to_periods + count, rows - count,
-                                               &read, &lost_before);
+        const auto result = inkwell_read_samples(arm, time_s, to + count * columns, to_periods + count, rows - count,
+                                                 &read, &lost_before);
         count += read;
         lost += lost_before;
         return result == INKWELL_OK && read == 0 ? INKWELL_TIMED_OUT : result;

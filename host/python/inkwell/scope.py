@@ -28,8 +28,8 @@ class Samples:
     signals: tuple[str, ...]
     values: npt.NDArray[np.float32]
     """Shape (samples, signals)."""
-    periods: npt.NDArray[np.uint32]
-    """The control period of each sample; shape (samples,)."""
+    periods: npt.NDArray[np.int64]
+    """The control period of each sample; shape (samples,). Divided by servo_rate_Hz it is a time as Pose.time_s."""
     lost: int
     """How many samples are missing before and between these."""
     servo_rate_Hz: float

@@ -112,7 +112,8 @@ typedef struct inkwell_information {
   int is_virtual;
   double servo_rate_Hz;          /* of the board's control interrupt */
   uint32_t servo_cycles_longest; /* longest control interrupt since the board started, processor cycles */
-  uint32_t force_reports;        /* forces received from programs since the board started */
+  uint32_t force_reports;        /* forces received from programs since the board started; this and the next three
+                                    wrap after 49 days at one a millisecond */
   uint32_t force_reports_lost;
   uint32_t force_reports_late;
   uint32_t force_reports_refused;
@@ -197,8 +198,9 @@ enum inkwell_limit {
 
 /* What the board reports in a millisecond of the bus. */
 typedef struct inkwell_pose {
-  double time_s;     /* board time */
-  uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed */
+  double time_s;     /* board time; it does not wrap while the arm is open */
+  uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed. It wraps
+                        after 49 days, so compare by the difference in 32 bits */
   inkwell_state state;
   int fault;              /* one of inkwell_fault */
   uint32_t limits;        /* bits of inkwell_limit */
@@ -459,6 +461,11 @@ INKWELL_API inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* 
  * `lost` (may be NULL) tells how many samples were missing before them. A time-out gives INKWELL_OK and 0 rows. */
 INKWELL_API inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* values, uint32_t* periods,
                                               size_t capacity, size_t* count, uint64_t* lost);
+
+/* The same with control periods that do not wrap: inkwell_read_scope() writes their lower 32 bits, which wrap after 59
+ * hours. Divided by servo_rate_Hz they are times as inkwell_pose::time_s. */
+INKWELL_API inkwell_result inkwell_read_samples(inkwell_arm* arm, double timeout_s, float* values, int64_t* periods,
+                                                size_t capacity, size_t* count, uint64_t* lost);
 
 /* Records the selected signals into a file (HDF5, or CSV by its ending) until inkwell_stop_recording(). */
 INKWELL_API inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path);
