@@ -140,8 +140,10 @@ class GuideRun {
 
   /// Until the device holds what the guide put back or applied.
   void settle() {
-    const auto give_up_at = Clock::now() + transaction_limit;
-    while (!guide_.at_rest() && Clock::now() < give_up_at && guides::observe(device_.session()).connected) round();
+    auto limit = transaction_limit();
+    while (!guide_.at_rest() && !limit.is_over(device_.session().newest_pose()) &&
+           guides::observe(device_.session()).connected)
+      round();
   }
 
   bool wants_to_apply() {

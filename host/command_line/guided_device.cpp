@@ -60,14 +60,14 @@ void GuidedDevice::wait_for_device() {
 
 void GuidedDevice::give_parameters(const std::vector<device::ParameterChange>& changes) {
   session_->set_parameters(changes);
-  const auto give_up_at = Clock::now() + transaction_limit;
+  auto limit = transaction_limit();
   const auto holds_them = [&] {
     const auto held = session_->parameters();
     return held &&
            std::ranges::all_of(changes, [&](const auto& change) { return (*held)[change.first] == change.second; });
   };
   while (!holds_them()) {
-    if (Clock::now() > give_up_at)
+    if (limit.is_over(session_->newest_pose()))
       throw device::Error(session_->refusal().value_or("The device did not take the arm's parameters."));
     std::this_thread::sleep_for(5ms);
   }

@@ -1,12 +1,12 @@
 // The device that guides run on, kept by a session, with its scope's frames on their way to the guide.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include <device/board_timeout.hpp>
 #include <device/session.hpp>
 #include <guides/simulated_user.hpp>
 
@@ -14,8 +14,8 @@
 
 namespace inkwell::command_line {
 
-/// How long an answer to a change of parameters may take.
-inline constexpr std::chrono::seconds transaction_limit{5};
+/// The time that the device has to answer a change of parameters.
+inline device::BoardTimeout transaction_limit() { return {5.0, std::chrono::seconds(5)}; }
 
 class GuidedDevice {
  public:

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <device/board_timeout.hpp>
 #include <device/wide_counter.hpp>
 
 #include "feature_reports.hpp"
@@ -25,9 +26,9 @@ using Clock = std::chrono::steady_clock;
 using protocol::Command;
 using protocol::ReportId;
 
-constexpr auto heartbeat_interval = 10ms;
 constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
-constexpr auto busy_timeout = 2s;
+/// For a request that the board refuses only for the moment.
+BoardTimeout busy_limit() { return {2.0, 2s}; }
 /// Until the board has carried out a command, and until a force that falls is off.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
@@ -100,11 +101,10 @@ struct Device::Implementation {
   std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
   std::atomic<std::uint32_t> newest_sequence = 0;
   std::mutex feature_mutex;  ///< a transaction and the report on it belong together
-  std::mutex output_mutex;   ///< guards the next five
+  std::mutex output_mutex;   ///< guards the next four
   std::uint32_t ticket = random_number();
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
-  Clock::time_point last_output_at{};
   std::int64_t last_output_period = 0;
   std::atomic<std::int64_t> newest_period = 0;  ///< of the poses
   WideCounter time_periods, sequence;
@@ -167,12 +167,18 @@ struct Device::Implementation {
   template <class Report>
   void write(const Report& report) {
     transport()->write_report(std::as_bytes(std::span(&report, 1)));
-    last_output_at = Clock::now();
     last_output_period = newest_period;
   }
 
   /// For what this object sends: its claim while it drives, else none.
   std::uint32_t claim() const { return drives ? own_claim : 0; }
+
+  /// Asks for the board time, with the feature_mutex held.
+  std::int64_t now_periods() {
+    protocol::DriverReport report{};
+    get(report, "driver");
+    return time_periods.note(report.time_periods);
+  }
 
   protocol::DriverReport driver_report() {
     const std::lock_guard lock(feature_mutex);
@@ -312,7 +318,7 @@ struct Device::Implementation {
     report.claim = claim();
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
     std::unique_lock lock(feature_mutex);
-    const auto give_up_at = Clock::now() + busy_timeout;
+    auto limit = busy_limit();
     for (;;) {
       report.ticket = ++transaction_ticket;
       std::optional<Stalled> stalled;
@@ -324,7 +330,7 @@ struct Device::Implementation {
       const auto result = transaction_report();
       if (result.ticket != report.ticket) {
         // Another program's transaction came between. Whether this one was accepted is not known, so it is sent again.
-        if (Clock::now() > give_up_at) throw InUse("Other programs change parameters all the time. Close them.");
+        if (limit.is_over(now_periods())) throw InUse("Other programs change parameters all the time. Close them.");
         continue;
       }
       if (result.refusal == protocol::Refusal::not_the_driver) {
@@ -335,7 +341,7 @@ struct Device::Implementation {
         if (stalled) throw *stalled;
         return {result.transactions, time_periods.nearest(result.applied_at_periods)};
       }
-      if (result.refusal != protocol::Refusal::busy || Clock::now() > give_up_at) throw Refused(result);
+      if (result.refusal != protocol::Refusal::busy || limit.is_over(now_periods())) throw Refused(result);
     }
   }
 };
@@ -463,7 +469,6 @@ void Device::take_link_of(Device& opened) {
   self.newest_period = self.time_periods.newest();
   self.newest_sequence = other.newest_sequence.load();
   self.last_output_period = self.newest_period;
-  self.last_output_at = {};
   const std::lock_guard link_lock(self.link_mutex);
   before = std::exchange(self.link, std::move(other.link));
 }
@@ -520,8 +525,7 @@ void Device::keep_alive() {
   {
     const std::lock_guard lock(self.output_mutex);
     const std::int64_t passed = self.newest_period - self.last_output_period;
-    if (passed == 0) return;  // its time stands still: heartbeats would pile up before the next command
-    if (passed < heartbeat_periods && Clock::now() - self.last_output_at < heartbeat_interval) return;
+    if (passed < heartbeat_periods) return;  // while its time stands still, heartbeats would pile up
   }
   send(Command::heartbeat);
 }
@@ -568,17 +572,18 @@ void Device::place_shapes(const Shapes& shapes) {
   report.claim = implementation_->claim();
   const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
   std::unique_lock lock(implementation_->feature_mutex);
-  const auto give_up_at = Clock::now() + busy_timeout;
+  auto limit = busy_limit();
   for (;;) {
     try {
       return implementation_->transport()->set_feature(bytes);
     } catch (const Stalled&) {  // the interrupt has not taken the shapes before, or another program drives
       lock.unlock();
-      if (!implementation_->is_own(implementation_->driver_report())) {
+      const auto driver = implementation_->driver_report();
+      if (!implementation_->is_own(driver)) {
         implementation_->lose_claim();
         throw implementation_->driven_by_another();
       }
-      if (Clock::now() > give_up_at) throw;
+      if (limit.is_over(implementation_->time_periods.note(driver.time_periods))) throw;
       lock.lock();
     }
   }

@@ -329,20 +329,7 @@ TEST_CASE("commands carry version and a token that is never 0") {
   CHECK(float{commands[300].test.amplitude} == 0.5f);  // a copy: in the report it may lie anywhere
 }
 
-TEST_CASE("keep_alive follows board time where that is faster than the clock") {
-  FakeUsbipServer server;
-  const auto arm = device::Device::open(server.endpoint());
-  arm->send(protocol::Command::heartbeat);
-  auto pose = pose_number(1);
-  pose.time_periods = 10'000;
-  server.send(1, bytes_of(pose));
-  REQUIRE(arm->read_pose(60s));
-  arm->keep_alive();
-  CHECK(eventually([&] { return server.commands().size() >= 2; }));
-}
-
-TEST_CASE("a sign of life goes out 10 ms after the last command, or 200 control periods, and no sooner") {
-  using Clock = std::chrono::steady_clock;
+TEST_CASE("a sign of life goes out 200 control periods after the last command, and no sooner") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
   const auto commands_sent = [&] {  // commands arrive in order, so the count is complete when this one is there
@@ -350,55 +337,27 @@ TEST_CASE("a sign of life goes out 10 ms after the last command, or 200 control 
     REQUIRE(eventually([&] { return !server.commands().empty() && server.commands().back().token == token; }));
     return server.commands().size();
   };
-  const auto hear_pose = [&](std::uint32_t time_periods) {
+  std::uint32_t time_periods = 0;
+  const auto hear_pose = [&] {
     auto pose = pose_number(1);
     pose.time_periods = time_periods;
     server.send(1, bytes_of(pose));
     REQUIRE(arm->read_pose(60s));
   };
-  SUBCASE("by the clock") {
+  const auto heartbeats_after = [&](std::uint32_t periods) {
     const std::size_t before = commands_sent();
-    hear_pose(1);
-    std::this_thread::sleep_for(10ms);
+    time_periods += periods;
+    hear_pose();
     arm->keep_alive();
-    CHECK(commands_sent() == before + 2);
-  }
-  SUBCASE("not to a device whose time stands still") {
-    hear_pose(1);
-    const std::size_t before = commands_sent();
-    std::this_thread::sleep_for(10ms);
-    hear_pose(1);
-    arm->keep_alive();
-    CHECK(commands_sent() == before + 1);
-  }
-  SUBCASE("no sooner") {
-    for (std::uint32_t time_periods = 0;;) {  // until this computer is quick enough for it
-      const auto begin = Clock::now();
-      const std::size_t before = commands_sent();
-      hear_pose(++time_periods);
-      std::this_thread::sleep_for(4ms);
-      arm->keep_alive();
-      if (Clock::now() - begin >= 10ms) continue;
-      CHECK(commands_sent() == before + 1);
-      break;
-    }
-  }
-  SUBCASE("by board time") {
-    std::uint32_t time_periods = 0;
-    const auto heartbeats_after = [&](std::uint32_t periods) {
-      for (;;) {  // until the clock has no part in it
-        const std::size_t before = commands_sent();
-        const auto begin = Clock::now();
-        arm->send(protocol::Command::heartbeat);
-        hear_pose(time_periods += periods);
-        arm->keep_alive();
-        if (Clock::now() - begin < 10ms) return commands_sent() - before - 2;
-      }
-    };
-    heartbeats_after(0);
-    CHECK(heartbeats_after(199) == 0);
-    CHECK(heartbeats_after(200) == 1);
-  }
+    return commands_sent() - before - 1;
+  };
+  hear_pose();
+  CHECK(heartbeats_after(199) == 0);
+  CHECK(heartbeats_after(200) == 1);
+  CHECK(heartbeats_after(20'000) == 1);
+  // Nor does it by the clock on the wall: the board's time may stand still.
+  std::this_thread::sleep_for(20ms);
+  CHECK(heartbeats_after(0) == 0);
 }
 
 TEST_CASE("poses, frames, samples and transactions are on one time that does not wrap with the board's counters") {

@@ -124,8 +124,7 @@ class Device {
   /// Sends a command and returns its token, which comes back in PoseReport::command_token. Whether the board accepts it
   /// is not known yet.
   std::uint8_t send(protocol::Command command);
-  /// Sends a heartbeat unless a command went out in the last 10 ms of wall time and, as far as the poses read
-  /// tell, of board time (a virtual board may run faster than the clock); none while board time stands still.
+  /// Sends a heartbeat if the poses read show that 10 ms of board time have passed since the last output report.
   /// Belongs in the loop that reads poses.
   void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
