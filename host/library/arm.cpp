@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <device/board_store.hpp>
+#include <device/board_timeout.hpp>
 #include <device/clear_fault.hpp>
 #include <device/fault_text.hpp>
 
@@ -19,18 +20,31 @@ using namespace std::chrono_literals;
 using protocol::Command;
 
 /// Until a device that was asked for its force is asked again.
-constexpr auto ask_again = 100ms;
+constexpr double ask_again_s = 0.1;
 
 /// A board from which no pose comes for so long is reset, or paused.
 constexpr double silence_s = 2.0;
+constexpr auto silence = 2s;
+
+std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
+
+/// The newest pose, once it fulfils the condition or the limit is over. Throws Disconnected after the end.
+template <class Condition>
+inkwell_pose wait(const PoseFeed& poses, device::BoardTimeout& limit, Condition condition) {
+  constexpr auto look_up = 50ms;  // the limit also counts silence
+  for (;;) {
+    const inkwell_pose pose = poses.last().pose;
+    if (condition(pose) || limit.is_over(periods_of(pose))) return pose;
+    poses.wait([&](const auto& newest, Loss) { return newest.sequence != pose.sequence; }, Clock::now() + look_up);
+  }
+}
 
 /// What a pose of the library's tells of faults, and no more.
 device::ShownFault shown_fault(const inkwell_pose& pose) {
-  const std::int64_t periods = std::llround(pose.time_s * protocol::servo_rate_Hz);
   const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
                      : pose.state == INKWELL_STARTING ? protocol::State::testing
                                                       : protocol::State::ready;
-  return {periods, state, static_cast<protocol::Fault>(pose.fault)};
+  return {periods_of(pose), state, static_cast<protocol::Fault>(pose.fault)};
 }
 
 void refuse_in_fault(const inkwell_pose& pose) {
@@ -102,7 +116,7 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 // ---- force -------------------------------------------------------------------------------------------------
 
 void Arm::enable_force(double timeout_s) {
-  const auto give_up_at = in(timeout_s);
+  device::BoardTimeout limit(seconds_from(timeout_s), silence);
   clear_inherited_fault();
   refuse_in_fault(pose());
   claim();
@@ -111,12 +125,15 @@ void Arm::enable_force(double timeout_s) {
   for (;;) {
     // A device that does not know yet where it is forgets that it was asked.
     device().carry_out(Command::enable_force);
-    const auto now = poses_.wait(
-        [](const auto& newest, Loss) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
-        std::min(give_up_at, Clock::now() + ask_again));
+    device::BoardTimeout turn(ask_again_s, silence);
+    bool is_late = false;
+    const auto now = wait(poses_, turn, [&](const auto& newest) {
+      is_late = limit.is_over(periods_of(newest));
+      return is_late || newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT;
+    });
     if (now.state == INKWELL_ACTIVE) return;
     refuse_in_fault(now);
-    if (Clock::now() < give_up_at) continue;
+    if (!is_late) continue;
     if (now.state == INKWELL_UNREFERENCED)
       throw NotNow("The arm does not know where it is. Put the stylus into the inkwell once, then try again.");
     throw TimedOut("The device did not switch the force on in time. Try again.");

@@ -33,10 +33,14 @@ std::string why_off(const inkwell_pose& pose) {
 
 }  // namespace
 
+double seconds_from(double timeout_s) {
+  if (std::isnan(timeout_s)) throw BadArgument("The time-out is not a number. Give seconds, from 0 on.");
+  return std::clamp(timeout_s, 0.0, 1e6);
+}
+
 Clock::time_point in(double seconds) {
-  if (std::isnan(seconds)) throw BadArgument("The time-out is not a number. Give seconds, from 0 on.");
   return Clock::now() +
-         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds_from(seconds)));
 }
 
 // ---- for the thread that reads the poses -------------------------------------------------------------------

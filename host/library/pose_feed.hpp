@@ -16,6 +16,8 @@ namespace inkwell::library {
 
 using Clock = std::chrono::steady_clock;
 
+/// A time-out as a caller gave it, within bounds. Throws BadArgument if it is not a number.
+double seconds_from(double timeout_s);
 /// So many seconds from now. Throws BadArgument for what is no number.
 Clock::time_point in(double seconds);
 

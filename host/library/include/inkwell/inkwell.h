@@ -245,9 +245,10 @@ INKWELL_API const char* inkwell_fault_name(int fault);
  * calls, inkwell_disable_force(), inkwell_clear_fault() and changes of parameters are INKWELL_IN_USE in every other
  * program, and the sentence names the driver. Any program may read, record and call inkwell_stop(). */
 
-/* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
- * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. The faults "usb_gone" and "host_silent" of a
- * program that drove before this one, or before a lost link, are cleared first. */
+/* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active, for
+ * `timeout_s` of board time at most, and for 2 s of silence. In a fault or before the stylus was in the inkwell it is
+ * INKWELL_REFUSED. The faults "usb_gone" and "host_silent" of a program that drove before this one, or before a lost
+ * link, are cleared first. */
 INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
 /* Lets the force fall to nothing within the parameter soft_landing_s, and returns once it is off. */
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
