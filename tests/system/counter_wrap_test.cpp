@@ -1,0 +1,166 @@
+// The board's counters of time wrap: control periods after 59 hours, bus frames after 49 days. Neither the hand nor a
+// program may notice. The image near-wrap.elf starts to count 3 s and 4 s before that.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <device/device.hpp>
+#include <recording/recorder.hpp>
+#include <recording/recording.hpp>
+
+#include "board_rig.hpp"
+#include "program.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using protocol::Parameter;
+using protocol::Signal;
+
+constexpr std::int64_t wrap = std::int64_t{1} << 32;
+constexpr std::int64_t rate_Hz = protocol::servo_rate_Hz;
+constexpr std::int64_t periods_per_frame = protocol::servo_rate_Hz / protocol::pose_rate_Hz;
+constexpr float program_N = 0.5f;
+/// The hand trembles and sensors have noise.
+constexpr double force_tolerance_N = 0.05;
+constexpr double speed_m_per_s = 0.02;
+/// Around each wrap.
+constexpr std::size_t frames_before = 200, frames_after = 100;
+
+/// A hand that moves at a constant speed, pulled by a program, on a plane. The force is on, and a recording runs.
+struct Story {
+  std::vector<device::Pose> poses;  ///< since the hand moves
+  recording::Recording recording;
+  std::int64_t applied_at_periods = 0;  ///< a change of parameters after both wraps
+  std::optional<device::Driver> driver;
+  std::uint32_t forces_refused = 0;
+};
+
+void record_until(BoardRig& rig, recording::Recorder& recorder,
+                  const std::function<bool(const device::Pose&)>& condition) {
+  // The board exits on its own if the test hangs: each slice is 10 ms of board time.
+  for (int slices = 0; !condition(rig.pose()); ++slices) {
+    REQUIRE(slices < 500);
+    rig.device->send_force({.force_N = {program_N, 0.0f, 0.0f}, .interval_ms = 10});
+    rig.run(0.01);
+    while (const auto samples = rig.device->read_scope(0ms)) recorder.push(*samples);
+  }
+}
+
+Story play() {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("wrap.h5");
+  BoardRig rig(std::string("near-wrap.elf"));
+  rig.run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
+  rig.take_to(beside(-0.03, 0, 0), 0.3);
+  rig.make_active();
+  rig.set({{Parameter::program_force_expiry_s, 0.5f}});
+  device::Shapes shapes;
+  shapes.planes[0] = device::Plane{.point_m = {0.0f, 0.0f, static_cast<float>(free_point_m[2]) + 0.002f},
+                                   .normal = {0.0f, 0.0f, 1.0f},
+                                   .surface = {.stiffness_N_per_m = 200.0f, .damping_Ns_per_m = 1.0f}};
+  rig.device->place_shapes(shapes);
+  constexpr double moves_for_s = 3.0;
+  rig.control.hand_path({{0.0, beside(-0.03, 0, 0)}, {moves_for_s, beside(-0.03 + moves_for_s * speed_m_per_s, 0, 0)}});
+  const std::vector<Signal> signals{Signal::velocity_x_m_s, Signal::force_x_N, Signal::force_sources};
+  rig.device->select_signals(signals);
+  const std::size_t first_pose = rig.poses().size();
+  Story story;
+  {
+    recording::Recorder recorder(
+        file, recording::describe(rig.device->information(), rig.device->parameters(), signals, "", true));
+    // Time for the force and the speed to settle before the first wrap.
+    REQUIRE(rig.pose().time_periods < wrap - rate_Hz / 2);
+    record_until(rig, recorder, [](const auto& pose) { return pose.sequence > wrap + 150; });
+    const device::ParameterChange change{Parameter::wall_stiffness_N_per_m, 555.0f};
+    story.applied_at_periods = rig.device->set_parameters({&change, 1}).applied_at_periods;
+    record_until(rig, recorder, [](const auto& pose) { return pose.sequence > wrap + 200; });
+    const auto status = recorder.stop();
+    CHECK(status.error.empty());
+    CHECK(status.lost == 0);
+  }
+  story.poses.assign(rig.poses().begin() + static_cast<std::ptrdiff_t>(first_pose), rig.poses().end());
+  story.recording = recording::read(file);
+  story.driver = rig.device->driver();
+  story.forces_refused = rig.device->information().report.force_reports_refused;
+  return story;
+}
+
+const Story& story() {
+  static const Story told = play();
+  return told;
+}
+
+double magnitude_N(const device::Pose& pose) { return std::hypot(pose.force_N[0], pose.force_N[1], pose.force_N[2]); }
+
+/// The first pose at which the counter has passed its wrap. Around it force, state and time go on.
+const device::Pose& check_goes_on_around(std::int64_t device::Pose::*counter) {
+  const auto& poses = story().poses;
+  const auto found = std::ranges::find_if(poses, [&](const auto& pose) { return pose.*counter >= wrap; });
+  const auto at = static_cast<std::size_t>(found - poses.begin());
+  REQUIRE(at >= frames_before);
+  REQUIRE(at + frames_after <= poses.size());
+  const double before_N = magnitude_N(poses[at - frames_before]);
+  CHECK(before_N > 0.8 * program_N);
+  for (std::size_t i = at - frames_before + 1; i < at + frames_after; ++i) {
+    CAPTURE(i);
+    CAPTURE(at);
+    REQUIRE(poses[i].sequence == poses[i - 1].sequence + 1);
+    REQUIRE(std::abs(poses[i].time_periods - poses[i - 1].time_periods - periods_per_frame) <= 1);
+    REQUIRE(protocol::force_is_on(poses[i].state));
+    REQUIRE(poses[i].fault == protocol::Fault::none);
+    REQUIRE(std::abs(magnitude_N(poses[i]) - before_N) < force_tolerance_N);
+  }
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("the count of control periods wraps after 59 hours, and force, speeds and a recording go on") {
+  check_goes_on_around(&device::Pose::time_periods);
+
+  const auto& recording = story().recording;
+  REQUIRE(recording.size() > static_cast<std::size_t>(rate_Hz));
+  CHECK(recording.complete);
+  CHECK(recording.lost() == 0);
+  CHECK(recording.periods.front() < wrap);
+  CHECK(recording.periods.back() == recording.periods.front() + static_cast<std::int64_t>(recording.size()) - 1);
+  CHECK(std::ranges::is_sorted(recording.periods));
+  // It is on the time of the poses.
+  CHECK(std::abs(recording.periods.back() - story().poses.back().time_periods) < rate_Hz / 50);
+  CHECK(recording.duration_s() == doctest::Approx(static_cast<double>(recording.size() - 1) / rate_Hz));
+
+  const auto at_wrap = static_cast<std::size_t>(wrap - recording.periods.front());
+  const auto& force_x_N = recording.column(Signal::force_x_N);
+  const auto& velocity_x_m_s = recording.column(Signal::velocity_x_m_s);
+  const auto& force_sources = recording.column(Signal::force_sources);
+  for (std::size_t i = at_wrap - 2000; i < at_wrap + 2000; ++i) {
+    CAPTURE(static_cast<std::int64_t>(i) - static_cast<std::int64_t>(at_wrap));
+    REQUIRE(std::abs(force_x_N[i] - program_N) < force_tolerance_N);
+    REQUIRE(velocity_x_m_s[i] == doctest::Approx(speed_m_per_s).epsilon(0.4));
+    REQUIRE(force_sources[i] == force_sources[at_wrap - 2000]);
+  }
+}
+
+TEST_CASE("the count of bus frames wraps after 49 days, and no pose is lost and no force refused") {
+  const auto& at_wrap = check_goes_on_around(&device::Pose::sequence);
+  CHECK(story().forces_refused == 0);
+  CHECK(story().applied_at_periods > at_wrap.time_periods);
+  CHECK(story().applied_at_periods < story().poses.back().time_periods);
+
+  // The program still drives, for as long as it has.
+  REQUIRE(story().driver);
+  CHECK(story().driver->is_this_device);
+  const auto& poses = story().poses;
+  const double seen_s = device::board_time_s(poses.back().time_periods - poses.front().time_periods);
+  CHECK(story().driver->driven_s > seen_s - 1.0);
+  CHECK(story().driver->driven_s < seen_s + 2.0);
+}
+
+}  // namespace inkwell::tests
