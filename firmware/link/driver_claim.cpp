@@ -43,6 +43,12 @@ bool DriverClaim::accept(std::span<const std::byte> report, std::uint32_t now_pe
   return false;
 }
 
+void DriverClaim::pass_time(std::uint32_t now_periods) {
+  if (claim_ == 0 || now_periods - second_began_periods_ < protocol::servo_rate_Hz) return;
+  second_began_periods_ += protocol::servo_rate_Hz;
+  ++driver_.driven_s;
+}
+
 bool DriverClaim::has_expired(std::uint32_t now_periods) const {
   return claim_ != 0 && now_periods - heard_at_periods_ > expiry_periods;
 }
@@ -62,7 +68,7 @@ void DriverClaim::begin(const protocol::ClaimReport& request, std::uint32_t now_
   driver_.process_id = request.process_id;
   std::ranges::copy(request.program, driver_.program);
   driver_.program[protocol::program_name_maximum] = '\0';
-  driver_.since_periods = now_periods;
+  second_began_periods_ = now_periods;
   ++changes_;
   renew(now_periods);
 }

@@ -57,7 +57,9 @@ Device::Device(Port& port, link::Link& link, const Identity& identity)
 void Device::poll() {
   Event event;
   for (int i = 0; i < events_per_poll && port_.next_event(event); ++i) handle(event);
-  if (link_.driver.has_expired(link_.poses.newest_periods())) {
+  const std::uint32_t now_periods = link_.poses.newest_periods();
+  link_.driver.pass_time(now_periods);
+  if (link_.driver.has_expired(now_periods)) {
     link_.driver.end();
     driver_gone();
   }

@@ -206,7 +206,7 @@ struct Device::Implementation {
     const std::size_t length = protocol::copy_program_name(report.program, name);
     return {.program = std::string(name, length),
             .process_id = report.process_id,
-            .driven_s = static_cast<double>(report.time_periods - report.since_periods) / protocol::servo_rate_Hz,
+            .driven_s = static_cast<double>(report.driven_s),
             .object = own_claims().find(report.claim_digest),
             .is_this_device = is_own(report)};
   }

@@ -50,7 +50,7 @@ struct DriverReport {
   std::uint32_t claim_digest;  ///< digest_of() its claim
   std::uint32_t process_id;
   char program[program_name_maximum + 1];  ///< as the program wrote it: filter it before it reaches a terminal
-  std::uint32_t since_periods;             ///< control period in which it claimed the arm
+  std::uint32_t driven_s;                  ///< whole seconds of board time since it claimed the arm
   std::uint32_t time_periods;              ///< now
   std::uint32_t changes;                   ///< of the driver since the start: claims, releases, losses, takeovers
   std::uint32_t refused;                   ///< requests since the start that came from programs that do not drive

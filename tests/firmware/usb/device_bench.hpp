@@ -42,11 +42,11 @@ inline ControlResult answer(std::initializer_list<int> bytes) {
 
 struct DeviceBench {
   FakePort port;
-  link::Link& link = fresh_link();
+  std::uint32_t periods;  ///< number of the next control period
+  link::Link& link = fresh_link(periods);
   usb::Device device{port, link, identity};
-  std::uint32_t periods = 0;
 
-  DeviceBench() {
+  explicit DeviceBench(std::uint32_t first_period = 0) : periods(first_period) {
     port.reset();
     device.poll();
   }

@@ -16,7 +16,7 @@ constexpr std::uint32_t first = 11, second = 22;
 constexpr auto expiry_periods = static_cast<std::uint32_t>(protocol::claim_expiry_s * protocol::servo_rate_Hz);
 
 struct DrivenBench : DeviceBench {
-  DrivenBench() {
+  explicit DrivenBench(std::uint32_t first_period = 0) : DeviceBench(first_period) {
     configure();
     run(1);  // the stop of the bus reset is taken
     last_command.reset();
@@ -136,6 +136,35 @@ TEST_CASE("claim: only the driver keeps the force on, and its claim ends when it
   CHECK(bench.driver().is_driven == 0);
   CHECK(bench.driver().changes == 2);
   CHECK(bench.keeps_alive(second));
+}
+
+TEST_CASE("claim: it does not end where the count of control periods wraps, nor does a silent one survive that") {
+  DrivenBench bench(0u - expiry_periods / 2);
+  const bool is_heard = bench.keeps_alive(first);
+  CHECK(is_heard);
+  bench.run(expiry_periods - 2);
+  bench.device.poll();
+  CHECK(bench.driver().is_driven == 1);
+  CHECK(bench.driver().time_periods < expiry_periods);
+  bench.run(3);
+  bench.device.poll();
+  CHECK(bench.driver().is_driven == 0);
+}
+
+TEST_CASE("claim: the time that a program drives goes on where the count of control periods wraps") {
+  link::DriverClaim driver;
+  std::uint32_t now_periods = 12'345;
+  const auto request = claim_report(ClaimOperation::claim, first);
+  driver.accept(bytes_of(request), now_periods);
+  constexpr std::uint32_t seconds = 250'000;
+  for (std::uint32_t i = 0; i < 2 * seconds; ++i) driver.pass_time(now_periods += protocol::servo_rate_Hz / 2);
+  CHECK(driver.report(now_periods).driven_s == seconds);
+  const auto other = claim_report(ClaimOperation::take_over, second);
+  driver.accept(bytes_of(other), now_periods);
+  CHECK(driver.report(now_periods).driven_s == 0);
+  driver.end();
+  driver.pass_time(now_periods += protocol::servo_rate_Hz);
+  CHECK(driver.report(now_periods).driven_s == 0);
 }
 
 TEST_CASE("claim: a driver that releases the arm with the force on lets the force fall") {

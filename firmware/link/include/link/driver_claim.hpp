@@ -23,6 +23,8 @@ class DriverClaim {
   /// Whether this is the driver.
   bool is_held_by(std::uint32_t claim) const { return claim != 0 && claim == claim_; }
 
+  /// Counts the seconds that the program drives. Call it more often than once a second.
+  void pass_time(std::uint32_t now_periods);
   /// The driver was heard.
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
   /// Whether the driver has been silent for too long. Call it more often than the counter of periods wraps.
@@ -39,6 +41,7 @@ class DriverClaim {
   std::uint32_t claim_ = 0;  ///< 0: no program drives the arm
   protocol::DriverReport driver_{};
   std::uint32_t heard_at_periods_ = 0;
+  std::uint32_t second_began_periods_ = 0;  ///< of the driver, because the count of periods wraps after 59 hours
   std::uint32_t changes_ = 0;
   std::uint32_t refused_ = 0;
 };
