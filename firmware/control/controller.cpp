@@ -158,8 +158,6 @@ void Controller::render_force(const Settings& settings) {
   const bool world_changed = std::exchange(world_changed_, false) || shapes_changed;
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
-  force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
-                   bit(ForceSource::program, program_.is_driven());
   const bool law_is_felt = force_is_on() && law_rendered;
   if (!law_is_felt) law_.rest();
   if (!force_is_on()) {
@@ -172,6 +170,8 @@ void Controller::render_force(const Settings& settings) {
     reserve_ = {settings.energy.reserve_J, probe_.position_m};
     return;
   }
+  force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
+                   bit(ForceSource::program, program_.is_driven());
   Vector3 touched_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
   if (law_is_felt) {
     probe_.wall = settings.wall;
@@ -430,7 +430,10 @@ void Controller::change_state(const Supervisor& next) {
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   if (force_is_on_) off_zero_periods_ = 0;
   // A change of state switches off in the period in which it is decided, not one later.
-  if (!(force_was_on && force_is_on_)) drive_ = {};
+  if (!(force_was_on && force_is_on_)) {
+    drive_ = {};
+    force_sources_ = 0;
+  }
   if (next.state != State::ready) test_.end();
   pulses_.stop();
   if (next.state == State::testing) {

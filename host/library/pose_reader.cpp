@@ -39,8 +39,7 @@ inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& ge
   const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, geometry);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = rotation[column][row];
-  // The board reports who would be felt while the force is off, too.
-  pose.force_sources = protocol::force_is_on(report.state) ? report.force_sources : 0;
+  pose.force_sources = report.force_sources;
   pose.button_1 = is_closed(report.switches, protocol::Switch::button_1);
   pose.button_2 = is_closed(report.switches, protocol::Switch::button_2);
   pose.in_inkwell = is_closed(report.switches, protocol::Switch::inkwell);

@@ -102,6 +102,27 @@ TEST_CASE("a program's force adds to the walls") {
   CHECK(signals[Signal::force_sources] == 5.0f);
 }
 
+TEST_CASE("the hand feels no source from the period on in which the force goes off") {
+  StillArm arm;
+  const control::Shapes shapes = arm.floor(0.001f);
+  arm.controller.replace_shapes(shapes);
+  arm.drive({0.5f, 0.0f, 0.0f}, ForceMode::beside_walls);
+  arm.run(20);
+  const auto all = bit(ForceSource::walls) | bit(ForceSource::shapes) | bit(ForceSource::program);
+  CHECK(arm.controller.force_sources() == all);
+  arm.controller.carry_out({.command = protocol::Command::stop});
+  for (int i = 0; i < 20; ++i) {
+    arm.drive({0.5f, 0.0f, 0.0f}, ForceMode::beside_walls);
+    arm.run(1);
+    CHECK(arm.controller.state() == protocol::State::ready);
+    CHECK(arm.controller.force_sources() == 0);
+    CHECK(arm.controller.signals()[Signal::force_sources] == 0.0f);
+  }
+  arm.controller.carry_out({.command = protocol::Command::enable_force});
+  arm.run(2);
+  CHECK(arm.controller.force_sources() == all);
+}
+
 TEST_CASE("a program that takes the walls' place, and gives it back, is felt without a jump") {
   StillArm arm;
   arm.drive({}, ForceMode::instead_of_walls);
