@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -107,6 +106,7 @@ class Arm {
   template <class Call>
   void call(Call library_call);
   /// Tries `attempt(arm, time)` for short times until it does not ask to go on, so that Ctrl-C and close() are heard.
+  /// The times of the attempts add up to the time-out, so that a time-out in board time stays one.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>
@@ -142,13 +142,9 @@ void Arm::call(Call library_call) {
 
 template <class Attempt, class GoesOn>
 void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
-  using Clock = std::chrono::steady_clock;
-  constexpr double attempt_s = 0.05, longest_s = 1e6;
+  constexpr double attempt_s = 0.05;
   if (!(timeout_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The time-out is no time. Give seconds, from 0 on.");
-  const auto give_up_at = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-                                             timeout_s < longest_s ? timeout_s : longest_s));
-  for (;;) {
-    const double left_s = std::chrono::duration<double>(give_up_at - Clock::now()).count();
+  for (double left_s = timeout_s;; left_s -= attempt_s) {
     const bool is_last = left_s <= attempt_s;
     inkwell_result result;
     std::string sentence;
@@ -156,7 +152,7 @@ void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
     {
       const Use arm(*this);
       const py::gil_scoped_release unlocked;
-      result = attempt(static_cast<inkwell_arm*>(arm), is_last ? (left_s > 0 ? left_s : 0.0) : attempt_s);
+      result = attempt(static_cast<inkwell_arm*>(arm), is_last ? left_s : attempt_s);
       if (result != INKWELL_OK) sentence = inkwell_error_text();
       if (result == INKWELL_DISCONNECTED) inkwell_get_pose(arm, &last_pose);
     }
