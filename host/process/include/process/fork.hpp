@@ -1,0 +1,69 @@
+// A process that is forked while threads of a library run. The child has a copy of everything but of those threads:
+// mutexes that they held stay locked, and sockets, files and child processes belong to the parent.
+#pragma once
+
+#include <unistd.h>
+
+#include <memory>
+#include <mutex>
+
+namespace inkwell::process {
+
+/// Which process made an object. A forked child that meets it has a copy that it cannot use.
+class Origin {
+ public:
+  bool is_here() const { return process_ == getpid(); }
+  pid_t process() const { return process_; }
+
+ private:
+  pid_t process_ = getpid();
+};
+
+/// Has a fork wait until no other thread holds the mutex, so that a child finds it free and what it guards whole. Both
+/// live until the process ends. A thread that holds the mutex locks no other one of these.
+class HeldAtFork {
+ public:
+  explicit HeldAtFork(std::mutex& mutex) : HeldAtFork(&mutex, calls_of<std::mutex>) {}
+  explicit HeldAtFork(std::recursive_mutex& mutex) : HeldAtFork(&mutex, calls_of<std::recursive_mutex>) {}
+  HeldAtFork(const HeldAtFork&) = delete;
+  HeldAtFork& operator=(const HeldAtFork&) = delete;
+
+ private:
+  friend struct Forks;
+  struct Calls {
+    void (*lock)(void*);
+    void (*unlock)(void*);
+    void (*make_new)(void*);  ///< in the child, whose thread is not the one that has locked it
+  };
+  template <class Mutex>
+  static constexpr Calls calls_of{[](void* mutex) { static_cast<Mutex*>(mutex)->lock(); },
+                                  [](void* mutex) { static_cast<Mutex*>(mutex)->unlock(); },
+                                  [](void* mutex) { std::construct_at(static_cast<Mutex*>(mutex)); }};
+  HeldAtFork(void* mutex, const Calls& calls);
+
+  void* const mutex_;
+  const Calls calls_;
+  HeldAtFork* const next_;
+};
+
+/// A descriptor that a forked child may not use. There it leads to /dev/null instead, so that the child neither keeps
+/// open what its parent closes, nor writes what its parent has buffered. Belongs to whoever closes the descriptor, and
+/// ends before that.
+class OwnDescriptor {
+ public:
+  OwnDescriptor() = default;
+  explicit OwnDescriptor(int descriptor);
+  ~OwnDescriptor() { forget(); }
+  OwnDescriptor(OwnDescriptor&& other) noexcept;
+  OwnDescriptor& operator=(OwnDescriptor&& other) noexcept;
+
+  void forget();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// Calls `in_child` in every forked child. Once the library that it belongs to is unloaded, no more.
+void at_fork(void (*in_child)());
+
+}  // namespace inkwell::process
