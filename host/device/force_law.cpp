@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <device/error.hpp>
+#include <process/fork.hpp>
 #include <protocol/plain_text.hpp>
 
 namespace inkwell::device {
@@ -69,6 +70,7 @@ struct Joined {
 };
 
 std::mutex joined_mutex;
+const process::HeldAtFork joined_at_fork(joined_mutex);
 std::list<Joined> joined;                                        // the last one is in the tables
 std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // of the law that is in the tables
 

@@ -63,6 +63,7 @@ Socket::Socket(const SocketAddress& server)
   if (!descriptor_.is_open())
     throw Error(fmt::format("Nothing answers at {} ({}). Start the virtual board, or check the {} it printed.", peer_,
                             std::strerror(errno), server.is_unix() ? "path" : "port"));
+  own_ = process::OwnDescriptor(descriptor_.number());
 }
 
 void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) {

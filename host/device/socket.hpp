@@ -9,6 +9,8 @@
 #include <string>
 
 #include <device/socket_address.hpp>
+#include <local/descriptor.hpp>
+#include <process/fork.hpp>
 
 namespace inkwell::device {
 
@@ -30,6 +32,7 @@ class Socket {
 
  private:
   local::Descriptor descriptor_;
+  process::OwnDescriptor own_;  ///< a child that shuts the socket down would end the parent's connection
   std::string peer_;
 };
 

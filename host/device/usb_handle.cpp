@@ -42,6 +42,14 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
   return reason;
 }
 
+std::vector<process::OwnDescriptor> descriptors_of(libusb_context* context) {
+  std::vector<process::OwnDescriptor> own;
+  const libusb_pollfd** const all = libusb_get_pollfds(context);
+  for (const libusb_pollfd** each = all; each != nullptr && *each != nullptr; ++each) own.emplace_back((*each)->fd);
+  libusb_free_pollfds(all);
+  return own;
+}
+
 }  // namespace
 
 UsbHandle::UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const std::string& serial_number) {
@@ -52,13 +60,17 @@ UsbHandle::UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const st
         handle_ = handle;
         return true;
       });
-  if (handle_ != nullptr) return;
+  if (handle_ != nullptr) {
+    own_ = descriptors_of(context_);
+    return;
+  }
   libusb_exit(context_);
   if (reason == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
   throw Disconnected(unplugged);
 }
 
 UsbHandle::~UsbHandle() {
+  own_.clear();
   for (const int number : claimed_) libusb_release_interface(handle_, number);
   libusb_close(handle_);
   libusb_exit(context_);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <process/fork.hpp>
+
 struct libusb_context;
 struct libusb_device_handle;
 
@@ -29,6 +31,7 @@ class UsbHandle {
   libusb_context* context_ = nullptr;
   libusb_device_handle* handle_ = nullptr;
   std::vector<int> claimed_;
+  std::vector<process::OwnDescriptor> own_;  ///< else a child would keep what was claimed
 };
 
 /// Serial numbers of those that are there. Throws NoPermission if one may not be opened.

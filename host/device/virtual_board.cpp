@@ -26,6 +26,7 @@
 #include <device/address.hpp>
 #include <installation/places.hpp>
 #include <known/boards.hpp>
+#include <process/fork.hpp>
 #include <protocol/image_identity.hpp>
 
 namespace inkwell::device {
@@ -40,6 +41,7 @@ constexpr std::size_t log_kept = 4096, longest_ready_line = 4096;
 
 struct Pipe {
   int read_end = -1, write_end = -1;
+  process::OwnDescriptor own;
   Pipe() {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe to the virtual board can be made: too many files are open.");
@@ -48,10 +50,16 @@ struct Pipe {
   }
   ~Pipe() {
     close_write_end();
+    own.forget();
     close(read_end);
   }
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
+  /// The board has its end.
+  void keep_read_end() {
+    close_write_end();
+    own = process::OwnDescriptor(read_end);
+  }
   void close_write_end() {
     if (write_end >= 0) close(write_end);
     write_end = -1;
@@ -152,8 +160,8 @@ struct VirtualBoard::Implementation {
       execv(pointers[0], pointers.data());
       _exit(127);
     }
-    output.close_write_end();
-    log.close_write_end();
+    output.keep_read_end();
+    log.keep_read_end();
     drain = std::thread([this] { read_log(); });
   }
 

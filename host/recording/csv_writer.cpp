@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include <process/fork.hpp>
+
 namespace inkwell::recording {
 namespace {
 
@@ -20,6 +22,7 @@ class CsvWriter final : public Writer {
   CsvWriter(const std::filesystem::path& file, const Information& information, std::string name)
       : name_(std::move(name)), file_(std::fopen(file.c_str(), "wbx")), simulated_(information.simulated.size()) {
     if (!file_) fail();
+    own_ = process::OwnDescriptor(fileno(file_.get()));
     write_head(information);
     flush();
   }
@@ -54,6 +57,7 @@ class CsvWriter final : public Writer {
   void finish() override {
     fmt::format_to(std::back_inserter(text_), "# complete = 1\n");
     flush();
+    own_.forget();
     if (std::fclose(file_.release()) != 0) fail();
   }
 
@@ -94,7 +98,8 @@ class CsvWriter final : public Writer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  std::size_t simulated_;  ///< how many simulated quantities stand behind the signals
+  process::OwnDescriptor own_;  ///< a child would write what is buffered once more
+  std::size_t simulated_;       ///< how many simulated quantities stand behind the signals
   fmt::memory_buffer text_;
 };
 

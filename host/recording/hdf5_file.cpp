@@ -1,16 +1,20 @@
 #include "hdf5_file.hpp"
 
 #include <device/error.hpp>
+#include <process/fork.hpp>
 
 namespace inkwell::recording {
 namespace {
 
+std::recursive_mutex use_of_hdf5;
+// A child that is forked while a file is written would find the library in the middle of it.
+const process::HeldAtFork use_of_hdf5_at_fork(use_of_hdf5);
+
 std::recursive_mutex& hdf5_mutex() {
-  static std::recursive_mutex mutex;
   // Every file is closed by its owner. At the end of the program the library would try again to write what a full disk
   // has refused, and complain in words of its own. Works only before the first use of the library, which is here.
   [[maybe_unused]] static const herr_t stays_quiet = H5dont_atexit();
-  return mutex;
+  return use_of_hdf5;
 }
 
 void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {

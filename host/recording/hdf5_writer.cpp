@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include <process/fork.hpp>
+
 #include "hdf5_file.hpp"
 #include "hdf5_layout.hpp"
 
@@ -37,6 +39,7 @@ class Hdf5Writer final : public Writer {
     const QuietHdf5 quiet;
     lay_out(information);
     open_for_writing(information);
+    own_ = process::OwnDescriptor(descriptor());
   }
   ~Hdf5Writer() override {
     const QuietHdf5 quiet;
@@ -240,6 +243,7 @@ class Hdf5Writer final : public Writer {
     if (H5Dwrite(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values) < 0) fail();
   }
   void close() {
+    own_.forget();
     columns_.clear();
     for (Handle* handle :
          {&period_, &time_, &mark_period_, &mark_text_, &mark_kind_, &mark_clock_, &complete_, &samples_, &file_})
@@ -259,6 +263,7 @@ class Hdf5Writer final : public Writer {
   std::size_t width_;  ///< how many signals there are
   hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
+  process::OwnDescriptor own_;         ///< of the file
   std::vector<Handle> columns_;        ///< of the signals, then of the simulated quantities
   std::vector<std::int64_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
   std::vector<double> times_s_;

@@ -111,6 +111,10 @@ void LIBUSB_CALL libusb_exit(libusb_context* context) {
   count(-1);
 }
 
+// No file of its own, so that there is none for a forked child to give up.
+const libusb_pollfd** LIBUSB_CALL libusb_get_pollfds(libusb_context*) { return nullptr; }
+void LIBUSB_CALL libusb_free_pollfds(const libusb_pollfd**) {}
+
 ssize_t LIBUSB_CALL libusb_get_device_list(libusb_context*, libusb_device*** list) {
   const auto lock = lock_usb();
   *list = new libusb_device*[usb->devices.size()];
