@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 
+#include <device/clear_fault.hpp>
 #include <device/fault_text.hpp>
 #include <protocol/faults.hpp>
 
@@ -36,6 +37,18 @@ Pose ask(device::Device& device, Command command, Wanted wanted) {
   return pose;
 }
 
+/// A program that was there before this one may have gone with the force on.
+void clear_what_a_host_left(device::Device& device) {
+  PoseReport pose = next_pose(device);
+  if (pose.state != State::fault || !device::is_left_by_a_host(pose.fault)) return;
+  const auto shown = [&] { return device::ShownFault{pose.time_periods, pose.state, pose.fault}; };
+  device::clear_fault(device, shown(), [&] {
+    device.keep_alive();
+    pose = next_pose(device);
+    return shown();
+  });
+}
+
 /// With a space before it; nothing if all that it needs is to be switched on.
 std::string what_keeps_it_off(const Pose& pose) {
   if (pose.state == State::ready) return {};
@@ -53,6 +66,7 @@ Pose switch_force_off(device::Device& device) {
 
 ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
   device.claim();
+  clear_what_a_host_left(device);
   const auto pose = ask(device, Command::enable_force, [](State state) { return protocol::force_is_on(state); });
   if (protocol::force_is_on(pose.state)) return;
   if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");

@@ -20,6 +20,10 @@ std::string fault_line(protocol::Fault fault, Device& device) {
   return fault == protocol::Fault::self_test_failed ? fault_line(fault, device.read_self_test()) : fault_line(fault);
 }
 
+bool is_left_by_a_host(protocol::Fault fault) {
+  return fault == protocol::Fault::usb_gone || fault == protocol::Fault::host_silent;
+}
+
 // The board clears a fault whose cause is gone, and latches it again if it is not.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next) {
   device.carry_out(protocol::Command::clear_fault);

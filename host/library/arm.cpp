@@ -151,9 +151,8 @@ void Arm::stop() {
 
 /// A fault by which the board ended the force of a program that was there before this one, or before the link was lost.
 void Arm::clear_inherited_fault() {
-  const auto now = pose();
-  const bool is_of_a_host = now.fault == INKWELL_FAULT_USB_GONE || now.fault == INKWELL_FAULT_HOST_SILENT;
-  if (now.state == INKWELL_FAULT && is_of_a_host && !poses_.had_force()) clear_fault();
+  const auto now = shown_fault(pose());
+  if (now.state == protocol::State::fault && device::is_left_by_a_host(now.fault) && !poses_.had_force()) clear_fault();
 }
 
 void Arm::clear_fault() {

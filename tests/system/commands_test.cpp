@@ -247,6 +247,15 @@ TEST_CASE("a command switches the force on for as long as it runs, and any other
     CHECK(refused.exit_code == 1);
     CHECK(refused.err.find("The force is off. bridge_fault: A bridge reported") != std::string::npos);
   }
+  SUBCASE("its cable, of which the next command hears nothing") {
+    rig.control.usb(false);
+    CHECK(on.wait() == 1);
+    rig.control.usb(true);
+    rig.wait_for_device();
+    CHECK(rig.run({"force"}).out.starts_with("The force is off. usb_gone: "));
+    const auto next = rig.run({"force", "on", "--seconds", "0.1"});
+    CHECK_MESSAGE(next.exit_code == 0, next.err);
+  }
   CHECK(rig.run({"force"}).out.starts_with("The force is off."));
 }
 

@@ -28,6 +28,10 @@ struct ShownFault {
 /// device is asked.
 std::string fault_line(protocol::Fault fault, Device& device);
 
+/// Whether the board has ended the force with this fault because its host was gone or silent. If a program finds it, it
+/// tells of the program before, and nothing is wrong with the arm.
+bool is_left_by_a_host(protocol::Fault fault);
+
 /// Clears the fault and looks for a fifth of a second of the board whether it stays away, or until the self-test is
 /// over that follows. Without a fault `now` that ends at once. `next` waits for the next pose. Throws FaultStays.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next);
