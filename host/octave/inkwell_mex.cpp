@@ -214,6 +214,11 @@ Answers driver(const Arguments& arguments) {
   return {answer};
 }
 
+Answers clear_fault(const Arguments& arguments) {
+  require(inkwell_clear_fault(find(arguments)->second));
+  return {};
+}
+
 Answers force(const Arguments& arguments) {
   require(inkwell_set_force(find(arguments)->second, vector(argument(arguments, 1)).data()));
   return {};
@@ -361,6 +366,7 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"stop", stop},
     {"take_over", take_over},
     {"driver", driver},
+    {"clear_fault", clear_fault},
     {"force", force},
     {"get", get},
     {"set", set},
