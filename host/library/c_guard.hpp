@@ -1,9 +1,15 @@
-// Every call of the C interface is guarded, so that no exception leaves the library and each ends in a result.
+// Every call of the C interface is guarded: no exception leaves the library, each call ends in a result, a cancelled
+// thread ends where it waits, and a forked child uses nothing of its parent.
 #pragma once
+
+#include <cxxabi.h>
 
 #include <string>
 
 #include <fmt/format.h>
+
+#include <process/cancellation.hpp>
+#include <process/fork.hpp>
 
 #include "arm.hpp"
 #include "errors.hpp"
@@ -13,6 +19,7 @@ struct inkwell_arm {
   explicit inkwell_arm(const std::string& address) : arm(address) {}
   inkwell::library::Arm arm;
   inkwell::library::SeenPoses seen;
+  inkwell::process::Origin origin;
 };
 
 namespace inkwell::library {
@@ -21,10 +28,13 @@ namespace inkwell::library {
 inkwell_result result_of_exception() noexcept;
 
 template <class Action>
-inkwell_result guarded(Action action) noexcept {
+inkwell_result guarded(Action action) {
+  const process::CancellationGuard guard;
   try {
     action();
     return INKWELL_OK;
+  } catch (const abi::__forced_unwind&) {  // the thread was cancelled
+    throw;
   } catch (...) {
     return result_of_exception();
   }
@@ -37,6 +47,11 @@ Pointer required(Pointer pointer, const char* what) {
   return pointer;
 }
 
-inline Arm& arm_of(inkwell_arm* arm) { return required(arm, "The arm")->arm; }
+/// Throws NotNow in a forked child, which has a copy of the arm without its threads.
+inline Arm& arm_of(inkwell_arm* arm) {
+  const auto& origin = required(arm, "The arm")->origin;
+  if (origin.is_here()) return arm->arm;
+  throw NotNow(fmt::format("The arm was opened by process {}. Open the arm again in this process.", origin.process()));
+}
 
 }  // namespace inkwell::library

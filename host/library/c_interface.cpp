@@ -62,12 +62,17 @@ inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind
 }
 
 inkwell_result inkwell_open(const char* address, inkwell_arm** arm) {
-  return guarded([&] { *required(arm, "The place for the arm") = new inkwell_arm(address == nullptr ? "" : address); });
+  return guarded([&] {
+    const inkwell::process::NoCancellationPoints whole;
+    *required(arm, "The place for the arm") = new inkwell_arm(address == nullptr ? "" : address);
+  });
 }
 
 inkwell_result inkwell_close(inkwell_arm* arm) {
   return guarded([&] {
     if (arm == nullptr) return;
+    if (!arm->origin.is_here()) return;  // the threads that its end would wait for are its parent's
+    const inkwell::process::NoCancellationPoints whole;
     if (arm->arm.servo().is_caller())
       throw NotNow("A servo can not close its arm. End the servo, and close the arm elsewhere.");
     delete arm;

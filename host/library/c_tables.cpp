@@ -33,6 +33,9 @@ void require_at_most(std::size_t maximum, std::size_t count, const char* what) {
   if (count > maximum) throw BadArgument(fmt::format("{} {} are too many. Give at most {}.", count, what, maximum));
 }
 
+std::mutex rows_mutex;
+const inkwell::process::HeldAtFork rows_at_fork(rows_mutex);
+
 // The texts of the tables, those of a force law included, end in a zero.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
   return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
@@ -43,9 +46,8 @@ inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data()
 /// behind the table's, and programs look at rows in their last destructors.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
-  static std::mutex mutex;
   static auto& rows = *new std::deque<Row>;
-  const std::lock_guard lock(mutex);
+  const std::lock_guard lock(rows_mutex);
   if (index >= table.size()) return nullptr;
   if (index >= rows.size()) rows.resize(index + 1);
   rows[index] = row_of(table[index]);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include <inkwell/inkwell.h>
+#include <process/cancellation.hpp>
 
 namespace inkwell::library {
 
@@ -65,6 +66,7 @@ class PoseFeed {
   template <class Condition>
   inkwell_pose wait(Condition condition, Clock::time_point give_up_at = Clock::time_point::max()) const {
     std::unique_lock lock(mutex_);
+    const process::CancellationPoint point;
     changed_.wait_until(lock, give_up_at, [&] { return loss_ == Loss::link || condition(seen_.pose, loss_); });
     require_link(lock);
     return seen_.pose;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <process/cancellation.hpp>
+
 #include "errors.hpp"
 
 namespace inkwell::library {
@@ -101,7 +103,10 @@ std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::siz
     throw device::Disconnected(fmt::format("{} Then select the signals again.", ended_by_));
   if (signals_.empty()) throw NotNow("No signals are selected. Select some first.");
   const auto selection = selection_;
-  changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || signals_.empty() || !samples_.empty(); });
+  {
+    const process::CancellationPoint point;
+    changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || signals_.empty() || !samples_.empty(); });
+  }
   if (signals_.empty() && selection == selection_) throw device::Disconnected(ended_by_);
   if (samples_.empty() || capacity == 0) return std::nullopt;
   device::ScopeSamples& oldest = samples_.front();

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <process/cancellation.hpp>
+
 #include "errors.hpp"
 
 namespace inkwell::library {
@@ -50,6 +52,7 @@ void Servo::stop() {
   poses_.wake();
   if (is_caller()) return;
   std::unique_lock lock(mutex_);
+  const process::CancellationPoint point;
   changed_.wait(lock, [&] { return !runs_ || started_ != meant; });
 }
 
@@ -68,6 +71,7 @@ void Servo::throw_what_ended_it() const {
 }
 
 void Servo::run() {
+  process::never_cancel_this_thread();
   for (;;) {
     Function function;
     std::uint64_t known_interruptions = 0;
@@ -84,6 +88,7 @@ void Servo::run() {
     } catch (...) {  // poses or force are lost, another program drives, or the program threw
       ended_by = std::current_exception();
     }
+    if (!origin_.is_here()) return;
     let_go_();
     const std::lock_guard lock(mutex_);
     runs_ = false;
@@ -101,6 +106,7 @@ void Servo::call(const Function& function, std::uint64_t known_interruptions) {
     seen = pose.sequence;
     double force_N[3]{};
     goes_on = function(pose, force_N);
+    if (!origin_.is_here()) return;  // it has forked, and this is the child, which has this thread only
     // A force that is no finite number is none; refused, it would let the one before expire.
     for (double& value : force_N)
       if (!std::isfinite(value)) value = 0.0;

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <thread>
 
+#include <process/fork.hpp>
+
 #include "pose_feed.hpp"
 
 namespace inkwell::library {
@@ -52,6 +54,7 @@ class Servo {
   bool runs_ = false, closes_ = false;
   std::uint64_t started_ = 0;  ///< so many servos have been
   std::atomic<bool> is_to_end_ = false;
+  const process::Origin origin_;
   std::thread thread_;
 };
 

@@ -39,6 +39,11 @@ void raise(inkwell_result result, const std::string& sentence, const Pose* last_
 }
 
 Arm::Use::Use(Arm& arm) : arm_(arm) {
+  if (!arm.origin_.is_here()) {  // other threads may have held the locks that this process has a copy of
+    int is_referenced = 0;
+    const auto result = inkwell_is_referenced(arm.arm_, &is_referenced);
+    raise(result, inkwell_error_text());
+  }
   bool closed;
   {
     const std::lock_guard lock(arm.mutex_);
@@ -67,12 +72,10 @@ Arm::~Arm() {
   }
 }
 
-bool Arm::is_closed() const {
-  const std::lock_guard lock(mutex_);
-  return closed_;
-}
+bool Arm::is_closed() const { return closed_; }
 
 void Arm::close() {
+  if (!origin_.is_here()) closed_ = true;  // there is nothing to be closed: the arm stays its parent's
   if (is_closed()) return;
   if (in_servo) raise(INKWELL_REFUSED, "A servo can not close its arm. Stop it, and close the arm elsewhere.");
   Ending ending;
@@ -82,6 +85,7 @@ void Arm::close() {
     ending = take_ending();
   }
   {
+    const process::CancellationGuard guard;
     const py::gil_scoped_release unlocked;
     std::unique_lock lock(mutex_);
     if (closed_) return;
@@ -220,6 +224,7 @@ void Arm::stop_servo() {
 
 bool Arm::servo_is_running() {
   const Use arm(*this);
+  const process::CancellationGuard guard;
   const py::gil_scoped_release unlocked;
   return inkwell_servo_is_running(arm) != 0;
 }
@@ -242,6 +247,7 @@ Arm::Ending Arm::take_ending() {
     ending.raised = std::exchange(servo_->raised, nullptr);
     if (ending.raised || std::exchange(servo_->is_told, true)) return ending;
   }
+  const process::CancellationGuard guard;
   const py::gil_scoped_release unlocked;
   ending.result = inkwell_servo_result(arm_);
   if (ending.result == INKWELL_OK) return ending;

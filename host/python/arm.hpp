@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -10,6 +11,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <process/fork.hpp>
 
 #include "failure.hpp"
 
@@ -73,7 +76,8 @@ class Arm {
  private:
   std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);
 
-  /// While one lives, the arm stays open.
+  /// While one lives, the arm stays open. Raises Refused if it is closed, or belongs to the process that this one was
+  /// forked from.
   class Use {
    public:
     explicit Use(Arm& arm);
@@ -118,7 +122,8 @@ class Arm {
   mutable std::mutex mutex_;
   std::condition_variable unused_;
   int uses_ = 0;
-  bool closed_ = false;
+  std::atomic<bool> closed_ = false;
+  const process::Origin origin_;
   std::mutex servo_mutex_;
   std::unique_ptr<Servo> servo_;  ///< guarded by servo_mutex_; its content by the interpreter's lock
 
@@ -132,6 +137,7 @@ void Arm::call(Call library_call) {
   std::string sentence;
   Pose last_pose{};
   {
+    const process::CancellationGuard guard;
     const py::gil_scoped_release unlocked;
     result = library_call();
     if (result != INKWELL_OK) sentence = inkwell_error_text();
@@ -151,6 +157,7 @@ void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
     Pose last_pose{};
     {
       const Use arm(*this);
+      const process::CancellationGuard guard;
       const py::gil_scoped_release unlocked;
       result = attempt(static_cast<inkwell_arm*>(arm), is_last ? left_s : attempt_s);
       if (result != INKWELL_OK) sentence = inkwell_error_text();

@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 #include <inkwell/inkwell.hpp>
+#include <process/cancellation.hpp>
 
 namespace inkwell::python {
 
@@ -20,6 +21,7 @@ void call(Call library_call) {
   inkwell_result result;
   std::string sentence;
   {
+    const process::CancellationGuard guard;  // a thread that ends here would never lock the interpreter again
     const py::gil_scoped_release unlocked;
     result = library_call();
     if (result != INKWELL_OK) sentence = inkwell_error_text();

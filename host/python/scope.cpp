@@ -22,6 +22,8 @@ void Arm::select_signals(const std::vector<std::string>& names) {
 py::tuple Arm::read_scope(std::size_t rows, double timeout_s, bool fill) {
   std::size_t columns;
   {
+    const Use arm(*this);
+    const process::CancellationGuard guard;
     const py::gil_scoped_release unlocked;
     const std::lock_guard lock(scope_mutex_);
     columns = signal_count_;

@@ -4,10 +4,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <dropins/board.hpp>
 #include <inkwell/inkwell.hpp>
+#include <system/program.hpp>
 
 #include "virtual_arm.hpp"
 
@@ -106,6 +110,37 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
   board.control.dock(false);
   board.driver.be_patient();
   board.drive();
+}
+
+/// A board whose program ends, and starts again on the same port.
+struct Program {
+  std::string port = "0";
+  std::optional<RunningProgram> board;
+
+  void start(const std::string& seed) {
+    board.emplace(std::vector<std::string>{build_directory() + "/virtual-board", "--elf",
+                                           build_directory() + "/../board/inkwell.elf", "--real-time", "--usbip", port,
+                                           "--seed", seed});
+    const std::string ready = board->read_line(), name = "usbip=";
+    const auto begin = ready.find(name) + name.size();
+    port = ready.substr(begin, ready.find(' ', begin) - begin);
+  }
+};
+
+TEST_CASE("the program of a board may end and start again; another arm at its address is not taken for it") {
+  Program program;
+  program.start("1");
+  VirtualArm virtual_arm("usbip:127.0.0.1:" + program.port);
+  inkwell_pose pose;
+  const auto result = [&] { return inkwell_get_pose(virtual_arm.arm, &pose); };
+  program.board.reset();
+  REQUIRE(eventually([&] { return result() == INKWELL_DISCONNECTED; }));
+  program.start("2");
+  REQUIRE(eventually([&] { return result() == INKWELL_DISCONNECTED && says("Another arm"); }));
+  program.board.reset();
+  program.start("1");
+  REQUIRE(eventually([&] { return result() == INKWELL_OK; }));
+  virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
 }
 
 TEST_CASE("a selection of signals ends with the link, says so, and can be made again") {

@@ -142,5 +142,23 @@ assert(found.coulomb_N > 0.02 && found.coulomb_N < 0.2, 'coulomb_N is %g', found
 assert(stat(picture).size > 1000);
 delete(picture);
 
+% A forked child has no part in its parent's arm.
+parent = getpid();
+child = fork();
+if child == 0
+  is_refused = false;
+  try
+    inkwell_pose(arm);
+  catch error_of
+    is_refused = ! isempty(strfind(error_of.message, sprintf('opened by process %d', parent)));
+  end
+  inkwell_close(arm);
+  exit(! is_refused);
+end
+[~, status] = waitpid(child);
+assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+assert(inkwell_pose(arm).time_s > pose.time_s);
+assert(inkwell_last_pose(arm).time_s > pose.time_s);
+
 inkwell_close(arm);
 refused(@() inkwell_close(arm), 'not open');

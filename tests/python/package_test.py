@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import textwrap
+import time
 import unittest
 from unittest import mock
 
@@ -22,7 +23,7 @@ import numpy as np
 
 import inkwell
 from inkwell import _native, errors
-from virtual_board import VirtualBoard, wait_until
+from virtual_board import VirtualBoard, be_patient, rests_at_x, wait_until
 
 BUILD = pathlib.Path()
 
@@ -263,6 +264,50 @@ class Programs(unittest.TestCase):
             arm.clear_fault()
             self.assertEqual(arm.pose.state, inkwell.State.READY)
 
+    def test_what_takes_the_force_away_ends_the_servo_and_comes_out_once(self):
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm, inkwell.open(board.address) as other:
+            be_patient(arm)
+            wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
+            board.hold((0.02, 0, -0.03))
+            board.wait_until(rests_at_x(0.02))
+
+            def drive():
+                arm.enable_force(30)
+                arm.servo(lambda pose: (0, 0, 0))
+                wait_until(arm, lambda pose: pose.feels_program)
+
+            drive()
+            other.stop()
+            with self.assertRaisesRegex(inkwell.ForceLost, "Another program switched the force off"):
+                for _ in arm.poses():
+                    pass
+            self.assertFalse(arm.servo_is_running)
+            self.assertFalse(wait_until(arm, lambda pose: pose.state == inkwell.State.READY).feels_program)
+            arm.stop_servo()  # said once
+            with self.assertRaisesRegex(inkwell.ForceLost, "Another program"):
+                arm.set_force((0, 0, 0))
+
+            drive()
+            board.call("inject", fault="bridge_fault")
+            with self.assertRaisesRegex(inkwell.ForceLost, "bridge_fault"):
+                arm.wait_for_servo(60)
+            board.call("heal", fault="bridge_fault")
+            arm.clear_fault()
+
+            drive()
+            with tempfile.TemporaryDirectory() as folder:
+                with self.assertRaisesRegex(inkwell.ForceLost, "Another program"), \
+                        arm.record(pathlib.Path(folder, "arm.csv"), "supply_V"):
+                    other.stop()
+                    while arm.servo_is_running:
+                        time.sleep(0.01)
+
+            drive()
+            board.call("usb", connected=False)
+            with self.assertRaises(inkwell.Disconnected) as raised:
+                arm.wait_for_servo(60)
+            self.assertGreater(raised.exception.last_pose.time_s, 0)
+
     def test_the_scope_is_free_after_its_use(self):
         with VirtualBoard(BUILD) as board, inkwell.open(board.address) as first, inkwell.open(board.address) as second:
             for arm in first, second:
@@ -279,6 +324,76 @@ class Programs(unittest.TestCase):
             with self.assertRaisesRegex(inkwell.TimedOut, r"^Of 100000 samples \d{3,5} came, then none for 0.2 s"):
                 arm._samples(100_000, 0.2, True)  # as capture() does
             board.call("resume")
+
+    def test_a_forked_child_has_no_part_in_the_arm_and_may_open_its_own(self):
+        said = run("""
+            import contextlib, multiprocessing, os, threading, inkwell
+
+            def refused(call):
+                try:
+                    call()
+                except inkwell.Refused as error:
+                    assert f"was opened by process {os.getppid()}. Open" in str(error), error
+                else:
+                    raise AssertionError("the child uses its parent's arm")
+
+            def use(arm):
+                for call in (lambda: arm.pose, lambda: arm.wait_for_pose(1000), lambda: arm.set_force((0, 0, 0)),
+                             lambda: arm.enable_force(1000), arm.disable_force, arm.stop, arm.clear_fault,
+                             arm.stop_servo, lambda: arm.servo(lambda pose: None), lambda: arm.servo_is_running,
+                             lambda: arm.select_signals("supply_V"), arm.read_scope, lambda: arm.information,
+                             lambda: arm.parameters.wall_stiffness_N_per_m, arm.virtual_hand.release):
+                    refused(call)
+                arm.close()
+                with inkwell.open("virtual") as own:
+                    assert own.wait_for_pose(60).time_s > 0
+
+            with inkwell.open("virtual") as arm:
+                @arm.servo
+                def servo(pose):
+                    return (0, 0, 0)
+
+                def looks_on():
+                    with contextlib.suppress(inkwell.Refused):  # as it is closed
+                        for _ in arm.poses():
+                            pass
+
+                threading.Thread(target=looks_on, daemon=True).start()
+                child = multiprocessing.get_context("fork").Process(target=use, args=(arm,))
+                child.start()
+                child.join(300)
+                print("child", child.exitcode)
+                for _ in range(20):  # that end as programs do
+                    pid = os.fork()
+                    if pid == 0:
+                        raise SystemExit(0)
+                    if (code := os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])) != 0:
+                        print("a child ends with", code)
+                print("servo", arm.servo_is_running, arm.wait_for_pose(60).time_s > 0)
+            """)
+        self.assertEqual((said.returncode, said.stdout), (0, "child 0\nservo True True\n"), said.stderr)
+
+    def test_a_thread_that_is_cancelled_ends_its_call(self):
+        said = run("""
+            import ctypes, threading, inkwell
+            threads = ctypes.CDLL(None)
+            results = []
+            arm = inkwell.open("virtual")
+            arm.wait_for_pose(60)
+
+            def wait():
+                for _ in range(3):
+                    results.append(arm.wait_for_pose(60).time_s > 0)
+                threads.pthread_setcancelstate(1, None)  # beyond the call the interpreter would be cancelled
+
+            thread = threading.Thread(target=wait)
+            thread.start()
+            threads.pthread_cancel(ctypes.c_ulong(thread.ident))
+            thread.join()
+            print(results)
+            arm.close()
+            """)
+        self.assertEqual((said.returncode, said.stdout), (0, "[True, True, True]\n"), said.stderr)
 
     def test_ctrl_c(self):
         program = subprocess.Popen(
