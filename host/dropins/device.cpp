@@ -24,6 +24,9 @@ constexpr double rest_m_per_s = 0.1;
 // Faults of the board that HDAPI takes for a passing thing: the force comes back by itself once the probe is at rest.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
+/// By which the board ends the force of a program that is gone, or late.
+bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
+
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
 }
@@ -57,12 +60,22 @@ Device::Device(Handle handle, std::string name, const std::string& address)
   arm_.reset(opened);
   require(inkwell_get_information(arm(), &information_));
   facts_ = read_facts(arm());
-  // HDAPI's devices belong to one program: another one is to hear of it now, not at its first force.
-  const double none_N[3]{};
-  require(inkwell_set_force(arm(), none_N));
+  claim();
   look();
   before_ = now_;
   care_thread_ = std::thread([this] { care(); });
+}
+
+/// HDAPI's devices belong to one program, and their force is off at first. Neither the force nor the end of the program
+/// before is this one's.
+void Device::claim() {
+  const double none_N[3]{};
+  require(inkwell_set_force(arm(), none_N));  // another program is to hear of it now, not at its first force
+  inkwell_pose pose;
+  require(inkwell_get_pose(arm(), &pose));
+  if (pose.state == INKWELL_ACTIVE) require(inkwell_disable_force(arm()));
+  // What cannot be cleared is told by the first frame.
+  if (pose.state == INKWELL_FAULT && is_of_a_host(pose.fault)) inkwell_clear_fault(arm());
 }
 
 Device::~Device() {
@@ -92,58 +105,83 @@ void Device::begin_frame(std::optional<std::uint64_t> tick) {
 
 void Device::look() {
   Moment seen;
-  const auto result = inkwell_get_pose(arm(), &seen.pose);
-  if (result != INKWELL_OK) {
+  seen.pose = now_.pose;
+  const auto result = inkwell_get_pose(arm(), &seen.pose);  // the last known one, if it is lost
+  is_lost_ = result != INKWELL_OK;
+  seen.angular_velocity_rad_per_s = now_.angular_velocity_rad_per_s;
+  const double passed_s = seen.pose.time_s - now_.pose.time_s;
+  if (is_lost_) {
     raise(comm_error, inkwell_error_text(), result);
-    seen = now_;
-    seen.command = {};
-  } else {
-    const double passed_s = seen.pose.time_s - now_.pose.time_s;
-    seen.angular_velocity_rad_per_s = now_.angular_velocity_rad_per_s;
-    if (passed_s > 0.0 && now_.pose.time_s > 0.0) {
-      const Vector turned_rad = turn_rad(now_.pose.rotation, seen.pose.rotation);
-      const double part = 1.0 - std::pow(1.0 - angular_smoothing, passed_s * 1e3);
-      for (std::size_t i = 0; i < 3; ++i)
-        seen.angular_velocity_rad_per_s[i] += part * (turned_rad[i] / passed_s - seen.angular_velocity_rad_per_s[i]);
-    }
-    if (seen.pose.sequence != now_.pose.sequence) is_silent_ = false;
-    if (is_silent_) raise(comm_error, "The device sends no poses. Reset the board, or let a paused virtual board run.");
+    held_ = {};
+    had_force_ = false;
+  } else if (passed_s > 0.0 && now_.pose.time_s > 0.0) {
+    const Vector turned_rad = turn_rad(now_.pose.rotation, seen.pose.rotation);
+    const double part = 1.0 - std::pow(1.0 - angular_smoothing, passed_s * 1e3);
+    for (std::size_t i = 0; i < 3; ++i)
+      seen.angular_velocity_rad_per_s[i] += part * (turned_rad[i] / passed_s - seen.angular_velocity_rad_per_s[i]);
   }
   before_ = std::exchange(now_, seen);
 }
 
+bool Device::sends_poses() const {
+  inkwell_pose pose;
+  return inkwell_get_pose(arm(), &pose) == INKWELL_OK;
+}
+
+/// Of the program before this one, or of a link that was lost.
+bool Device::is_inherited(int fault) const { return is_of_a_host(fault) && !had_force_; }
+
 /// Raises what came up since the last frame, once.
 void Device::note_condition() {
-  const int fault = now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
-  if (std::exchange(fault_, fault) != fault && fault != 0)
+  const int fault = !is_lost_ && now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
+  if (fault != 0) held_ = {};
+  if (std::exchange(fault_, fault) != fault && fault != 0 && !is_inherited(fault))
     raise(fault == INKWELL_FAULT_OVER_SPEED ? exceeded_max_velocity : force_error, inkwell_fault_text(fault), fault);
   const bool is_warm =
       *std::max_element(std::begin(motor_heat_), std::end(motor_heat_)) >= INKWELL_MOTOR_HEAT_HOLDS_BACK;
   if (!std::exchange(was_warm_, is_warm) && is_warm) raise(warm_motors);
 }
 
-std::optional<Vector> Device::demanded_force() const {
-  const Command& command = now_.command;
+std::optional<Vector> Device::demanded_force(const Command& command, const inkwell_pose& pose) const {
   if (command.motor_values && (command.force_N || command.joint_torque_mNm)) return std::nullopt;
   if (command.motor_values) {
     Vector torque_Nm;
     for (std::size_t i = 0; i < 3; ++i)
       torque_Nm[i] = (*command.motor_values)[i] / motor_value_full * facts_.joint_torque_full_Nm[i];
-    return force_of_torques(arm(), now_.pose, torque_Nm);
+    return force_of_torques(arm(), pose, torque_Nm);
   }
   if (command.joint_torque_mNm) {
     const Vector& torque = *command.joint_torque_mNm;
-    return force_of_torques(arm(), now_.pose, {1e-3 * torque[0], 1e-3 * torque[1], 1e-3 * torque[2]});
+    return force_of_torques(arm(), pose, {1e-3 * torque[0], 1e-3 * torque[1], 1e-3 * torque[2]});
   }
   return command.force_N.value_or(Vector{});
 }
 
 void Device::end_frame() {
   if (!std::exchange(in_frame_, false)) return raise(illegal_end);
-  auto demanded_N = demanded_force();
-  if (!demanded_N) raise(force_error);
-  const ForceDemand demand{demanded_N.value_or(Vector{}), speed_m_per_s(now_.pose), now_.pose.time_s,
-                           wants_force() && now_.pose.state == INKWELL_ACTIVE && now_.pose.in_inkwell == 0};
+  was_frame_in_tick_ = true;
+  if (now_.command.asks_for_force()) held_ = now_.command;
+  if (is_lost_ || !wants_force()) held_ = {};
+  now_.command.force_N = send(now_.command.asks_for_force() ? now_.command : held_, now_.pose);
+}
+
+void Device::renew_force() {
+  if (std::exchange(was_frame_in_tick_, false) || in_frame_ || !held_.asks_for_force()) return;
+  inkwell_pose pose;
+  if (inkwell_get_pose(arm(), &pose) != INKWELL_OK || pose.state == INKWELL_FAULT)
+    held_ = {};
+  else
+    send(held_, pose);
+}
+
+Vector Device::send(const Command& command, const inkwell_pose& pose) {
+  auto demanded_N = demanded_force(command, pose);
+  if (!demanded_N) {
+    held_ = {};
+    raise(force_error);
+  }
+  const ForceDemand demand{demanded_N.value_or(Vector{}), speed_m_per_s(pose), pose.time_s,
+                           wants_force() && !is_lost_ && pose.state == INKWELL_ACTIVE && pose.in_inkwell == 0};
   const ForceLimits limits{.maximum_N = facts_.force_maximum_N,
                            .speed_m_per_s = 1e-3 * settings.velocity_limit_mm_per_s,
                            .change_N_per_ms = settings.impulse_limit_N_per_ms,
@@ -155,13 +193,17 @@ void Device::end_frame() {
                            .limits_change = capabilities.impulse_limit};
   const auto answer = guard_.step(demand, limits);
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
-  now_.command.force_N = answer.force_N;
-  if (!wants_force()) return;
+  if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The beginning of the frame has told a lost link or a fault; the program is to see that there is no force.
-  const bool is_told = result == INKWELL_DISCONNECTED || result == INKWELL_FORCE_LOST;
-  if (is_told) now_.command.force_N = Vector{};
-  if (result != INKWELL_OK && !is_told) raise(force_error, inkwell_error_text(), result);
+  // The next frame tells a lost link, and a fault by what it is; the program is to see that there is no force.
+  const bool is_new = result != INKWELL_FORCE_LOST || !is_force_told_lost_;
+  is_force_told_lost_ = result == INKWELL_FORCE_LOST;
+  if (result == INKWELL_OK) return answer.force_N;
+  held_ = {};
+  const bool is_fault_told = pose.state == INKWELL_FAULT && !is_inherited(pose.fault);
+  const bool is_told_otherwise = result == INKWELL_DISCONNECTED || (result == INKWELL_FORCE_LOST && is_fault_told);
+  if (is_new && !is_told_otherwise) raise(force_error, inkwell_error_text(), result);
+  return {};
 }
 
 Calibration Device::calibration() {
@@ -184,12 +226,15 @@ Calibration Device::calibration() {
 
 void Device::set_scheduler_runs(bool runs) {
   scheduler_runs_ = runs;
+  if (runs) had_force_ = false;
   follow_force_output();
 }
 
 void Device::follow_force_output() {
+  if (!wants_force()) held_ = {};
   const std::lock_guard lock(care_mutex_);
   force_is_wanted_ = wants_force();
+  force_is_asked_for_ = force_is_wanted_;
   fault_is_to_be_cleared_ = force_is_wanted_;
   care_changed_.notify_one();
 }
@@ -197,20 +242,38 @@ void Device::follow_force_output() {
 void Device::care() {
   using Clock = std::chrono::steady_clock;
   auto heat_at = Clock::now();
-  bool switched_on = false;
+  bool switched_on = false, is_on = false, lets_fall = false;
   std::unique_lock lock(care_mutex_);
   while (!ends_) {
     const bool wanted = force_is_wanted_, clears = std::exchange(fault_is_to_be_cleared_, false);
+    bool asked_for = force_is_asked_for_;
     lock.unlock();
     inkwell_pose pose;
     // What fails here is a lost link, which the next frame tells, or the arm is not ready, which the next turn tries.
-    if (inkwell_get_pose(arm(), &pose) == INKWELL_OK) {
+    const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
+    // A silence changes nothing here; the wait ends in time then.
+    const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
+    // A force that was taken away by another program, by a fault that does not pass, or with the link, is not switched
+    // on again unless the program asks for it.
+    const bool was_on = is_on;
+    if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;
+    const bool passes_by = !is_lost && pose.state == INKWELL_FAULT && passes(pose.fault);
+    const bool is_over = was_on && !is_on;
+    const bool is_taken = is_link_lost || (is_over && !passes_by && !lets_fall);
+    if (is_taken && !clears) asked_for = false;
+    if (is_on && wanted) asked_for = had_force_ = true;
+    if (is_over) lets_fall = false;
+    if (!is_lost) {
       if (pose.state == INKWELL_FAULT && wanted &&
-          (clears || (passes(pose.fault) && speed_m_per_s(pose) < rest_m_per_s)))
+          (clears || (asked_for && passes_by && speed_m_per_s(pose) < rest_m_per_s)))
         inkwell_clear_fault(arm());
-      if (pose.state == INKWELL_READY && wanted)
-        switched_on |= inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK;
-      if (!wanted && std::exchange(switched_on, false)) inkwell_disable_force(arm());
+      if (pose.state == INKWELL_READY && wanted && asked_for &&
+          inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK)
+        switched_on = is_on = had_force_ = true;
+      if (!wanted && std::exchange(switched_on, false)) {
+        inkwell_disable_force(arm());
+        lets_fall = is_on;
+      }
       inkwell_information information;
       if (Clock::now() >= heat_at && inkwell_get_information(arm(), &information) == INKWELL_OK) {
         std::copy_n(information.motor_heat, 3, motor_heat_);
@@ -218,6 +281,7 @@ void Device::care() {
       }
     }
     lock.lock();
+    if (force_is_wanted_ == wanted && !fault_is_to_be_cleared_) force_is_asked_for_ = asked_for;
     care_changed_.wait_for(lock, care_period,
                            [&] { return ends_ || force_is_wanted_ != wanted || fault_is_to_be_cleared_; });
   }

@@ -22,6 +22,7 @@ namespace inkwell::dropins {
 struct Command {
   std::optional<Vector> force_N, joint_torque_mNm;
   std::optional<std::array<double, 6>> motor_values;
+  bool asks_for_force() const { return force_N || joint_torque_mNm || motor_values; }
   Vector torque_mNm{}, gimbal_torque_mNm{};  ///< kept for who reads them back: the arm has no motors for them
 };
 
@@ -90,24 +91,28 @@ class Device {
 
   /// The scheduler runs, or does no more; the force follows this and the capability.
   void set_scheduler_runs(bool runs);
-  /// The program wants its force, again if it was lost by a fault.
+  /// The program wants its force, again if it was lost.
   void follow_force_output();
+  /// At the end of a tick: the force of the last frame goes on if the tick had no frame.
+  void renew_force();
 
   Calibration calibration();
 
-  /// Whether a frame would see nothing new; set by the scheduler.
-  void set_silent(bool silent) { is_silent_ = silent; }
-  bool is_silent() const { return is_silent_; }
+  /// Whether poses come.
+  bool sends_poses() const;
 
  private:
   struct Close {
     void operator()(inkwell_arm* arm) const { inkwell_close(arm); }
   };
   void raise(ErrorCode code, const std::string& sentence = {}, int internal_code = 0) const;
+  void claim();
   void look();
+  bool is_inherited(int fault) const;
   void note_condition();
-  void send();
-  std::optional<Vector> demanded_force() const;
+  /// The force that `command` asks for, within HDAPI's promises; what was sent.
+  Vector send(const Command& command, const inkwell_pose& pose);
+  std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
   /// The thread that does what takes a round trip to the device, so that no frame waits for it.
   void care();
@@ -119,19 +124,23 @@ class Device {
   inkwell_information information_{};
 
   Moment now_, before_;
-  bool in_frame_ = false;
+  Command held_;          ///< what asks for a force, of the last frame that did
+  bool is_lost_ = false;  ///< no poses came at the last look
+  bool in_frame_ = false, was_frame_in_tick_ = false;
   std::optional<std::uint64_t> begun_in_tick_;
   ForceGuard guard_;
   ErrorCode dropped_for_ = success;  ///< why the last frame's force was dropped
   bool scheduler_runs_ = false;
   bool was_warm_ = false;
+  bool is_force_told_lost_ = false;
   int fault_ = 0;
-  std::atomic<bool> is_silent_ = false;
 
   std::atomic<double> motor_heat_[3]{};
+  std::atomic<bool> had_force_ = false;  ///< since the scheduler started and the link was made
   std::mutex care_mutex_;
   std::condition_variable care_changed_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
+  bool force_is_asked_for_ = false;  ///< since it was lost
   std::thread care_thread_;
 };
 

@@ -145,9 +145,14 @@ void Devices::set_scheduler_runs(bool runs) {
     if (device) device->set_scheduler_runs(runs);
 }
 
+void Devices::renew_forces() {
+  for (const auto& device : devices_)
+    if (device) device->renew_force();
+}
+
 std::shared_ptr<Device> Devices::pacing() {
   for (const auto& device : devices_)
-    if (device && !device->is_silent()) return device;
+    if (device && device->sends_poses()) return device;
   return nullptr;
 }
 

@@ -34,6 +34,7 @@ class Devices {
   /// Only for the calling thread; nothing if there is no such device.
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
+  void renew_forces();
   /// The first device that sends poses, by which the scheduler is paced; none if there is none.
   std::shared_ptr<Device> pacing();
 

@@ -28,23 +28,26 @@ constexpr unsigned short priority = 32767;
 constexpr char type_text[] = "PHANTOM Omni";
 /// For a tick; the original waits for ever.
 constexpr auto tick_patience = 1s;
+/// Ticks that a force goes on for: who drives sets one in each tick, and one who hangs is to lose it.
+constexpr int force_ticks = 100;
 constexpr int good = 0, bad = -1;
 /// HDAPI's axis for each of CHAI3D's.
 constexpr std::size_t hd_axis[3]{2, 0, 1};
 constexpr double mm = 1e-3;
 
 struct Seen {
-  double position_mm[3], velocity_mm_per_s[3], transform[16];
-  int buttons;
+  double position_mm[3]{}, velocity_mm_per_s[3]{}, transform[16]{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  int buttons = 0;
 };
 
 struct Phantom {
   Handle handle = invalid_handle;  ///< from the first question on
   bool is_enabled = false;         ///< from hdPhantomOpen() on
-  bool is_lost = false;
+  bool is_lost = false;            ///< no poses came in the last tick
   unsigned long frames = 0;
-  Seen seen{};
+  Seen seen{};          ///< what was seen last, also of a device that was closed
   double force_N[3]{};  ///< in HDAPI's axes
+  int force_ticks_left = 0;
 };
 
 struct Servo {
@@ -74,6 +77,10 @@ void frame(Phantom& phantom) {
   {
     const std::lock_guard lock(servo().mutex);
     phantom.seen = seen;
+    if (phantom.force_ticks_left > 0)
+      --phantom.force_ticks_left;
+    else
+      std::fill_n(phantom.force_N, 3, 0.0);
     std::copy_n(phantom.force_N, 3, force_N);
   }
   hdSetDoublev(current_force, force_N);
@@ -91,7 +98,8 @@ unsigned tick(void*) {
   const std::lock_guard lock(servo().mutex);
   for (auto* phantom : open) {
     ++phantom->frames;
-    if (hdInkwellForgetErrors(phantom->handle) != 0) phantom->is_lost = true;
+    phantom->is_lost = hdInkwellForgetErrors(phantom->handle) != 0;
+    if (phantom->is_lost) phantom->force_ticks_left = 0;
   }
   servo().ticked.notify_all();
   return callback_continue;
@@ -142,31 +150,51 @@ Phantom* reach(int number) {
   return &phantom;
 }
 
-/// With the servo running and a frame seen, hands the open device to `action`; -1 if it is not open or is lost.
-template <class Action>
-int with_open(int number, bool until_next_tick, Action action) {
-  {
-    const std::lock_guard opening(servo().opening);
-    if (const auto found = servo().phantoms.find(number); found == servo().phantoms.end() || !found->second.is_enabled)
-      return bad;
-    start_servo();
-  }
-  std::unique_lock lock(servo().mutex);
-  auto& phantom = servo().phantoms[number];
-  const int result = until_next_tick ? action(phantom) : good;
-  if (const auto frames = phantom.frames;
-      (until_next_tick || frames == 0) &&
-      !servo().ticked.wait_for(lock, tick_patience, [&] { return phantom.frames != frames; }))
-    return bad;
-  if (phantom.is_lost) return bad;
-  return until_next_tick ? result : action(phantom);
+/// Has the servo run; false if the device is not open.
+bool is_open(int number) {
+  const std::lock_guard opening(servo().opening);
+  const auto found = servo().phantoms.find(number);
+  if (found == servo().phantoms.end() || !found->second.is_enabled) return false;
+  start_servo();
+  return true;
 }
 
-int read_vector(int number, const double (Seen::*member)[3], double* x, double* y, double* z) {
+/// Hands what was seen last to `write`, so that a program that does not look at the result gets no chance values; then
+/// -1 if that is not what the device sees now.
+template <class Write>
+int read(int number, Write write) {
+  bool sees = is_open(number);
+  std::unique_lock lock(servo().mutex);
+  const auto found = servo().phantoms.find(number);
+  if (found == servo().phantoms.end()) {
+    write(Seen());
+    return bad;
+  }
+  const Phantom& phantom = found->second;
+  const auto has_frames = [&] { return phantom.frames > 0; };
+  sees = sees && servo().ticked.wait_for(lock, tick_patience, has_frames) && !phantom.is_lost;
+  const int result = write(phantom.seen);
+  return sees ? result : bad;
+}
+
+/// Waits for the next tick, which pays attention to what `set` has set; -1, and nothing is set, while a read would be
+/// -1.
+template <class Set>
+int set_until_next_tick(int number, Set set) {
+  if (!is_open(number)) return bad;
+  std::unique_lock lock(servo().mutex);
+  Phantom& phantom = servo().phantoms.find(number)->second;
+  const auto frames = phantom.frames;
+  if (!phantom.is_lost) set(phantom);
+  const bool ticks = servo().ticked.wait_for(lock, tick_patience, [&] { return phantom.frames != frames; });
+  return ticks && !phantom.is_lost ? good : bad;
+}
+
+int read_vector(int number, double (Seen::*member)[3], double* x, double* y, double* z) {
   double* const to[3]{x, y, z};
   if (std::find(to, to + 3, nullptr) != to + 3) return bad;
-  return with_open(number, false, [&](const Phantom& phantom) {
-    for (std::size_t axis = 0; axis < 3; ++axis) *to[axis] = mm * (phantom.seen.*member)[hd_axis[axis]];
+  return read(number, [&](const Seen& seen) {
+    for (std::size_t axis = 0; axis < 3; ++axis) *to[axis] = mm * (seen.*member)[hd_axis[axis]];
     return good;
   });
 }
@@ -197,6 +225,7 @@ INKWELL_HD int hdPhantomOpen(int number) {
     const std::lock_guard lock(servo().mutex);
     phantom->is_enabled = true;
     phantom->frames = 0;
+    phantom->force_ticks_left = 0;
   }
   start_servo();
   return number;
@@ -210,7 +239,9 @@ INKWELL_HD int hdPhantomClose(int number) {
   stop_servo();  // no frame is open after it
   hdDisableDevice(found->second.handle);
   const std::lock_guard lock(servo().mutex);
+  const Seen seen = found->second.seen;
   found->second = {};
+  found->second.seen = seen;
   const bool is_used = std::any_of(servo().phantoms.begin(), servo().phantoms.end(),
                                    [](const auto& entry) { return entry.second.is_enabled; });
   if (ran && is_used) start_servo();
@@ -229,24 +260,24 @@ INKWELL_HD int hdPhantomGetRotation(int number, double* r00, double* r01, double
                                     double* r12, double* r20, double* r21, double* r22) {
   double* const to[9]{r00, r01, r02, r10, r11, r12, r20, r21, r22};
   if (std::find(to, to + 9, nullptr) != to + 9) return bad;
-  return with_open(number, false, [&](const Phantom& phantom) {
+  return read(number, [&](const Seen& seen) {
     for (std::size_t row = 0; row < 3; ++row)
       for (std::size_t column = 0; column < 3; ++column)
-        *to[3 * row + column] = phantom.seen.transform[4 * hd_axis[column] + hd_axis[row]];
+        *to[3 * row + column] = seen.transform[4 * hd_axis[column] + hd_axis[row]];
     return good;
   });
 }
 
 INKWELL_HD int hdPhantomGetButtons(int number) {
-  return with_open(number, false, [](const Phantom& phantom) { return phantom.seen.buttons; });
+  return read(number, [](const Seen& seen) { return seen.buttons; });
 }
 
 INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, const double* z) {
   const double* const force_N[3]{x, y, z};
   if (!is_sound(force_N)) return bad;
-  return with_open(number, true, [&](Phantom& phantom) {
+  return set_until_next_tick(number, [&](Phantom& phantom) {
     for (std::size_t axis = 0; axis < 3; ++axis) phantom.force_N[hd_axis[axis]] = *force_N[axis];
-    return good;
+    phantom.force_ticks_left = force_ticks;
   });
 }
 
@@ -254,7 +285,7 @@ INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, c
 INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
   const double* const torque_Nm[3]{x, y, z};
   if (!is_sound(torque_Nm)) return bad;
-  return with_open(number, true, [](Phantom&) { return good; });
+  return set_until_next_tick(number, [](Phantom&) {});
 }
 
 INKWELL_HD int hdPhantomSetForceAndTorque(int number, const double* force_x, const double* force_y,

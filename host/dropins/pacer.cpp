@@ -7,8 +7,7 @@
 namespace inkwell::dropins {
 namespace {
 
-constexpr double look_up_s = 0.1;     ///< how soon a stop is noticed when no pose comes
-constexpr int looks_of_silence = 20;  /// after as many a device counts as silent
+constexpr double look_up_s = 0.1;  ///< how soon a stop is noticed when no pose comes
 
 }  // namespace
 
@@ -25,25 +24,22 @@ double Pacer::wait(std::uint32_t poses, const std::function<bool()>& ends) {
     device = devices_.pacing();
   }
   if (!device) {
+    before_.reset();
     wait_by_clock(poses);
     return 0.0;
   }
   const bool is_new = before_.lock() != device;
   before_ = device;
-  for (int look = 0; look < looks_of_silence && !ends();) {
+  while (!ends()) {
     inkwell_pose pose;
     const auto result = inkwell_wait_for_pose(device->arm(), look_up_s, &pose);
-    if (result == INKWELL_TIMED_OUT) {
-      ++look;
-    } else if (result != INKWELL_OK) {
-      break;
-    } else if (is_new || pose.sequence - sequence_ >= poses) {
+    if (result == INKWELL_OK && (is_new || pose.sequence - sequence_ >= poses)) {
       sequence_ = pose.sequence;
-      const double before_s = std::exchange(time_s_, pose.time_s);
-      return is_new ? 0.0 : time_s_ - before_s;
+      const double passed_s = pose.time_s - std::exchange(time_s_, pose.time_s);
+      return is_new ? 0.0 : std::max(0.0, passed_s);
     }
+    if (result != INKWELL_OK && !device->sends_poses()) break;
   }
-  if (!ends()) device->set_silent(true);
   return 0.0;
 }
 

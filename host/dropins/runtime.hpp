@@ -10,7 +10,11 @@ namespace inkwell::dropins {
 struct Runtime {
   Devices devices;
   Pacer pacer{devices};
-  Scheduler scheduler{[this](std::uint32_t poses, const auto& ends) { return pacer.wait(poses, ends); }};
+  Scheduler scheduler{[this](std::uint32_t poses, const auto& ends) { return pacer.wait(poses, ends); },
+                      [this] {
+                        const std::lock_guard lock(devices.mutex());
+                        devices.renew_forces();
+                      }};
 };
 
 /// Lives until the process ends, because programs call in from their last destructors.

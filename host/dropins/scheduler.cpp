@@ -21,7 +21,8 @@ constexpr int precedence = -10;
 
 }  // namespace
 
-Scheduler::Scheduler(Pace pace) : pace_(std::move(pace)) {}
+Scheduler::Scheduler(Pace pace, std::function<void()> end_tick)
+    : pace_(std::move(pace)), end_tick_(std::move(end_tick)) {}
 
 // ---- start and stop ----------------------------------------------------------------------------------------
 
@@ -94,6 +95,8 @@ void Scheduler::tick() {
     if (const auto place = find(task->handle); !goes_on && place != tasks_.end()) tasks_.erase(place);
     changed_.notify_all();
   }
+  lock.unlock();
+  end_tick_();
 }
 
 // ---- rate and time -----------------------------------------------------------------------------------------

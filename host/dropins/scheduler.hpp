@@ -22,7 +22,8 @@ class Scheduler {
   /// to tick in seconds, 0 if that is not known.
   using Pace = std::function<double(std::uint32_t poses, const std::function<bool()>& ends)>;
 
-  explicit Scheduler(Pace pace);
+  /// `end_tick` is called after the callbacks of each tick.
+  Scheduler(Pace pace, std::function<void()> end_tick);
 
   /// Throws std::system_error if the system has no thread for it. One that runs goes on.
   void start();
@@ -67,6 +68,7 @@ class Scheduler {
   void tick();
 
   const Pace pace_;
+  const std::function<void()> end_tick_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Tasks tasks_;  ///< in the order of their calls

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include <device/device.hpp>
+
 #include "held.hpp"
 
 namespace inkwell::tests {
@@ -122,6 +124,125 @@ TEST_CASE("a callback that sleeps loses the force, and it comes back") {
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
 }
 
+TEST_CASE("a force goes on until another one is set, while ticks and poses come") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  int frames = 0;
+  SUBCASE("set in every second frame") {
+    CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
+      if (++frames % 2 == 0) set_force({1, 0, 0});
+    }));
+  }
+  SUBCASE("set in every tenth frame") {
+    CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
+      if (++frames % 10 == 0) set_force({1, 0, 0});
+    }));
+  }
+  SUBCASE("set once, with later frames that only read") {
+    CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
+      double force_N[3];
+      hdGetDoublev(HD_CURRENT_FORCE, force_N);
+      CHECK(force_N[0] == 0.0);  // programs add to it
+      if (++frames == 1) set_force({1, 0, 0});
+    }));
+  }
+  SUBCASE("set once, without later frames") {
+    CHECK(until([&] {
+      if (++frames == 1) held.frame([] { set_force({1, 0, 0}); });
+      return held.pulled_m(0) > 0.0028;
+    }));
+  }
+  SUBCASE("set by synchronous calls at 60 Hz beside a reader in each tick") {
+    hdDisable(HD_ONE_FRAME_LIMIT);
+    const auto reader = hdScheduleAsynchronous(
+        [](void* user) {
+          double position_mm[3];
+          static_cast<Held*>(user)->frame([&] { hdGetDoublev(HD_CURRENT_POSITION, position_mm); });
+          return HD_CALLBACK_CONTINUE;
+        },
+        &held, HD_DEFAULT_SCHEDULER_PRIORITY);
+    const double begin_s = held.time_s();
+    while (held.pulled_m(0) < 0.0028 && held.time_s() < begin_s + 20.0) {
+      until([&] {
+        held.frame([] { set_force({1, 0, 0}); });
+        return true;
+      });
+      std::this_thread::sleep_for(std::chrono::milliseconds(16));
+    }
+    CHECK(held.pulled_m(0) >= 0.0028);
+    hdUnschedule(reader);
+  }
+  while (const auto error = hdGetError().errorCode)
+    CHECK(error == HD_FORCE_ERROR);  // a busy computer may have been silent for too long
+
+  // It ends with the scheduler and with the capability, and does not come back with them.
+  const bool by_scheduler = frames % 2 == 0;
+  if (by_scheduler) {
+    hdStopScheduler();
+    hdStartScheduler();
+  } else {
+    hdDisable(HD_FORCE_OUTPUT);
+    hdEnable(HD_FORCE_OUTPUT);
+  }
+  int ticks_at_rest = 0;
+  CHECK(until([&] {
+    held.frame([] {});
+    ticks_at_rest = std::abs(held.pulled_m(0)) < 0.0015 ? ticks_at_rest + 1 : 0;
+    return ticks_at_rest == 300;
+  }));
+}
+
+TEST_CASE("a force that was set once ends when no poses come, and is not there when they are back") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  int frames = 0;
+  CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
+    if (++frames == 1) set_force({1, 0, 0});
+  }));
+  held.control.pause();
+  bool is_lost = false;
+  double position_mm[3]{};
+  CHECK(until([&] {
+    held.frame([&] { hdGetDoublev(HD_CURRENT_POSITION, position_mm); });
+    while (const auto error = hdGetError().errorCode) is_lost = is_lost || error == HD_COMM_ERROR;
+    return is_lost;
+  }));
+  CHECK(std::abs(position_mm[0] - 1e3 * (held.rest_m[0] + held.pulled_m(0))) < 1.0);  // the last known one
+  held.control.resume();
+  CHECK(until([&] {
+    held.frame([] {});
+    return hdGetError().errorCode == HD_SUCCESS;
+  }));
+  int ticks_at_rest = 0;
+  CHECK(until([&] {
+    held.frame([] {});
+    ticks_at_rest = std::abs(held.pulled_m(0)) < 0.0015 ? ticks_at_rest + 1 : 0;
+    return ticks_at_rest == 300;
+  }));
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+}
+
+TEST_CASE("another program's stop is told once, and the force stays off until the program asks for it again") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  const auto push = [] { set_force({1, 0, 0}); };
+  CHECK(held.pulls(0, 0.0028, 0.0038, push));
+  forget_errors();
+  const auto other = device::Device::open(*held.board.find());
+  other->send(protocol::Command::stop);
+  int told = 0, ticks = 0;
+  CHECK(until([&] {
+    held.frame(push);
+    while (const auto error = hdGetError().errorCode) told += error == HD_FORCE_ERROR ? 1 : 100;
+    return told > 0 && ++ticks == 1000;
+  }));
+  CHECK(told == 1);
+  CHECK(says(HD_FORCE_ERROR, "Another program switched the force off"));
+  CHECK(std::abs(held.pulled_m(0)) < 0.0015);
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, push));
+}
+
 TEST_CASE("frames as fast as a program can make them, beside a thread that asks") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
@@ -175,6 +296,53 @@ TEST_CASE("a lost link is an error of communication, and the device may be opene
   CHECK_MESSAGE(hdInitDevice(nullptr) == held.device, std::string(hdGetErrorString(HD_DEVICE_FAULT)));
   hdStartScheduler();
   CHECK(until([&] { return hdCheckCalibration() == HD_CALIBRATION_OK; }));
+}
+
+TEST_CASE("a lost link is back by itself, with the force off until the program asks for it again") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  const auto push = [] { set_force({1, 0, 0}); };
+  CHECK(held.pulls(0, 0.0028, 0.0038, push));
+  held.control.usb(false);
+  CHECK(until([&] {
+    held.frame(push);
+    return hdGetError().errorCode == HD_COMM_ERROR;
+  }));
+  held.control.usb(true);
+  int good_frames = 0;
+  CHECK(until(
+      [&] {
+        forget_errors();
+        hdBeginFrame(held.device);
+        good_frames = hdGetError().errorCode == HD_SUCCESS ? good_frames + 1 : 0;
+        set_force({1, 0, 0});
+        hdEndFrame(held.device);
+        return good_frames == 500;
+      },
+      100'000));
+  CHECK(std::abs(held.pulled_m(0)) < 0.0015);
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, push));
+}
+
+TEST_CASE("a program hears nothing of the end of the one before, and gets its force") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+  held.control.usb(false);
+  hdStopScheduler();
+  hdDisableDevice(held.device);
+  held.control.usb(true);
+  held.wait_for_device();
+  forget_errors();
+  REQUIRE(hdInitDevice(nullptr) == held.device);
+  CHECK(only_error() == HD_SUCCESS);
+  hdEnable(HD_FORCE_OUTPUT);
+  hdStartScheduler();
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] {
+    set_force({1, 0, 0});
+    CHECK(hdGetError().errorCode == HD_SUCCESS);
+  }));
 }
 
 }  // namespace
