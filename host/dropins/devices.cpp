@@ -85,6 +85,7 @@ Handle Devices::open(const char* given) {
     auto device = std::make_shared<Device>(handle, name, address);
     const std::lock_guard lock(mutex_);
     if (handle == devices_.size()) devices_.emplace_back();
+    handles_given_ = static_cast<Handle>(devices_.size());
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = current_here = handle;
@@ -121,9 +122,17 @@ void Devices::close_all() {
   }
 }
 
+ParentsDevices Devices::as_parents() const {
+  return handles_given_ > 0 ? ParentsDevices{origin_.process(), handles_given_} : parents_;
+}
+
 Device* Devices::find(Handle handle) {
   if (is_open(handle)) return devices_[handle].get();
-  raise(bad_handle, handle);
+  const bool is_parents = parents_.handles > 0 && (handle < parents_.handles || handle == invalid_handle);
+  raise(bad_handle, handle,
+        is_parents
+            ? fmt::format("The device was opened by process {}. Open it again in this process.", parents_.process)
+            : std::string());
   return nullptr;
 }
 

@@ -1,17 +1,30 @@
 // The devices that the program has open, by handle, and which of them is current.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include <process/fork.hpp>
+
 #include "device.hpp"
 
 namespace inkwell::dropins {
 
+/// What a forked child knows of its parent's devices.
+struct ParentsDevices {
+  int process = 0;
+  Handle handles = 0;  ///< those below it may be the parent's
+};
+
 class Devices {
  public:
+  explicit Devices(const ParentsDevices& parents) : parents_(parents) {}
+  /// Without the lock, which a thread may have held that the child does not have.
+  ParentsDevices as_parents() const;
+
   /// Held by every call of the interface while it looks at a device; never while one is opened or closed.
   std::mutex& mutex() { return mutex_; }
 
@@ -42,6 +55,9 @@ class Devices {
   bool is_open(Handle handle) const { return handle < devices_.size() && devices_[handle] != nullptr; }
   std::string address_for(const std::string& name) const;
 
+  const ParentsDevices parents_;
+  const process::Origin origin_;
+  std::atomic<Handle> handles_given_ = 0;  ///< so many at most at once
   std::mutex mutex_, opening_;
   std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty places were closed
   Handle current_ = invalid_handle;               ///< for threads that made none current

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <process/fork.hpp>
+
 namespace inkwell::dropins {
 namespace {
 
@@ -46,8 +48,10 @@ constexpr Text texts[] = {
     {invalid_license, "HD_INVALID_LICENSE", "There is no such licence, and none is needed."},
 };
 
+std::mutex stack_mutex;
+const process::HeldAtFork stack_at_fork(stack_mutex);
+
 struct Stack {
-  std::mutex mutex;
   std::deque<ErrorInfo> errors;
   std::map<unsigned, std::string> sentences;  ///< the newest of each code
   std::set<std::string> kept;
@@ -63,7 +67,7 @@ Stack& stack() {
 
 void raise(ErrorCode code, Handle device, const std::string& sentence, int internal_code) {
   auto& self = stack();
-  const std::lock_guard lock(self.mutex);
+  const std::lock_guard lock(stack_mutex);
   if (self.errors.size() == stack_maximum) self.errors.pop_front();
   self.errors.push_back({code, internal_code, device});
   if (sentence.empty())
@@ -74,7 +78,7 @@ void raise(ErrorCode code, Handle device, const std::string& sentence, int inter
 
 ErrorInfo take_error() {
   auto& self = stack();
-  const std::lock_guard lock(self.mutex);
+  const std::lock_guard lock(stack_mutex);
   if (self.errors.empty()) return {success, 0, invalid_handle};
   const auto newest = self.errors.back();
   self.errors.pop_back();
@@ -83,7 +87,7 @@ ErrorInfo take_error() {
 
 bool forget_errors_of(Handle device, ErrorCode looked_for) {
   auto& self = stack();
-  const std::lock_guard lock(self.mutex);
+  const std::lock_guard lock(stack_mutex);
   bool was_there = false;
   std::erase_if(self.errors, [&](const ErrorInfo& error) {
     was_there = was_there || (error.device == device && error.code == looked_for);
@@ -97,7 +101,7 @@ const char* error_text(unsigned code) {
     if (text.code != code) continue;
     std::string sentence;
     {
-      const std::lock_guard lock(stack().mutex);
+      const std::lock_guard lock(stack_mutex);
       const auto newest = stack().sentences.find(code);
       sentence = newest == stack().sentences.end() ? text.sentence : newest->second;
     }
@@ -108,7 +112,7 @@ const char* error_text(unsigned code) {
 
 const char* keep(const std::string& text) {
   auto& self = stack();
-  const std::lock_guard lock(self.mutex);
+  const std::lock_guard lock(stack_mutex);
   if (const auto found = self.kept.find(text); found != self.kept.end()) return found->c_str();
   if (self.kept.size() == kept_maximum) return "The reason is not kept any more: there were too many.";
   return self.kept.insert(text).first->c_str();

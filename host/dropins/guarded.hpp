@@ -1,14 +1,17 @@
-// No exception leaves the C interfaces.
+// No exception leaves the C interfaces, and a cancelled thread ends only where it waits for the scheduler.
 #pragma once
 
 #include <exception>
+
+#include <process/cancellation.hpp>
 
 #include "errors.hpp"
 
 namespace inkwell::dropins {
 
 template <class Action>
-void guarded(Action action) noexcept {
+void guarded(Action action) {
+  const process::CancellationGuard guard;
   try {
     action();
   } catch (const std::exception& error) {

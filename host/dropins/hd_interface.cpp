@@ -9,6 +9,7 @@
 #include "runtime.hpp"
 
 using namespace inkwell::dropins;
+namespace process = inkwell::process;
 
 namespace {
 
@@ -54,7 +55,10 @@ void with_device(Handle handle, Action action) {
 
 // ---- devices and frames ------------------------------------------------------------------------------------
 
-HdHandle hdInitDevice(const char* name) { return runtime().devices.open(name); }
+HdHandle hdInitDevice(const char* name) {
+  const process::CancellationGuard guard;
+  return runtime().devices.open(name);
+}
 
 void hdDisableDevice(HdHandle device) {
   guarded([&] { runtime().devices.close(device); });
@@ -87,6 +91,7 @@ HdBoolean hdInkwellForgetErrors(HdHandle device) { return forget_errors_of(devic
 // ---- scheduler ---------------------------------------------------------------------------------------------
 
 void hdStartScheduler(void) {
+  const process::CancellationGuard guard;
   try {
     stop_callbacks_at_exit();
     runtime().scheduler.start();
@@ -117,6 +122,7 @@ HdTask hdScheduleAsynchronous(HdCallback callback, void* user, unsigned short pr
     raise(invalid_value, current_handle(), "The callback is NULL. Give one.");
     return invalid_handle;
   }
+  const process::CancellationGuard guard;
   const auto task = runtime().scheduler.add(callback, user, priority);
   if (task == invalid_handle) raise(scheduler_full, current_handle());
   return task;
@@ -124,6 +130,7 @@ HdTask hdScheduleAsynchronous(HdCallback callback, void* user, unsigned short pr
 
 void hdScheduleSynchronous(HdCallback callback, void* user, unsigned short priority) {
   if (callback == nullptr) return raise(invalid_value, current_handle(), "The callback is NULL. Give one.");
+  const process::CancellationGuard guard;
   ForCaller for_caller{callback, user};
   if (!runtime().scheduler.run_until_done(&ForCaller::call, &for_caller, priority))
     raise(scheduler_full, current_handle());
@@ -131,6 +138,7 @@ void hdScheduleSynchronous(HdCallback callback, void* user, unsigned short prior
 }
 
 void hdUnschedule(HdTask task) {
+  const process::CancellationGuard guard;
   if (!runtime().scheduler.remove(task))
     raise(invalid_operation, current_handle(), "The callback is not scheduled: it is done, or never was.");
 }
@@ -141,6 +149,7 @@ HdBoolean hdWaitForCompletion(HdTask task, unsigned wait_code) {
     raise(invalid_value, current_handle());
     return 0;
   }
+  const process::CancellationGuard guard;
   return runtime().scheduler.wait_until_done(task) ? 1 : 0;
 }
 

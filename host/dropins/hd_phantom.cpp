@@ -3,6 +3,7 @@
 //
 // CHAI3D's x points to the user, y to the right and z up, so that its axes are HDAPI's z, x and y; metres and newtons.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -13,10 +14,13 @@
 #include <vector>
 
 #include <inkwell/inkwell.h>
+#include <process/cancellation.hpp>
+#include <process/fork.hpp>
 
 #include "hd_interface.hpp"
 
 using namespace inkwell::dropins;
+namespace process = inkwell::process;
 
 namespace {
 
@@ -61,9 +65,17 @@ struct Servo {
   std::map<int, Phantom> phantoms;
 };
 
+std::atomic<Servo*> current = nullptr;
+
+/// A forked child has one of its own: what is open is its parent's.
 Servo& servo() {
-  static auto& servo = *new Servo;
-  return servo;
+  static const bool is_made = [] {
+    current = new Servo;
+    process::at_fork([] { current = new Servo; });
+    return true;
+  }();
+  static_cast<void>(is_made);
+  return *current;
 }
 
 void frame(Phantom& phantom) {
@@ -163,6 +175,7 @@ bool is_open(int number) {
 /// -1 if that is not what the device sees now.
 template <class Write>
 int read(int number, Write write) {
+  const process::CancellationGuard guard;
   bool sees = is_open(number);
   std::unique_lock lock(servo().mutex);
   const auto found = servo().phantoms.find(number);
@@ -181,6 +194,7 @@ int read(int number, Write write) {
 /// -1.
 template <class Set>
 int set_until_next_tick(int number, Set set) {
+  const process::CancellationGuard guard;
   if (!is_open(number)) return bad;
   std::unique_lock lock(servo().mutex);
   Phantom& phantom = servo().phantoms.find(number)->second;
@@ -208,6 +222,7 @@ bool is_sound(const double* const (&values)[3]) {
 extern "C" {
 
 INKWELL_HD int hdPhantomGetNumDevices(void) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   const bool is_open = std::any_of(servo().phantoms.begin(), servo().phantoms.end(),
                                    [](const auto& entry) { return entry.second.handle != invalid_handle; });
@@ -216,6 +231,7 @@ INKWELL_HD int hdPhantomGetNumDevices(void) {
 }
 
 INKWELL_HD int hdPhantomOpen(int number) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   Phantom* phantom = reach(number);
   if (phantom == nullptr) return bad;
@@ -232,6 +248,7 @@ INKWELL_HD int hdPhantomOpen(int number) {
 }
 
 INKWELL_HD int hdPhantomClose(int number) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   const auto found = servo().phantoms.find(number);
   if (found == servo().phantoms.end() || found->second.handle == invalid_handle) return bad;
@@ -296,6 +313,7 @@ INKWELL_HD int hdPhantomSetForceAndTorque(int number, const double* force_x, con
 }
 
 INKWELL_HD int hdPhantomGetWorkspaceRadius(int number, double* radius_m) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   Phantom* phantom = radius_m == nullptr ? nullptr : reach(number);
   if (phantom == nullptr) return bad;
@@ -307,6 +325,7 @@ INKWELL_HD int hdPhantomGetWorkspaceRadius(int number, double* radius_m) {
 }
 
 INKWELL_HD int hdPhantomGetType(int number, char* text) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   if (text == nullptr || !is_number(number)) return bad;
   std::memcpy(text, type_text, sizeof type_text);
@@ -314,11 +333,13 @@ INKWELL_HD int hdPhantomGetType(int number, char* text) {
 }
 
 INKWELL_HD void hdPhantomStartServo(void) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   start_servo();
 }
 
 INKWELL_HD void hdPhantomStopServo(void) {
+  const process::CancellationGuard guard;
   const std::lock_guard opening(servo().opening);
   stop_servo();
 }

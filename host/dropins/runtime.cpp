@@ -4,26 +4,32 @@
 #include <chrono>
 #include <cstdlib>
 
+#include <process/fork.hpp>
+
 namespace inkwell::dropins {
 namespace {
 
 using namespace std::chrono_literals;
 
-std::atomic<bool> is_used = false;
+std::atomic<Runtime*> current = nullptr;
 
 constexpr auto patience = 1s;  // with a callback that does not return
 
 /// A program may end without a word: its callbacks are called no more, and its force fades.
 __attribute__((destructor)) void end() {
-  if (is_used && runtime().scheduler.stop(patience)) runtime().devices.close_all();
+  if (current != nullptr && runtime().scheduler.stop(patience)) runtime().devices.close_all();
 }
 
 }  // namespace
 
 Runtime& runtime() {
-  static auto& runtime = *new Runtime;
-  is_used = true;
-  return runtime;
+  static const bool is_made = [] {
+    current = new Runtime;
+    process::at_fork([] { current = new Runtime(current.load()->devices.as_parents()); });
+    return true;
+  }();
+  static_cast<void>(is_made);
+  return *current;
 }
 
 void stop_callbacks_at_exit() {

@@ -8,6 +8,8 @@
 namespace inkwell::dropins {
 
 struct Runtime {
+  explicit Runtime(const ParentsDevices& parents = {}) : devices(parents) {}
+
   Devices devices;
   Pacer pacer{devices};
   Scheduler scheduler{[this](std::uint32_t poses, const auto& ends) { return pacer.wait(poses, ends); },
@@ -17,7 +19,8 @@ struct Runtime {
                       }};
 };
 
-/// Lives until the process ends, because programs call in from their last destructors.
+/// Lives until the process ends, because programs call in from their last destructors. A forked child has one of its
+/// own: the devices and the servo thread are its parent's.
 Runtime& runtime();
 
 /// A program that ends without a word is called no more before its own static objects go. Call it before the scheduler

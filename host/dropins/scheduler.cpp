@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <process/cancellation.hpp>
+
 namespace inkwell::dropins {
 namespace {
 
@@ -33,7 +35,10 @@ void Scheduler::start() {
     ends_ = false;
     return;
   }
-  changed_.wait(lock, [this] { return !runs_; });
+  {
+    const process::CancellationPoint point;
+    changed_.wait(lock, [this] { return !runs_; });
+  }
   if (thread_.joinable()) thread_.join();
   ends_ = false;
   thread_ = std::thread([this] { loop(); });
@@ -46,7 +51,10 @@ bool Scheduler::stop(std::chrono::milliseconds limit) {
   ends_ = true;
   changed_.notify_all();
   if (is_servo_thread()) return true;
-  if (!changed_.wait_for(lock, limit, [this] { return !runs_; })) return false;
+  {
+    const process::CancellationPoint point;
+    if (!changed_.wait_for(lock, limit, [this] { return !runs_; })) return false;
+  }
   std::thread ended = std::move(thread_);
   lock.unlock();
   if (ended.joinable()) ended.join();
@@ -59,6 +67,7 @@ bool Scheduler::runs() const {
 }
 
 void Scheduler::loop() {
+  process::never_cancel_this_thread();
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), precedence);
   servo_thread_id_ = std::this_thread::get_id();
   const auto ends = [this] {
@@ -73,7 +82,7 @@ void Scheduler::loop() {
     }
     const double period_s = pace_(poses, ends);
     measured_rate_Hz_ = period_s > 0.0 ? 1.0 / period_s : 0.0;
-    if (!ends()) tick();
+    if (!ends() && !tick()) return;
   }
   servo_thread_id_ = std::thread::id();
   const std::lock_guard lock(mutex_);
@@ -81,7 +90,7 @@ void Scheduler::loop() {
   changed_.notify_all();
 }
 
-void Scheduler::tick() {
+bool Scheduler::tick() {
   tick_began_ = Clock::now();
   ++ticks_;
   std::unique_lock lock(mutex_);
@@ -90,6 +99,7 @@ void Scheduler::tick() {
     called_ = task->handle;
     lock.unlock();
     const bool goes_on = task->callback(task->user) == callback_continue;
+    if (!origin_.is_here()) return false;
     lock.lock();
     called_ = no_task;
     if (const auto place = find(task->handle); !goes_on && place != tasks_.end()) tasks_.erase(place);
@@ -97,6 +107,7 @@ void Scheduler::tick() {
   }
   lock.unlock();
   end_tick_();
+  return true;
 }
 
 // ---- rate and time -----------------------------------------------------------------------------------------
@@ -151,17 +162,38 @@ TaskHandle Scheduler::add(Callback callback, void* user, unsigned short priority
   return handle;
 }
 
+/// At its end the list is locked. What the task acts on may go with the caller's stack: the scheduler was stopped, or
+/// the caller was cancelled.
+class Scheduler::OffTheList {
+ public:
+  OffTheList(Scheduler& scheduler, std::unique_lock<std::mutex>& lock, TaskHandle handle)
+      : scheduler_(scheduler), lock_(lock), handle_(handle) {}
+  ~OffTheList() {
+    if (const auto place = scheduler_.find(handle_); place != scheduler_.tasks_.end()) scheduler_.tasks_.erase(place);
+    scheduler_.changed_.wait(lock_, [this] { return scheduler_.called_ != handle_; });
+  }
+  OffTheList(const OffTheList&) = delete;
+  OffTheList& operator=(const OffTheList&) = delete;
+
+ private:
+  Scheduler& scheduler_;
+  std::unique_lock<std::mutex>& lock_;
+  const TaskHandle handle_;
+};
+
 bool Scheduler::run_until_done(Callback callback, void* user, unsigned short priority) {
   std::unique_lock lock(mutex_);
   if (!runs_ || ends_ || is_servo_thread()) {
     lock.unlock();
+    const process::CancellationPoint as_the_caller_wants;
     callback(user);
     return true;
   }
   const auto handle = list(callback, user, priority);
   if (handle == invalid_handle) return false;
+  const OffTheList at_the_end(*this, lock, handle);
+  const process::CancellationPoint point;
   changed_.wait(lock, [&] { return find(handle) == tasks_.end() || (!runs_ && called_ != handle); });
-  if (const auto place = find(handle); place != tasks_.end()) tasks_.erase(place);  // the scheduler was stopped
   return true;
 }
 
@@ -171,7 +203,9 @@ bool Scheduler::remove(TaskHandle handle) {
   if (place == tasks_.end()) return false;
   tasks_.erase(place);
   changed_.notify_all();
-  if (!is_servo_thread()) changed_.wait(lock, [&] { return called_ != handle; });
+  if (is_servo_thread()) return true;
+  const process::CancellationPoint point;
+  changed_.wait(lock, [&] { return called_ != handle; });
   return true;
 }
 
@@ -182,7 +216,10 @@ bool Scheduler::is_listed(TaskHandle handle) const {
 
 bool Scheduler::wait_until_done(TaskHandle handle) {
   std::unique_lock lock(mutex_);
-  if (!is_servo_thread()) changed_.wait(lock, [&] { return find(handle) == tasks_.end() || !runs_; });
+  if (!is_servo_thread()) {
+    const process::CancellationPoint point;
+    changed_.wait(lock, [&] { return find(handle) == tasks_.end() || !runs_; });
+  }
   return find(handle) == tasks_.end();
 }
 

@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include <process/fork.hpp>
+
 #include "constants.hpp"
 
 namespace inkwell::dropins {
@@ -65,7 +67,10 @@ class Scheduler {
   TaskHandle list(Callback callback, void* user, unsigned short priority);
   Tasks::const_iterator find(TaskHandle handle) const;
   void loop();
-  void tick();
+  /// False in a child that a callback has forked.
+  bool tick();
+  /// Takes a task off the list, and waits until it is not being called.
+  class OffTheList;
 
   const Pace pace_;
   const std::function<void()> end_tick_;
@@ -79,6 +84,7 @@ class Scheduler {
   std::atomic<std::uint64_t> ticks_ = 0;
   std::atomic<std::chrono::steady_clock::time_point> tick_began_{};
   std::atomic<double> measured_rate_Hz_ = 0.0;  ///< 0 if it is not known
+  const process::Origin origin_;
   std::thread thread_;
 };
 

@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <thread>
 #include <vector>
+
+#include <cancelled_thread.hpp>
 
 #include "held.hpp"
 
@@ -78,6 +82,59 @@ TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the 
   CHECK(calls == 5);
   hdScheduleAsynchronous(nullptr, nullptr, 5);
   CHECK(only_error() == HD_INVALID_VALUE);
+}
+
+TEST_CASE("a thread that is cancelled while it waits for the scheduler ends there, and the scheduler goes on") {
+  Held held;
+  static std::atomic<int> calls;
+  static std::atomic<bool> is_in, may_go;
+  calls = 0;
+  is_in = may_go = false;
+  const auto goes_on = [](void* user) {
+    ++calls;
+    ++*static_cast<int*>(user);
+    return HD_CALLBACK_CONTINUE;
+  };
+  const auto hangs = [](void*) {
+    is_in = true;
+    while (!may_go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return HD_CALLBACK_DONE;
+  };
+  for (int i = 0; i < 5; ++i) {
+    CHECK(CancelledThread([&] {
+            int on_the_stack = 0;
+            hdScheduleSynchronous(goes_on, &on_the_stack, 1);
+          }).ends_when_cancelled());
+    const int after = calls;
+    int ticks = 0;
+    CHECK(until([&] { return ++ticks == 20; }));
+    CHECK(calls == after);
+  }
+  int counted = 0;
+  const auto task = hdScheduleAsynchronous(goes_on, &counted, 1);
+  CHECK(CancelledThread([&] { hdWaitForCompletion(task, HD_WAIT_INFINITE); }).ends_when_cancelled());
+  hdUnschedule(task);
+  const auto hanging = hdScheduleAsynchronous(hangs, nullptr, 1);
+  while (!is_in) std::this_thread::yield();
+  CHECK(CancelledThread([&] { hdUnschedule(hanging); }).ends_when_cancelled());
+  CHECK(CancelledThread([] { hdStopScheduler(); }).ends_when_cancelled());
+  CHECK(CancelledThread([] { hdStartScheduler(); }).ends_when_cancelled());
+  may_go = true;
+  hdStartScheduler();
+  int ticks = 0;
+  CHECK(until([&] { return ++ticks == 20; }));
+  // Callbacks of a scheduler that stands are called by their thread, which may be cancelled in them.
+  hdStopScheduler();
+  CHECK(CancelledThread([] {
+          hdScheduleSynchronous(
+              [](void*) -> HDCallbackCode {
+                std::this_thread::sleep_for(std::chrono::hours(1));
+                return 0;
+              },
+              nullptr, 1);
+        }).ends_when_cancelled());
+  hdStartScheduler();
+  CHECK(until([&] { return ++ticks == 40; }));
 }
 
 TEST_CASE("a tick is a millisecond of the board, or two") {

@@ -190,6 +190,16 @@ TEST_CASE("a program whose callback ends it ends well, too, and its arm is free"
   }
 }
 
+TEST_CASE("forked children neither use nor disturb their parent's device, and none of them hangs") {
+  Board board;
+  for (const char* const interface : {"hdapi", "hdphantom"}) {
+    CAPTURE(interface);
+    const auto run = run_program("drop-in-forks", {interface});
+    CHECK(run.exit_code == 0);
+    CHECK_MESSAGE(run.out == "goes on\n", run.out, run.err);
+  }
+}
+
 TEST_CASE("a program that ends between the beginning and the end of a frame: its force fades") {
   Board board;
   board.hold();
