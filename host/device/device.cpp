@@ -15,6 +15,7 @@
 
 #include <device/board_timeout.hpp>
 #include <device/wide_counter.hpp>
+#include <process/fork.hpp>
 
 #include "feature_reports.hpp"
 
@@ -57,10 +58,17 @@ class OwnClaims {
   std::map<std::uint32_t, int> objects_;
 };
 
-/// Never destroyed: programs close their arms in their last destructors.
+std::atomic<OwnClaims*> claims_of_process = nullptr;
+
+/// Never destroyed: programs close their arms in their last destructors. A forked child begins with none.
 OwnClaims& own_claims() {
-  static auto& claims = *new OwnClaims;
-  return claims;
+  static const bool is_made = [] {
+    claims_of_process = new OwnClaims;
+    process::at_fork([] { claims_of_process = new OwnClaims; });
+    return true;
+  }();
+  static_cast<void>(is_made);
+  return *claims_of_process;
 }
 
 int next_object() {
@@ -97,6 +105,7 @@ struct Device::Implementation {
   std::shared_ptr<const ForceLaw> force_law;  ///< set before the device is used
   const int object = next_object();
   const std::uint32_t own_claim = random_number();
+  const process::Origin origin;
   std::atomic<bool> drives = false;
   std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
   std::atomic<std::uint32_t> newest_sequence = 0;
@@ -405,7 +414,7 @@ void Device::claim() { implementation_->become_driver(protocol::ClaimOperation::
 void Device::take_over() { implementation_->become_driver(protocol::ClaimOperation::take_over); }
 
 void Device::release() {
-  if (!implementation_->drives) return;
+  if (!implementation_->drives || !implementation_->origin.is_here()) return;
   implementation_->lose_claim();
   implementation_->request(protocol::ClaimOperation::release);
 }

@@ -1,12 +1,18 @@
 // A program that forks while it has an arm open.
 #include <doctest/doctest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <fstream>
 #include <string>
 
+#include <inkwell/inkwell.h>
+#include <dropins/board.hpp>
+#include <system/program.hpp>
 #include <temporary_directory.hpp>
 
-#include <system/program.hpp>
+#include "virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {
@@ -33,6 +39,36 @@ TEST_CASE("forked children neither use nor disturb their parent's arm, and may o
     ++rows;
   }
   CHECK(rows == samples);
+}
+
+/// In a child: 0 if the arm that it opens is its parent's to drive, and its parent's handle ends without a word.
+int try_to_drive(inkwell_arm* of_parent, const std::string& address) {
+  const double none_N[3]{};
+  inkwell_arm* own = nullptr;
+  if (inkwell_open(address.c_str(), &own) != INKWELL_OK) return 1;
+  if (inkwell_set_force(own, none_N) != INKWELL_IN_USE) return 2;
+  if (!says("(process " + std::to_string(getppid()) + ")")) return 3;
+  if (inkwell_close(own) != INKWELL_OK || inkwell_close(of_parent) != INKWELL_OK) return 4;
+  return 0;
+}
+
+TEST_CASE("a forked child has no part in the claim of its parent") {
+  Board board;
+  const VirtualArm driver(board.address);
+  const double none_N[3]{};
+  REQUIRE(inkwell_set_force(driver.arm, none_N) == INKWELL_OK);
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(120);
+    _exit(try_to_drive(driver.arm, board.address));
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
+  inkwell_driver left{};
+  REQUIRE(inkwell_get_driver(driver.arm, &left) == INKWELL_OK);
+  CHECK(left.is_this_arm == 1);
 }
 
 }  // namespace

@@ -102,7 +102,8 @@ class Device {
   void claim();
   /// The same, from whoever drives the arm now. The force of that program fades.
   void take_over();
-  /// Ends the claim, and with it shapes and force. Without effect if this object does not drive.
+  /// Ends the claim, and with it shapes and force. Without effect if this object does not drive, and in a forked child,
+  /// whose copy of the claim is its parent's.
   void release();
   /// Forgets the claim without a word to the board, as a program that is killed.
   void abandon();
