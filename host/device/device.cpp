@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <random>
+#include <thread>
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -30,11 +33,14 @@ using protocol::ReportId;
 constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
 /// For a request that the board refuses only for the moment.
 BoardTimeout busy_limit() { return {2.0, 2s}; }
+constexpr auto claim_poll_interval = 5ms;
 /// Until the board has carried out a command, and until a force that falls is off.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
 /// The self-test's counter is not widened: only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
+/// A claim that nobody renews has ended by then.
+BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
 /// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
 class OwnClaims {
@@ -70,6 +76,9 @@ OwnClaims& own_claims() {
   static_cast<void>(is_made);
   return *claims_of_process;
 }
+
+/// False if no process of this computer has the number. It may be a process of another computer, or of a container.
+bool may_exist(std::uint32_t process_id) { return kill(static_cast<pid_t>(process_id), 0) == 0 || errno != ESRCH; }
 
 int next_object() {
   static std::atomic<int> opened = 0;
@@ -230,9 +239,28 @@ struct Device::Implementation {
         driver.object ? "Use that object, or close it first." : "End that program, or take the arm over from it."));
   }
 
-  void become_driver(protocol::ClaimOperation operation) {
+  protocol::DriverReport answer_to(protocol::ClaimOperation operation) {
     request(operation);
-    const auto report = driver_report();
+    return driver_report();
+  }
+
+  /// A program that was killed leaves its claim behind. True once that has ended; false if it is renewed, or if its
+  /// program may be there.
+  bool outlives(const protocol::DriverReport& driven) {
+    if (may_exist(driven.process_id)) return false;
+    auto limit = claim_limit();
+    auto now = driven;
+    while (now.is_driven != 0 && now.claim_digest == driven.claim_digest) {
+      if (limit.is_over(now.time_periods)) return false;
+      std::this_thread::sleep_for(claim_poll_interval);
+      now = driver_report();
+    }
+    return true;
+  }
+
+  void become_driver(protocol::ClaimOperation operation) {
+    auto report = answer_to(operation);
+    while (!is_own(report) && outlives(report)) report = answer_to(operation);
     if (!is_own(report)) {
       lose_claim();
       throw driven_by_another();

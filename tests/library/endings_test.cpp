@@ -128,6 +128,17 @@ TEST_CASE("a command that has returned has happened, however its program ends") 
       for (const char* const ending : endings) play(board, interface, command, ending);
 }
 
+TEST_CASE("a program drives the arm at its first try after one that was killed") {
+  Watched board;
+  RunningProgram program({build_directory() + "/library-ending", "c", "shapes", "kill"});
+  REQUIRE(program.read_line() == "returned");
+  program.wait();
+  inkwell_driver driver{};
+  REQUIRE(inkwell_get_driver(board.watcher.arm, &driver) == INKWELL_OK);
+  CHECK(driver.is_driven == 1);
+  CHECK_MESSAGE(inkwell_enable_force(board.watcher.arm, 30) == INKWELL_OK, std::string(inkwell_error_text()));
+}
+
 TEST_CASE("a command that the board can not confirm any more is an error") {
   Watched board;
   board.pull_cable();

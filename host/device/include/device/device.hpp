@@ -98,7 +98,8 @@ class Device {
   /// The program that drives the arm; none if no program does.
   std::optional<Driver> driver();
   /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it
-  /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm.
+  /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm. If no
+  /// such process is on this computer, it was probably killed: then its claim is waited for to end.
   void claim();
   /// The same, from whoever drives the arm now. The force of that program fades.
   void take_over();
