@@ -249,9 +249,10 @@ struct Device::Implementation {
   bool outlives(const protocol::DriverReport& driven) {
     if (may_exist(driven.process_id)) return false;
     auto limit = claim_limit();
+    WideCounter driven_periods;
     auto now = driven;
     while (now.is_driven != 0 && now.claim_digest == driven.claim_digest) {
-      if (limit.is_over(now.time_periods)) return false;
+      if (limit.is_over(driven_periods.note(now.time_periods))) return false;
       std::this_thread::sleep_for(claim_poll_interval);
       now = driver_report();
     }
