@@ -53,7 +53,8 @@ Board::Board(const Options& options, const local::SocketAddress& usbip, std::fun
   }
   if (flash_file_) flash_file_->save(chip_.flash());
   usb_.emplace(chip_.connections(), usbip, options.host_clock_ppm, std::move(on_usb_request), std::move(is_ending));
-  if (options.real_time) usb_->limit_waiting();
+  if (options.real_time && !options.lock_step) usb_->limit_waiting();
+  if (options.lock_step) usb_->keep_in_lock_step([this] { chip_.request_stop(); });
   chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->connector());
   chip_.on_boot_loader = [this] { return usb_->connector().boot_loader_order(chip_.debug_port()); };
   chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {

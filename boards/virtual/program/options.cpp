@@ -124,6 +124,12 @@ void add_time_and_seed(CLI::App& app, Given& given) {
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--real-time", given.options.real_time, "keep board time from running ahead of the clock on the wall");
+  app.add_option("--clock", given.options.clock,
+                 "file that all boards with the same --clock share: none gets more than a millisecond ahead of another")
+      ->type_name("FILE");
+  app.add_flag("--lock-step", given.options.lock_step,
+               "board time passes only while each program on USB waits for a report or a control transfer. A program\n"
+               "that asks for one report at a time then misses none and answers in time");
   given.seed_option =
       app.add_option("--seed", given.options.seed, "of all noise; the same seed and commands give the same run")
           ->type_name("N")

@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr Ticks slice = ticks_per_s / 1000;  // about a USB frame
 constexpr auto attention = 50ms;             // how soon a paused board notices a signal
+constexpr auto look_at_others = 100us;       // how soon a board notices that those with the same clock have come up
 constexpr double debt_maximum_s = 0.1;
 constexpr int exit_code_of_lock_up = 3;
 constexpr int exit_code_of_violation = 4;
@@ -31,6 +32,7 @@ Simulation::Simulation(const Options& options, Board& board, ControlServer& serv
       uarts_(uarts),
       gdb_(board.chip()),
       passing_(options.paused ? Passing::not_at_all : Passing::freely) {
+  if (!options.clock.empty()) clock_.emplace(options.clock);
   board_.usb().on_late_host([this] {
     answer_within_frame();
     return !quit_;
@@ -43,12 +45,15 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
   while (!quit_ && !end_requested && !firmware_exit_code_ && !ends_by_violation() && board_.chip().now() < end) {
     if (gdb_server_ != nullptr) serve_debugger();
     uarts_.serve();
-    if (auto request = server_.take(time_passes() ? Clock::time_point::min() : Clock::now() + attention)) {
+    const auto give_up_at = !time_passes()       ? Clock::now() + attention
+                            : waits_for_others() ? Clock::now() + look_at_others
+                                                 : Clock::time_point::min();
+    if (auto request = server_.take(give_up_at)) {
       serve(std::move(*request));
       continue;
     }
     board_.usb().serve();
-    if (time_passes()) advance();
+    if (time_passes() && !waits_for_others()) advance();
   }
   uarts_.serve();  // the last of what was sent
   if (ends_by_violation()) {
@@ -76,7 +81,19 @@ void Simulation::list_violations() const {
 bool Simulation::time_passes() const {
   // As long as GDB is there, it alone stops and starts the time.
   if (gdb_.attached()) return !gdb_.halted();
-  return run_ || passing_ == Passing::freely || (passing_ == Passing::when_asked && board_.usb().is_asked());
+  if (run_) return true;
+  switch (passing_) {
+    case Passing::freely: return !options_.lock_step || board_.usb().lets_time_pass();
+    case Passing::when_asked: return board_.usb().is_asked();
+    case Passing::not_at_all: break;
+  }
+  return false;
+}
+
+bool Simulation::waits_for_others() {
+  if (!clock_) return false;
+  clock_->note(board_.chip().now() / slice);
+  return !clock_->lets_pass();
 }
 
 void Simulation::serve_debugger() {

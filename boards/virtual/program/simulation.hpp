@@ -15,6 +15,7 @@
 
 #include <debugger/gdb_session.hpp>
 #include <program/control_server.hpp>
+#include <program/shared_clock.hpp>
 #include <program/stream_server.hpp>
 
 #include "board.hpp"
@@ -59,6 +60,8 @@ class Simulation {
     std::promise<nlohmann::json> reply;
   };
   bool time_passes() const;
+  /// Another board with the same clock is behind.
+  bool waits_for_others();
   void serve_debugger();
   bool ends_by_violation() const;
   void list_violations() const;
@@ -74,6 +77,7 @@ class Simulation {
   ControlServer& server_;
   StreamServer* gdb_server_;
   UartLinks& uarts_;
+  std::optional<SharedClock> clock_;
   GdbSession gdb_;
   Passing passing_;
   bool quit_ = false;

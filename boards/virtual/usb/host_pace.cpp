@@ -48,6 +48,22 @@ bool HostPace::is_waited_for_without_limit() const {
   });
 }
 
+bool HostPace::waits_for_board() const {
+  const auto has_asked = [](const Endpoint& one) { return one.most > 0; };
+  if (std::ranges::none_of(in_endpoints_, has_asked)) return is_asked();
+  // A reader that streams asks again in time; one that asks for each report decides when board time passes.
+  return std::ranges::none_of(in_endpoints_, [](const Endpoint& one) { return one.most == 1 && one.requests == 0; });
+}
+
+bool HostPace::is_stream_starved() const {
+  return std::ranges::any_of(in_endpoints_, [](const Endpoint& one) { return one.streams() && one.requests == 0; });
+}
+
+bool HostPace::is_stream_owed() const {
+  return std::ranges::any_of(in_endpoints_,
+                             [](const Endpoint& one) { return one.streams() && one.requests < one.most; });
+}
+
 void HostPace::lose_patience() {
   for (Endpoint& one : in_endpoints_)
     if (one.requests < one.most) one.asked = one.most = 0;

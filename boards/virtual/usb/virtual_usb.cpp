@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -30,7 +31,14 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
         is_ending(std::move(ends)),
         server(where, std::move(on_request)) {}
 
-  void between_transactions() override { wait_while(&HostPace::is_starved, go_on_while_late); }
+  void between_transactions() override {
+    wait_while(is_in_lock_step() ? &HostPace::is_stream_starved : &HostPace::is_starved, go_on_while_late);
+  }
+
+  bool is_in_lock_step() const { return on_stop != nullptr; }
+  bool lets_time_pass() const {
+    return std::ranges::all_of(paces, [](const auto& entry) { return entry.second.waits_for_board(); });
+  }
 
   using Condition = bool (HostPace::*)() const;
 
@@ -39,16 +47,18 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   }
   /// Whether a program that board time waits for is waited for no longer than a while.
   bool is_limited(Condition condition) const {
+    if (is_in_lock_step()) return false;
     if (has_limit || paces.size() > 1) return any(condition);
     return std::ranges::any_of(paces, [&](const auto& entry) {
       return (entry.second.*condition)() && !entry.second.is_waited_for_without_limit();
     });
   }
   /// Those that are waited for.
-  std::vector<std::string> names(Condition condition) const {
+  template <class Waited>
+  std::vector<std::string> names(Waited is_waited_for) const {
     std::vector<std::string> names;
     for (const auto& [session, pace] : paces)
-      if ((pace.*condition)()) names.push_back(client_name(clients.at(session)));
+      if (std::invoke(is_waited_for, pace)) names.push_back(client_name(clients.at(session)));
     return names;
   }
 
@@ -121,6 +131,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   }
   void completed(std::uint32_t session, Urb&& urb, std::int32_t status) override {
     paces[session].completed(urb, status);
+    if (is_in_lock_step() && !lets_time_pass()) on_stop();
     server.answer({UsbIpServer::Result::Kind::submitted, session, std::move(urb), status});
   }
 
@@ -132,6 +143,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   std::vector<std::string> late;  ///< programs that are waited for without a limit, and have been for a while
   std::function<bool()> go_on_while_late = [] { return true; };
   std::function<bool()> is_ending;
+  std::function<void()> on_stop;  ///< in lock step only
   std::vector<UsbIpServer::Order> orders;
   UsbIpServer server;
 };
@@ -151,12 +163,18 @@ void VirtualUsb::serve() { implementation_->serve(); }
 void VirtualUsb::settle() {
   implementation_->server.exchange_all();
   implementation_->serve();
-  implementation_->wait_while(&HostPace::is_owed, [] { return false; });
+  const auto owed = implementation_->is_in_lock_step() ? &HostPace::is_stream_owed : &HostPace::is_owed;
+  implementation_->wait_while(owed, [] { return false; });
 }
 void VirtualUsb::limit_waiting() { implementation_->has_limit = true; }
 void VirtualUsb::on_late_host(std::function<bool()> goes_on) { implementation_->go_on_while_late = std::move(goes_on); }
-std::vector<std::string> VirtualUsb::late_hosts() const { return implementation_->late; }
+std::vector<std::string> VirtualUsb::late_hosts() const {
+  if (!implementation_->is_in_lock_step() || !implementation_->late.empty()) return implementation_->late;
+  return implementation_->names([](const HostPace& pace) { return !pace.waits_for_board(); });
+}
 bool VirtualUsb::is_asked() const { return implementation_->any(&HostPace::is_asked); }
+void VirtualUsb::keep_in_lock_step(std::function<void()> on_stop) { implementation_->on_stop = std::move(on_stop); }
+bool VirtualUsb::lets_time_pass() const { return implementation_->lets_time_pass(); }
 void VirtualUsb::connect() { implementation_->port.plug(true); }
 void VirtualUsb::disconnect() { implementation_->port.plug(false); }
 void VirtualUsb::let_host_ask(bool asks) { implementation_->port.let_host_ask(asks); }

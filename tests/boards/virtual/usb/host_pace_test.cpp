@@ -134,5 +134,38 @@ TEST_CASE("a transfer without an answer is one that the host waits for, until it
   CHECK_FALSE(pace.is_asked());
 }
 
+TEST_CASE("in lock step a host that asks for each report lets time pass until it has it, whatever it streams") {
+  HostPace pace;
+  CHECK_FALSE(pace.waits_for_board());
+  pace.submitted(in(0));
+  CHECK(pace.waits_for_board());  // it has asked for no report yet
+  pace.completed(in(0), transfer_status::success);
+  CHECK_FALSE(pace.waits_for_board());
+  submit(pace, 2, 3);
+  for (int i = 0; i < 3; ++i) {
+    submit(pace, 1, 1);
+    CHECK(pace.waits_for_board());
+    answer(pace, 1, 1);
+    CHECK_FALSE(pace.waits_for_board());
+    pace.submitted(in(0));
+    CHECK_FALSE(pace.waits_for_board());
+    pace.completed(in(0), transfer_status::success);
+  }
+  CHECK_FALSE(pace.is_stream_starved());
+  CHECK_FALSE(pace.is_stream_owed());
+  answer(pace, 2, 1);
+  CHECK(pace.is_stream_owed());
+  answer(pace, 2, 2);
+  CHECK(pace.is_stream_starved());
+}
+
+TEST_CASE("in lock step a host that streams its reports does not decide when time passes") {
+  HostPace pace;
+  submit(pace, 1, 2);
+  answer(pace, 1, 2);
+  CHECK(pace.waits_for_board());
+  CHECK(pace.is_stream_starved());
+}
+
 }  // namespace
 }  // namespace inkwell::virtual_usb_test

@@ -51,6 +51,14 @@ class HostPace {
   /// A control transfer is under way: the host waits for its answer.
   bool is_asked() const { return control_transfers_ > 0; }
 
+  // ---- in lock step (docs/virtual-board.md) ----
+
+  /// The host waits for a report that it asked for, or for a control transfer if it has not asked for any report yet.
+  bool waits_for_board() const;
+  /// As is_starved() and is_owed(), of the endpoints where the host streams.
+  bool is_stream_starved() const;
+  bool is_stream_owed() const;
+
  private:
   struct Endpoint {
     unsigned requests = 0;  ///< under way
@@ -58,6 +66,7 @@ class HostPace {
     unsigned most = 0;      ///< requests under way at a time, since then
     std::uint32_t newest_sequence = 0;
     bool is_kept() const { return asked >= 2; }
+    bool streams() const { return is_kept() && most > 1; }
   };
   void end(const Urb& urb, bool is_dropped);
 

@@ -41,11 +41,16 @@ class VirtualUsb {
   /// Called some twenty times a second while board time has been waiting for a program for longer than that, in the
   /// middle of a frame. If it returns false, board time passes on.
   void on_late_host(std::function<bool()> goes_on);
-  /// The programs that have been waited for longer than that, for sentences.
+  /// The programs that have been waited for longer than that, for sentences; in lock step all that are waited for.
   std::vector<std::string> late_hosts() const;
 
   /// A control transfer is under way: the host waits for its answer.
   bool is_asked() const;
+
+  /// From now on `on_stop` is called whenever lets_time_pass() becomes false, at that instant.
+  void keep_in_lock_step(std::function<void()> on_stop);
+  /// In lock step: each program that has imported the device waits for a report or a control transfer.
+  bool lets_time_pass() const;
 
   /// Plugs the cable in or out. To be called on the simulation's thread, as everything here but `address` and `port`.
   void connect();

@@ -1,0 +1,104 @@
+#include <program/shared_clock.hpp>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace inkwell::virtual_board {
+namespace {
+
+/// Beyond the places: held by a board that joins.
+constexpr off_t joining = SharedClock::boards_maximum;
+
+struct flock lock_of(off_t byte, short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = byte;
+  lock.l_len = 1;
+  return lock;
+}
+
+bool set_lock(int file, off_t byte, short type, bool waits = false) {
+  struct flock lock = lock_of(byte, type);
+  int result = 0;
+  do result = ::fcntl(file, waits ? F_OFD_SETLKW : F_OFD_SETLK, &lock);
+  while (result != 0 && errno == EINTR);
+  return result == 0;
+}
+
+std::runtime_error failure(const std::filesystem::path& file, const std::string& what) {
+  return std::runtime_error("The clock " + file.string() + " cannot be shared: " + what);
+}
+
+}  // namespace
+
+SharedClock::SharedClock(const std::filesystem::path& file)
+    : file_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)) {
+  if (file_ < 0) throw failure(file, std::string(std::strerror(errno)) + ". Name a file that you may write.");
+  try {
+    struct stat about {};
+    if (::fstat(file_, &about) != 0 || (about.st_size != 0 && about.st_size != sizeof(Places)))
+      throw failure(file, "it is another file. Name a file of its own.");
+    if (::ftruncate(file_, sizeof(Places)) != 0) throw failure(file, std::strerror(errno));
+    void* const memory = ::mmap(nullptr, sizeof(Places), PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+    if (memory == MAP_FAILED) throw failure(file, std::strerror(errno));
+    places_ = static_cast<Places*>(memory);
+    set_lock(file_, joining, F_WRLCK, true);
+    join();
+    set_lock(file_, joining, F_UNLCK);
+    if (mine_ == boards_maximum) throw failure(file, "16 boards use it. End one of them, or name another file.");
+  } catch (...) {
+    if (places_ != nullptr) ::munmap(places_, sizeof(Places));
+    ::close(file_);
+    throw;
+  }
+}
+
+SharedClock::~SharedClock() {
+  (*places_)[mine_] = 0;
+  ::munmap(places_, sizeof(Places));
+  ::close(file_);  // and with it the lock on its place
+}
+
+void SharedClock::join() {
+  for (std::size_t place = 0; place < boards_maximum; ++place)
+    if (!is_taken(place)) (*places_)[place] = 0;  // of a board that was killed
+  joined_at_ = farthest();
+  for (mine_ = 0; mine_ < boards_maximum; ++mine_)
+    if (set_lock(file_, static_cast<off_t>(mine_), F_WRLCK)) break;
+  if (mine_ < boards_maximum) (*places_)[mine_] = joined_at_;
+}
+
+bool SharedClock::is_taken(std::size_t place) const {
+  struct flock lock = lock_of(static_cast<off_t>(place), F_WRLCK);
+  return ::fcntl(file_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+std::uint64_t SharedClock::farthest() const {
+  std::uint64_t farthest = 1;
+  for (const Place& place : *places_) farthest = std::max(farthest, place.load());
+  return farthest;
+}
+
+void SharedClock::note(std::uint64_t milliseconds) { (*places_)[mine_] = joined_at_ + milliseconds; }
+
+bool SharedClock::lets_pass() {
+  const std::uint64_t mine = (*places_)[mine_];
+  for (std::size_t place = 0; place < boards_maximum; ++place) {
+    std::uint64_t other = (*places_)[place];
+    if (other == 0 || other >= mine) continue;
+    if (is_taken(place)) return false;
+    (*places_)[place].compare_exchange_strong(other, 0);  // unless another board has just joined there
+  }
+  return true;
+}
+
+}  // namespace inkwell::virtual_board
