@@ -11,7 +11,7 @@ namespace inkwell::device {
 namespace {
 
 constexpr std::string_view usbip_scheme = "usbip:", board_scheme = "virtual:", own_board = "virtual",
-                           this_computer = "127.0.0.1";
+                           board_options = "virtual?", this_computer = "127.0.0.1";
 
 /// A server that answers may be a board that is just starting: its firmware shows itself after a tenth of a second of
 /// board time, which may be slow.
@@ -33,6 +33,36 @@ std::string nobody(const Address& address) {
   const auto others = find_arms({});
   return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number,
                      others.empty() ? "None is: plug it in." : "Those are:" + serial_numbers(others) + ".");
+}
+
+Address parse_board_options(std::string_view options) {
+  Address address{.kind = Address::Kind::own_board};
+  while (!options.empty()) {
+    const auto end = std::min(options.find('&'), options.size());
+    const std::string_view option = options.substr(0, end);
+    options.remove_prefix(std::min(end + 1, options.size()));
+    const auto equals = option.find('=');
+    const std::string_view name = option.substr(0, equals);
+    const std::string_view value = equals == std::string_view::npos ? std::string_view() : option.substr(equals + 1);
+    if (name == "seed") {
+      std::uint64_t seed = 0;
+      const auto [parsed, code] = std::from_chars(value.data(), value.data() + value.size(), seed);
+      if (code != std::errc{} || parsed != value.data() + value.size())
+        throw BadAddress(
+            fmt::format("`{}` is not a seed. Give a whole number from 0 on, as in virtual?seed=7.", value));
+      address.seed = seed;
+    } else if (name == "arm" && !value.empty()) {
+      address.arm = std::string(value);
+    } else if (name == "elf" && !value.empty()) {
+      address.elf = std::string(value);
+    } else {
+      throw BadAddress(fmt::format(
+          "`{}` is not an option of a virtual board. Give seed=NUMBER, arm=FILE or elf=FILE, with & between "
+          "them, as in virtual?seed=7&arm=my_arm.toml.",
+          option));
+    }
+  }
+  return address;
 }
 
 }  // namespace
@@ -62,6 +92,7 @@ Address parse_server(std::string_view text) { return {.kind = Address::Kind::usb
 Address parse_address(std::string_view text) {
   if (text.starts_with(usbip_scheme)) return parse_server(text.substr(usbip_scheme.size()));
   if (text == own_board) return {.kind = Address::Kind::own_board};
+  if (text.starts_with(board_options)) return parse_board_options(text.substr(board_options.size()));
   if (text.starts_with(board_scheme))
     return {.kind = Address::Kind::own_board, .arm = std::string(text.substr(board_scheme.size()))};
   return {.kind = Address::Kind::usb, .serial_number = std::string(text)};

@@ -6,10 +6,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <mutex>
 #include <random>
+#include <set>
 #include <thread>
+#include <utility>
 
 #include <signal.h>
 #include <unistd.h>
@@ -43,25 +44,26 @@ constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
 /// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
+/// Objects with the same seed, each on a virtual board of its own, have the same claim.
 class OwnClaims {
  public:
   void add(std::uint32_t digest, int object) {
     const std::lock_guard lock(mutex_);
-    objects_[digest] = object;
+    objects_.emplace(digest, object);
   }
-  void remove(std::uint32_t digest) {
+  void remove(std::uint32_t digest, int object) {
     const std::lock_guard lock(mutex_);
-    objects_.erase(digest);
+    objects_.erase({digest, object});
   }
   std::optional<int> find(std::uint32_t digest) const {
     const std::lock_guard lock(mutex_);
-    const auto found = objects_.find(digest);
-    return found == objects_.end() ? std::nullopt : std::optional(found->second);
+    const auto found = objects_.lower_bound({digest, 0});
+    return found == objects_.end() || found->first != digest ? std::nullopt : std::optional(found->second);
   }
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::uint32_t, int> objects_;
+  std::set<std::pair<std::uint32_t, int>> objects_;
 };
 
 std::atomic<OwnClaims*> claims_of_process = nullptr;
@@ -85,11 +87,26 @@ int next_object() {
   return ++opened;
 }
 
-std::uint32_t random_number() {
-  std::random_device source;
-  for (;;)
-    if (const std::uint32_t number = source()) return number;
-}
+/// Numbers by which this object's requests are told from those of others.
+struct OwnNumbers {
+  std::uint32_t claim, ticket;
+  std::uint16_t transaction_ticket;
+
+  explicit OwnNumbers(std::optional<std::uint64_t> seed) {
+    if (seed)
+      draw(std::mt19937_64(*seed));
+    else
+      draw(std::random_device());
+  }
+
+ private:
+  void draw(auto&& source) {
+    do claim = static_cast<std::uint32_t>(source());
+    while (claim == 0);
+    ticket = static_cast<std::uint32_t>(source());
+    transaction_ticket = static_cast<std::uint16_t>(source());
+  }
+};
 
 std::string own_program_name() {
   std::string name;
@@ -113,24 +130,32 @@ Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sen
 struct Device::Implementation {
   std::shared_ptr<const ForceLaw> force_law;  ///< set before the device is used
   const int object = next_object();
-  const std::uint32_t own_claim = random_number();
+  const std::uint32_t own_claim;
   const process::Origin origin;
   std::atomic<bool> drives = false;
   std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
   std::atomic<std::uint32_t> newest_sequence = 0;
   std::mutex feature_mutex;  ///< a transaction and the report on it belong together
   std::mutex output_mutex;   ///< guards the next four
-  std::uint32_t ticket = random_number();
+  std::uint32_t ticket;
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   std::int64_t last_output_period = 0;
   std::atomic<std::int64_t> newest_period = 0;  ///< of the poses
   WideCounter time_periods, sequence;
-  std::uint16_t transaction_ticket = static_cast<std::uint16_t>(random_number());  ///< guarded by feature_mutex
-  mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
+  std::uint16_t transaction_ticket;  ///< guarded by feature_mutex
+  mutable std::mutex scope_mutex;    ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
   mutable std::mutex link_mutex;  ///< guards the next one; taken last
   std::shared_ptr<Transport> link;
+
+  explicit Implementation(std::unique_ptr<Transport> transport)
+      : Implementation(OwnNumbers(transport->endpoint().seed), std::move(transport)) {}
+  Implementation(const OwnNumbers& numbers, std::unique_ptr<Transport>&& transport)
+      : own_claim(numbers.claim),
+        ticket(numbers.ticket),
+        transaction_ticket(numbers.transaction_ticket),
+        link(std::move(transport)) {}
 
   /// The link as it is now. A call that uses it keeps it alive.
   std::shared_ptr<Transport> transport() const {
@@ -199,7 +224,10 @@ struct Device::Implementation {
   }
 
   protocol::DriverReport driver_report() {
-    const std::lock_guard lock(feature_mutex);
+    const std::unique_lock lock(feature_mutex);
+    return driver_report(lock);
+  }
+  protocol::DriverReport driver_report(const std::unique_lock<std::mutex>&) {
     protocol::DriverReport report{};
     get(report, "driver");
     return report;
@@ -273,13 +301,16 @@ struct Device::Implementation {
 
   void lose_claim() {
     drives = false;
-    own_claims().remove(protocol::digest_of(own_claim));
+    own_claims().remove(protocol::digest_of(own_claim), object);
   }
 
   /// By a pose: the driver's parity differs, or did when the pose was sent.
   void check_claim(const protocol::PoseReport& pose) {
     if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
-    const auto report = driver_report();
+    // A thread that has the mutex may wait in lock step for the next pose, which the caller has to read.
+    const std::unique_lock lock(feature_mutex, std::try_to_lock);
+    if (!lock) return;  // the next pose has the parity, too
+    const auto report = driver_report(lock);
     if (is_own(report))
       driver_changes = report.changes;
     else
@@ -414,9 +445,8 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
   return device;
 }
 
-Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make_unique<Implementation>()) {
-  implementation_->link = std::move(transport);
-}
+Device::Device(std::unique_ptr<Transport> transport)
+    : implementation_(std::make_unique<Implementation>(std::move(transport))) {}
 
 Device::~Device() {
   try {
@@ -506,7 +536,7 @@ void Device::take_link_of(Device& opened) {
   self.sequence = other.sequence;
   self.newest_period = self.time_periods.newest();
   self.newest_sequence = other.newest_sequence.load();
-  self.last_output_period = self.newest_period;
+  self.last_output_period = self.newest_period - heartbeat_periods;  // the board has not heard anything yet
   const std::lock_guard link_lock(self.link_mutex);
   before = std::exchange(self.link, std::move(other.link));
 }
@@ -562,8 +592,8 @@ void Device::keep_alive() {
   auto& self = *implementation_;
   {
     const std::lock_guard lock(self.output_mutex);
-    const std::int64_t passed = self.newest_period - self.last_output_period;
-    if (passed < heartbeat_periods) return;  // while its time stands still, heartbeats would pile up
+    // While board time does not pass, heartbeats would pile up before the next command.
+    if (self.newest_period - self.last_output_period < heartbeat_periods) return;
   }
   send(Command::heartbeat);
 }

@@ -28,7 +28,7 @@ Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bo
   }
 }
 
-OpenArm open_on_own_board(const VirtualBoardOptions& options) {
+OpenArm open_on_own_board(const VirtualBoardOptions& options, std::optional<std::uint64_t> seed, LockStep* lock_step) {
   std::vector<ParameterChange> arm;
   if (!options.arm.empty()) arm = arm_parameters(options.arm);
   OpenArm opened;
@@ -36,6 +36,8 @@ OpenArm open_on_own_board(const VirtualBoardOptions& options) {
   opened.control.emplace(opened.board->control());
   if (options.paused) opened.control->stand_by();
   opened.endpoint = wait_for_endpoint(*opened.board, *opened.control, options.paused);
+  opened.endpoint.lock_step = lock_step;
+  opened.endpoint.seed = seed;
   opened.device = Device::open(opened.endpoint);
   if (!arm.empty()) opened.device->set_parameters(arm);
   return opened;
@@ -43,13 +45,16 @@ OpenArm open_on_own_board(const VirtualBoardOptions& options) {
 
 }  // namespace
 
-OpenArm open_arm(const Address& address, VirtualBoardOptions board_options) {
+OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step) {
   OpenArm opened;
   if (address.kind == Address::Kind::own_board) {
     board_options.arm = address.arm;
-    opened = open_on_own_board(board_options);
+    if (!address.elf.empty()) board_options.elf = address.elf;
+    board_options.seed = address.seed.value_or(board_options.seed);
+    opened = open_on_own_board(board_options, address.seed, lock_step);
   } else {
     opened.endpoint = find_arm(address);
+    if (opened.endpoint.is_virtual) opened.endpoint.lock_step = lock_step;
     opened.device = Device::open(opened.endpoint);
   }
   opened.endpoint.serial_number = opened.device->information().serial_number;

@@ -9,7 +9,18 @@ constexpr char udev_rule[] =
 #include "udev_rule.inc"
     ;
 
+class OneThread final : public LockStep {
+ public:
+  bool is_in_step() const override { return false; }
+  bool wait(const std::function<bool()>&, std::chrono::milliseconds) override { return false; }
+};
+
 }  // namespace
+
+LockStep& one_thread() {
+  static OneThread one_thread;
+  return one_thread;
+}
 
 std::unique_ptr<Transport> open_transport(const Endpoint& endpoint) {
   return endpoint.kind == Endpoint::Kind::usb ? open_usb_transport(endpoint) : open_usbip_transport(endpoint);

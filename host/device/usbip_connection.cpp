@@ -123,9 +123,17 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
     waiting->completion = std::move(completion);
     waiting->changed.notify_one();
   });
-  std::unique_lock lock(waiting->mutex);
-  if (!waiting->changed.wait_for(lock, timeout_, [&] { return waiting->completion.has_value(); })) {
-    lock.unlock();
+  const auto is_over = [&] { return waiting->completion.has_value(); };
+  const auto is_over_in_turn = [&] {
+    const std::lock_guard lock(waiting->mutex);
+    return is_over();
+  };
+  const auto wait = [&] {
+    if (lock_step_ != nullptr && lock_step_->is_in_step()) return lock_step_->wait(is_over_in_turn, timeout_);
+    std::unique_lock lock(waiting->mutex);
+    return waiting->changed.wait_for(lock, timeout_, is_over);
+  };
+  if (!wait()) {
     unlink(sequence);
     throw Error(
         fmt::format("The device did not answer a request in {} s. Reset the board, or let a paused virtual board run.",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <device/error.hpp>
+#include <device/transport.hpp>
 #include <usbip/messages.hpp>
 
 #include "socket.hpp"
@@ -36,6 +37,8 @@ class UsbipConnection {
                   std::chrono::milliseconds timeout = control_timeout);
   ~UsbipConnection();
 
+  /// Control transfers wait in the turns of `lock_step`, which outlives this.
+  void wait_in_lock_step(LockStep& lock_step) { lock_step_ = &lock_step; }
   /// `on_disconnect` is called once, from the receiving thread, with a sentence.
   void start(std::function<void(const std::string&)> on_disconnect);
 
@@ -63,6 +66,7 @@ class UsbipConnection {
 
   std::chrono::milliseconds timeout_;  ///< of a control transfer
   std::string gone_;                   ///< the sentence for a device that goes away
+  LockStep* lock_step_ = nullptr;
   Socket socket_;
   std::uint32_t device_ = 0;
   std::mutex mutex_;  ///< guards sending, the sequence and what is open

@@ -1,9 +1,11 @@
 #include "transports.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <condition_variable>
 #include <list>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +24,7 @@ namespace identity = protocol::usb;
 constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
 constexpr std::size_t writes_under_way = 16;
+constexpr std::size_t writes_in_lock_step = 1024;
 // How long a device that takes no command is waited for: a second of its own time, which its reports tell, however
 // long a busy computer makes that; or silence, of the clock on the wall.
 constexpr unsigned reports_without_a_taken_write = 1000;
@@ -31,10 +34,12 @@ constexpr char takes_no_commands[] = "The device takes no commands, although it 
 class UsbipTransport : public Transport {
  public:
   explicit UsbipTransport(const Endpoint& endpoint) : endpoint_(endpoint), connection_(endpoint.server, endpoint.path) {
+    if (endpoint.lock_step != nullptr) connection_.wait_in_lock_step(*endpoint.lock_step);
     connection_.start([this](const std::string& reason) { lose(reason); });
     try {
       configure();
-      for (int i = 0; i < report_transfers; ++i) ask_for_report();
+      if (!is_in_lock_step())
+        for (int i = 0; i < report_transfers; ++i) ask_for_report();
     } catch (...) {
       close();
       throw;
@@ -44,6 +49,8 @@ class UsbipTransport : public Transport {
   ~UsbipTransport() override { close(); }
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
+    reads_reports_ = true;
+    if (is_in_lock_step() && timeout > 0ms && !is_report_to_come()) ask_for_report();
     return read(reports_, report, timeout);
   }
 
@@ -56,8 +63,8 @@ class UsbipTransport : public Transport {
       const std::lock_guard done(writes_mutex_);
       --writes_;
       reports_since_taken_ = 0;
-      writes_changed_.notify_one();
       if (completion.status != 0) lost_ = true;
+      writes_changed_.notify_all();
     });
   }
 
@@ -71,16 +78,20 @@ class UsbipTransport : public Transport {
 
   std::size_t get_feature(std::span<std::byte> report) override {
     const auto id = std::to_integer<std::uint8_t>(report[0]);
-    const auto data = connection_.control_in(
-        setup::get_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())));
+    const auto data = carry_out([&] {
+      return connection_.control_in(
+          setup::get_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())));
+    });
     std::copy_n(data.begin(), std::min(data.size(), report.size()), report.begin());
     return data.size();
   }
 
   void set_feature(std::span<const std::byte> report) override {
     const auto id = std::to_integer<std::uint8_t>(report[0]);
-    connection_.control_out(
-        setup::set_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())), report);
+    carry_out([&] {
+      connection_.control_out(
+          setup::set_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())), report);
+    });
   }
 
   void claim_scope() override {
@@ -93,7 +104,7 @@ class UsbipTransport : public Transport {
     }
     // Orders are looked at one after the other: with this answer a refusal of the request before has come, too.
     try {
-      connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18));
+      carry_out([&] { connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18)); });
     } catch (...) {
       release_scope();
       throw;
@@ -133,6 +144,24 @@ class UsbipTransport : public Transport {
   const Endpoint& endpoint() const override { return endpoint_; }
 
  private:
+  bool is_in_lock_step() const { return endpoint_.lock_step != nullptr; }
+  bool is_report_to_come() const { return reports_asked_ > 0 || reports_.size() > 0; }
+
+  /// Carries out a control transfer. A board in lock step lets time pass for it only while a report is asked for, which
+  /// the thread that reads reports can not do meanwhile.
+  template <class Transfer>
+  std::invoke_result_t<Transfer> carry_out(Transfer transfer) {
+    const bool is_out_of_step = is_in_lock_step() && reads_reports_ && !endpoint_.lock_step->is_in_step();
+    if (!is_out_of_step) return transfer();
+    struct Count {
+      std::atomic<int>& count;
+      explicit Count(std::atomic<int>& one) : count(one) { ++count; }
+      ~Count() { --count; }
+    } const counted(requests_out_of_step_);
+    if (!is_report_to_come()) ask_for_report();
+    return transfer();
+  }
+
   void configure() {
     using setup::DescriptorType;
     const auto device = connection_.control_in(setup::get_descriptor(DescriptorType::device, 0, 18));
@@ -152,6 +181,12 @@ class UsbipTransport : public Transport {
   bool takes_none() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
 
   void wait_for_room(std::unique_lock<std::mutex>& lock) {
+    if (is_in_lock_step()) {  // a wait here might keep the thread that reads reports from letting time pass
+      if (lost_) throw Disconnected(unplugged);
+      if (writes_ >= writes_in_lock_step)
+        throw Error("1024 commands wait for board time to pass. Send fewer, or wait for poses in between.");
+      return;
+    }
     const auto has_room = [&] { return writes_ < writes_under_way; };
     for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !takes_none(); known = reports_come_) {
       const bool changed = writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || takes_none(); });
@@ -169,12 +204,15 @@ class UsbipTransport : public Transport {
   }
 
   void ask_for_report() {
+    ++reports_asked_;
     connection_.submit_in(layout_.hid_in_endpoint, identity::packet_size, [this](UsbipConnection::Completion done) {
       if (done.status != 0) return lose(unplugged);
       count_report();
-      if (!done.data.empty()) reports_.push(std::move(done.data));
+      const bool is_empty = done.data.empty();
+      if (!is_empty) reports_.push(std::move(done.data));
       if (reports_.size() > reports_kept) reports_.drop_oldest();
-      ask_again([this] { ask_for_report(); });
+      --reports_asked_;
+      if (is_empty || !is_in_lock_step() || requests_out_of_step_ > 0) ask_again([this] { ask_for_report(); });
     });
   }
 
@@ -246,6 +284,9 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
+  std::atomic<int> reports_asked_ = 0;  ///< under way
+  std::atomic<bool> reads_reports_ = false;
+  std::atomic<int> requests_out_of_step_ = 0;
   std::mutex bulk_mutex_;  ///< guards the next seven
   std::condition_variable bulk_changed_;
   bool scope_claimed_ = false;

@@ -90,6 +90,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
     arguments.insert(arguments.end(), {"--brown-out", std::to_string(options.brown_out_level)});
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
+  if (options.lock_step) arguments.push_back("--lock-step");
   if (options.seconds) arguments.insert(arguments.end(), {"--seconds", std::to_string(*options.seconds)});
   if (options.from_boot_loader) arguments.push_back("--from-boot-loader");
   if (options.strict) arguments.push_back("--strict");

@@ -32,8 +32,15 @@ inkwell_device entry(const std::string& address, const device::Endpoint& endpoin
 
 }  // namespace
 
-device::OpenArm open_arm(const std::string& given) {
-  return device::open_arm(device::parse_address(given.empty() ? environment_address() : given), {.seed = next_seed()});
+OpenedArm open_arm(const std::string& given, device::LockStep* lock_step) {
+  const auto address = device::parse_address(given.empty() ? environment_address() : given);
+  const bool is_stepped = address.seed.has_value();
+  // Until the device is open, a stepped board's time passes only for the requests that this takes.
+  device::VirtualBoardOptions board{
+      .seed = next_seed(), .real_time = !is_stepped, .paused = is_stepped, .lock_step = true};
+  OpenedArm opened{device::open_arm(address, board, lock_step), is_stepped};
+  if (is_stepped) opened.arm.control->resume();
+  return opened;
 }
 
 std::vector<inkwell_device> list_devices() {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <device/board_store.hpp>
-#include <device/board_timeout.hpp>
 #include <device/clear_fault.hpp>
 #include <device/fault_text.hpp>
 
@@ -16,28 +15,15 @@
 namespace inkwell::library {
 namespace {
 
-using namespace std::chrono_literals;
 using protocol::Command;
 
-/// Until a device that was asked for its force is asked again.
+/// Board time until a device that was asked for its force is asked again.
 constexpr double ask_again_s = 0.1;
 
 /// A board from which no pose comes for so long is reset, or paused.
 constexpr double silence_s = 2.0;
-constexpr auto silence = 2s;
 
 std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
-
-/// The newest pose, once it fulfils the condition or the limit is over. Throws Disconnected after the end.
-template <class Condition>
-inkwell_pose wait(const PoseFeed& poses, device::BoardTimeout& limit, Condition condition) {
-  constexpr auto look_up = 50ms;  // the limit also counts silence
-  for (;;) {
-    const inkwell_pose pose = poses.last().pose;
-    if (condition(pose) || limit.is_over(periods_of(pose))) return pose;
-    poses.wait([&](const auto& newest, Loss) { return newest.sequence != pose.sequence; }, Clock::now() + look_up);
-  }
-}
 
 /// What a pose of the library's tells of faults, and no more.
 device::ShownFault shown_fault(const inkwell_pose& pose) {
@@ -98,15 +84,27 @@ inkwell_pose Arm::pose() const {
   return pose;
 }
 
-inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const {
-  const auto give_up_at = in(timeout_s);
+inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
+                                Turns::Answer answer) const {
   const std::uint32_t seen = after_sequence.value_or(last().pose.sequence);
   bool is_new = false;
   const auto next =
       poses_.wait([&](const auto& newest, Loss loss) { return is_new = loss == Loss::none && newest.sequence != seen; },
-                  give_up_at);
+                  checked_timeout_s(timeout_s), answer);
   if (!is_new) throw TimedOut("No pose came in time. Reset the board, or let a paused virtual board run.");
   return next;
+}
+
+void Arm::sleep(double duration_s) const {
+  constexpr double rounding_s = 1e-6;  // of times that are multiples of a control period
+  inkwell_pose now = pose();
+  const double end_s = now.time_s + checked_timeout_s(duration_s) - rounding_s;
+  while (now.time_s < end_s) {
+    const double before_s = now.time_s;
+    now = poses_.wait([&](const auto& newest, Loss) { return newest.time_s >= end_s; }, silence_s);
+    if (now.time_s == before_s)
+      throw TimedOut("No pose came for 2 s. Reset the board, or let a paused virtual board run.");
+  }
 }
 
 control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
@@ -116,24 +114,23 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 // ---- force -------------------------------------------------------------------------------------------------
 
 void Arm::enable_force(double timeout_s) {
-  device::BoardTimeout limit(seconds_from(timeout_s), silence);
+  const double limit_s = checked_timeout_s(timeout_s);
   clear_inherited_fault();
   refuse_in_fault(pose());
   claim();
   poses_.use_force();
   poses_.forget_lost_force();
-  for (;;) {
+  for (double waited_s = 0;;) {
     // A device that does not know yet where it is forgets that it was asked.
     device().carry_out(Command::enable_force);
-    device::BoardTimeout turn(ask_again_s, silence);
-    bool is_late = false;
-    const auto now = wait(poses_, turn, [&](const auto& newest) {
-      is_late = limit.is_over(periods_of(newest));
-      return is_late || newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT;
-    });
+    const double wait_s = std::min(limit_s - waited_s, ask_again_s);
+    const auto now = poses_.wait(
+        [](const auto& newest, Loss) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
+        wait_s);
     if (now.state == INKWELL_ACTIVE) return;
     refuse_in_fault(now);
-    if (!is_late) continue;
+    waited_s += wait_s;
+    if (waited_s < limit_s) continue;
     if (now.state == INKWELL_UNREFERENCED)
       throw NotNow("The arm does not know where it is. Put the stylus into the inkwell once, then try again.");
     throw TimedOut("The device did not switch the force on in time. Try again.");

@@ -2,13 +2,15 @@
 //
 //   part         its thread                      what it owns
 //   PoseFeed     -                               the newest pose, and what was lost: poses, link, force
+//   Turns        -                               when the time of virtual boards passes: one for all of a program's own
 //   Connection   opens the arm, reads poses,     the device, the board that was started for it, the arm's geometry
 //                opens it again after a loss
 //   ForceOutput  sends forces                    the newest force, and how it goes with the walls
 //   ScopeStream  reads samples                   which signals, samples that are not read yet, the recording
 //   Servo        calls the program's function    the function, and whether it is being called
 //
-// Each part has mutexes of its own, and with one held calls no other part but PoseFeed, which calls none.
+// Each part has mutexes of its own, and with one held calls no other part but PoseFeed, which calls only Turns with one
+// held. In lock step the thread that reads poses does the work of those of ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>
@@ -46,7 +48,11 @@ class Arm {
     poses_.read(take);
   }
   /// The first pose after the one with `sequence`. Throws Disconnected if the link is lost, and TimedOut.
-  inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
+  /// `answer`: a loop that sets a force for each pose is in lock step, too.
+  inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
+                             Turns::Answer answer = Turns::Answer::none) const;
+  /// Waits until this much board time has passed. Throws TimedOut if no poses come.
+  void sleep(double duration_s) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
   /// Drives the arm from now on, as set_force(), place_shapes() and start_servo() do. Throws InUse, naming the driver,

@@ -120,9 +120,14 @@ inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell
   return guarded([&] {
     required(pose, "The place for the pose");
     *pose = arm_of(arm).last().pose;  // what stays if none comes
-    *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest());
+    const auto answer = arm->seen.take_force() ? Turns::Answer::loop : Turns::Answer::none;
+    *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest(), answer);
     arm->seen.note(pose->sequence);
   });
+}
+
+inkwell_result inkwell_sleep(inkwell_arm* arm, double duration_s) {
+  return guarded([&] { arm_of(arm).sleep(duration_s); });
 }
 
 inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced) {
@@ -212,6 +217,7 @@ inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]) {
   return guarded([&] {
     required(force_N, "The force");
     arm_of(arm).set_force({force_N[0], force_N[1], force_N[2]});
+    arm->seen.note_force();
   });
 }
 

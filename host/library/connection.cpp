@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double first_pose_limit_s = 60.0;
+constexpr auto first_pose_limit = 60s;
 constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
@@ -53,6 +53,7 @@ void Connection::end() {
     ends_ = true;
     end_changed_.notify_all();
   }
+  poses_.leave_turns();
   thread_.join();
 }
 
@@ -63,12 +64,16 @@ bool Connection::ends() const {
 
 void Connection::run(const std::string& address, std::promise<void> opened) {
   try {
-    arm_ = open_arm(address);
+    auto opening = open_arm(address, &poses_);
+    arm_ = std::move(opening.arm);
+    if (arm_.endpoint.is_virtual)
+      poses_.take_turns(arm_.board ? Turns::of_own_boards() : std::make_shared<Turns>(), opening.is_stepped);
     set_geometry(arm_.device->parameters());
     read_poses([&](const ReadPose& first) {
       // A board of its own has its stylus in the inkwell until the program moves the hand.
       if (is_open_ || (arm_.board && (!first.is_referenced || first.pose.state == INKWELL_STARTING))) return;
       is_open_ = true;
+      poses_.let_program_decide();
       opened.set_value();
     });
   } catch (const std::exception& error) {
@@ -80,8 +85,10 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
   while (is_open_ && reopen()) {
     try {
       read_poses([this, is_first = true](const ReadPose& read) mutable {
+        if (!std::exchange(is_first, false)) return;
+        poses_.let_program_decide();
         // The program has to learn of the loss before it switches the force on again.
-        if (std::exchange(is_first, false) && read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
+        if (read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
           arm_.device->send(protocol::Command::disable_force);
       });
     } catch (const std::exception& error) {
@@ -97,12 +104,13 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
 }
 
 void Connection::read_poses(const OnPose& on_pose) {
-  const auto give_up_at = in(first_pose_limit_s);
+  const auto give_up_at = Clock::now() + first_pose_limit;
   PoseReader reader;  // the board may have restarted
   Clock::duration silence{};
   auto before = Clock::now();
   bool drove = false;
-  while (!ends()) {
+  while (!ends() && poses_.begin_turn()) {
+    arm_.device->keep_alive();
     const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry());
     const auto now = Clock::now();
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
@@ -114,7 +122,6 @@ void Connection::read_poses(const OnPose& on_pose) {
     } else if (is_open_ && silence > silence_limit && poses_.loss() == Loss::none) {
       poses_.lose(Loss::silence, silent);
     }
-    arm_.device->keep_alive();
     if (!is_open_ && now > give_up_at)
       throw TimedOut("The device sends no poses. Reset the board, or let a paused virtual board run.");
   }
@@ -150,8 +157,10 @@ bool Connection::reopen() {
 }
 
 bool Connection::try_to_reopen() {
-  const auto endpoint = find_again();
+  auto endpoint = find_again();
   if (!endpoint) return false;
+  endpoint->lock_step = arm_.endpoint.lock_step;
+  endpoint->seed = arm_.endpoint.seed;
   const auto opened = device::Device::open(*endpoint);
   const auto serial_number = opened->information().serial_number;
   if (serial_number != arm_.endpoint.serial_number)

@@ -15,7 +15,10 @@ constexpr auto attention = std::chrono::milliseconds(20);
 }  // namespace
 
 ForceOutput::ForceOutput(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
-  thread_ = std::thread([this] { run(); });
+  if (poses_.is_in_lock_step())
+    poses_.add(*this);
+  else
+    thread_ = std::thread([this] { run(); });
 }
 
 ForceOutput::~ForceOutput() { stop(); }
@@ -26,6 +29,7 @@ void ForceOutput::stop() {
     stops_ = true;
     changed_.notify_one();
   }
+  poses_.remove(*this);
   if (thread_.joinable()) thread_.join();
 }
 
@@ -58,19 +62,30 @@ void ForceOutput::let_go() {
   changed_.notify_one();
 }
 
+void ForceOutput::before_pose() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stops_ || !next_) return;
+  }
+  send_next(std::chrono::milliseconds(0));
+}
+
+void ForceOutput::lose_link(const std::string&) { drop_force(); }
+
 void ForceOutput::run() {
-  ForceInterval interval;
-  while (wait_for_force()) {
-    try {
-      // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer
-      // forces replace each other in `next_`.
-      if (!device_.wait_until_written(attention)) continue;
-      device::ForceRequest request = take_force();
-      if (request.pose_sequence) request.interval_ms = interval.next(*request.pose_sequence);
-      if (poses_.loss() == Loss::none) device_.send_force(request);  // else it was computed from an older pose
-    } catch (const Error&) {  // the connection's thread meets the same error, and reports it
-      drop_force();
-    }
+  while (wait_for_force()) send_next(attention);
+}
+
+void ForceOutput::send_next(std::chrono::milliseconds patience) {
+  try {
+    // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer forces
+    // replace each other in `next_`.
+    if (!device_.wait_until_written(patience)) return;
+    device::ForceRequest request = take_force();
+    if (request.pose_sequence) request.interval_ms = interval_.next(*request.pose_sequence);
+    if (poses_.loss() == Loss::none) device_.send_force(request);  // else it was computed from an older pose
+  } catch (const Error&) {  // the connection's thread meets the same error, and reports it
+    drop_force();
   }
 }
 

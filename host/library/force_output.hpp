@@ -1,10 +1,12 @@
 // The thread that sends a program's forces, so that no caller waits for the USB.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include <device/device.hpp>
@@ -15,8 +17,8 @@
 namespace inkwell::library {
 
 /// Sends the newest force when the device has the one before. The USB takes one in a millisecond, and an old one is
-/// worth nothing.
-class ForceOutput {
+/// worth nothing. In lock step it goes out before the next pose is asked for.
+class ForceOutput : private TurnPart {
  public:
   /// Sends none while `poses` are lost.
   ForceOutput(device::Device& device, PoseFeed& poses);
@@ -32,7 +34,11 @@ class ForceOutput {
   void stop();
 
  private:
+  void before_pose() override;
+  void lose_link(const std::string& cause) override;
   void run();
+  /// Sends the force that waits, if the device accepts the report before in time.
+  void send_next(std::chrono::milliseconds patience);
   /// False after stop().
   bool wait_for_force();
   device::ForceRequest take_force();
@@ -45,7 +51,8 @@ class ForceOutput {
   std::optional<device::ForceRequest> next_;
   protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
   bool stops_ = false;
-  std::thread thread_;
+  ForceInterval interval_;  ///< used by the thread that sends
+  std::thread thread_;      ///< none in lock step, where the thread that reads poses sends
 };
 
 }  // namespace inkwell::library

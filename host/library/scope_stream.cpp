@@ -1,5 +1,6 @@
 #include "scope_stream.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,8 +21,11 @@ constexpr auto read_timeout = 20ms;
 
 }  // namespace
 
-ScopeStream::ScopeStream(device::Device& device, const PoseFeed& poses) : device_(device), poses_(poses) {
-  thread_ = std::thread([this] { run(); });
+ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+  if (poses_.is_in_lock_step())
+    poses_.add(*this);
+  else
+    thread_ = std::thread([this] { run(); });
 }
 
 ScopeStream::~ScopeStream() {
@@ -30,7 +34,8 @@ ScopeStream::~ScopeStream() {
     stops_ = true;
     changed_.notify_all();
   }
-  thread_.join();
+  poses_.remove(*this);
+  if (thread_.joinable()) thread_.join();
 }
 
 void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
@@ -54,6 +59,17 @@ bool ScopeStream::is_selected() {
   return !signals_.empty();
 }
 
+void ScopeStream::after_pose() {
+  const std::uint64_t selection = selection_;
+  try {
+    while (auto samples = device_.read_scope(0ms)) keep(std::move(*samples));
+  } catch (const Error& error) {
+    end(selection, error.what());
+  }
+}
+
+void ScopeStream::lose_link(const std::string& cause) { end(selection_, cause); }
+
 void ScopeStream::run() {
   for (;;) {
     std::uint64_t selection = 0;
@@ -74,7 +90,8 @@ void ScopeStream::run() {
 /// The board knows nothing of the selection on its next link.
 void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   const std::lock_guard lock(mutex_);
-  if (selection != selection_) return;
+  if (selection != selection_ || signals_.empty()) return;
+  ++selection_;
   signals_.clear();
   samples_.clear();
   rows_kept_ = 0;
@@ -96,18 +113,29 @@ void ScopeStream::keep(device::ScopeSamples samples) {
   changed_.notify_all();
 }
 
+void ScopeStream::wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s) {
+  const std::uint64_t selection = selection_;
+  const auto is_over = [&] { return rows_kept_ > 0 || selection_ != selection; };
+  if (!poses_.is_in_lock_step()) {
+    constexpr double longest_s = 1e6;
+    const process::CancellationPoint point;
+    changed_.wait_for(lock, std::chrono::duration<double>(std::min(timeout_s, longest_s)),
+                      [&] { return stops_ || is_over(); });
+    return;
+  }
+  lock.unlock();
+  poses_.wait([&](const auto&, Loss) { return is_over(); }, timeout_s);
+  lock.lock();
+}
+
 std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::size_t capacity) {
   poses_.require_link();
   std::unique_lock lock(mutex_);
   if (signals_.empty() && !ended_by_.empty())
     throw device::Disconnected(fmt::format("{} Then select the signals again.", ended_by_));
   if (signals_.empty()) throw NotNow("No signals are selected. Select some first.");
-  const auto selection = selection_;
-  {
-    const process::CancellationPoint point;
-    changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || signals_.empty() || !samples_.empty(); });
-  }
-  if (signals_.empty() && selection == selection_) throw device::Disconnected(ended_by_);
+  wait_for_samples(lock, checked_timeout_s(timeout_s));
+  if (signals_.empty() && !ended_by_.empty()) throw device::Disconnected(ended_by_);
   if (samples_.empty() || capacity == 0) return std::nullopt;
   device::ScopeSamples& oldest = samples_.front();
   device::ScopeSamples taken;

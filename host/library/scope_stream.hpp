@@ -1,6 +1,7 @@
 // The thread that reads the scope: for who asks for samples, and into a recording.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -18,9 +19,10 @@
 
 namespace inkwell::library {
 
-class ScopeStream {
+/// In lock step it has no thread: the samples that come before a pose are read with it.
+class ScopeStream : private TurnPart {
  public:
-  ScopeStream(device::Device& device, const PoseFeed& poses);
+  ScopeStream(device::Device& device, PoseFeed& poses);
   ~ScopeStream();
 
   /// Throws NotNow during a recording.
@@ -35,24 +37,28 @@ class ScopeStream {
   recording::RecorderStatus stop_recording();
 
  private:
+  void after_pose() override;
+  void lose_link(const std::string& cause) override;
   void run();
   void keep(device::ScopeSamples samples);
   void end(std::uint64_t selection, const std::string& cause);
+  /// With the mutex held; without it in between.
+  void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
   /// With no selection the reason why the last one is over is forgotten.
   bool is_selected();
 
   device::Device& device_;
-  const PoseFeed& poses_;
+  PoseFeed& poses_;
 
   std::mutex user_mutex_;  ///< one at a time selects, starts and stops; taken before `mutex_`
 
   std::mutex mutex_;  ///< guards the following; never held while the device or a file is waited for
   std::condition_variable changed_;
-  std::uint64_t selection_ = 0;  ///< so many have been made
+  std::atomic<std::uint64_t> selection_ = 0;  ///< so many have been made or have ended; may be read likewise
   std::vector<protocol::Signal> signals_;
-  std::string ended_by_;                      ///< why the selection is over, empty if the program ended it
-  std::deque<device::ScopeSamples> samples_;  ///< not read yet
-  std::size_t rows_kept_ = 0;
+  std::string ended_by_;                           ///< why the selection is over, empty if the program ended it
+  std::deque<device::ScopeSamples> samples_;       ///< not read yet
+  std::atomic<std::size_t> rows_kept_ = 0;         ///< may be read without the mutex
   std::unique_ptr<recording::Recorder> recorder_;  ///< changed by who has `user_mutex_` as well
   bool stops_ = false;
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace inkwell::library {
@@ -23,9 +24,21 @@ class SeenPoses {
     sequences_[std::this_thread::get_id()] = sequence;
   }
 
+  /// The calling thread has set a force.
+  void note_force() {
+    const std::lock_guard lock(mutex_);
+    if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());
+  }
+  /// Whether it has since the pose that it waited for last: it is in a loop that answers poses.
+  bool take_force() {
+    const std::lock_guard lock(mutex_);
+    return drives_.erase(std::this_thread::get_id()) > 0;
+  }
+
  private:
   mutable std::mutex mutex_;
   std::map<std::thread::id, std::uint32_t> sequences_;
+  std::set<std::thread::id> drives_;
 };
 
 }  // namespace inkwell::library

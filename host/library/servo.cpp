@@ -33,12 +33,14 @@ void Servo::start(Function function) {
   ended_by_ = nullptr;
   known_interruptions_ = poses_.interruptions();
   function_ = std::move(function);
+  poses_.begin_answer(thread_.get_id(), Turns::Answer::servo);  // until it waits for its first pose
   changed_.notify_all();
 }
 
 void Servo::ask_to_end() {
   is_to_end_ = true;
   poses_.wake();
+  poses_.end_answer(thread_.get_id());  // a call that does not return must not keep the board from losing its force
 }
 
 void Servo::stop() {
@@ -90,6 +92,7 @@ void Servo::run() {
     }
     if (!origin_.is_here()) return;
     let_go_();
+    poses_.end_answer(thread_.get_id());
     const std::lock_guard lock(mutex_);
     runs_ = false;
     ended_by_ = ended_by;

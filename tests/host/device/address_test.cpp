@@ -51,6 +51,22 @@ TEST_CASE("an address is a serial number, a USB/IP server or a virtual board") {
   CHECK(parse_address("virtual:arms/mine.toml").arm == "arms/mine.toml");
 }
 
+TEST_CASE("a virtual board has options") {
+  const auto board = parse_address("virtual?seed=18446744073709551615&arm=arms/my arm.toml&elf=a=b.elf");
+  CHECK(board.kind == Address::Kind::own_board);
+  CHECK(board.seed == 18446744073709551615u);
+  CHECK(board.arm == "arms/my arm.toml");
+  CHECK(board.elf == "a=b.elf");
+  CHECK(parse_address("virtual?").kind == Address::Kind::own_board);
+  CHECK_FALSE(parse_address("virtual?arm=x").seed);
+  CHECK(parse_address("virtual:what?seed=7").arm == "what?seed=7");
+  for (const auto wrong : {"speed=7", "seed", "seed=", "seed=-1", "seed=7x", "arm=", "seed=7,arm=x", "&seed=7"}) {
+    CAPTURE(wrong);
+    const auto message = message_of<device::BadAddress>([&] { parse_address(std::string("virtual?") + wrong); });
+    CHECK(contains(message, "virtual?seed=7"));
+  }
+}
+
 TEST_CASE("what is no address is told with one that is") {
   for (const auto wrong :
        {"usbip:", "usbip:nowhere", "usbip:host:", "usbip:host:0", "usbip:host:65536", "usbip:host:3x"}) {

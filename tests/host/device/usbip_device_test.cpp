@@ -338,26 +338,20 @@ TEST_CASE("a sign of life goes out 200 control periods after the last command, a
     return server.commands().size();
   };
   std::uint32_t time_periods = 0;
-  const auto hear_pose = [&] {
-    auto pose = pose_number(1);
-    pose.time_periods = time_periods;
-    server.send(1, bytes_of(pose));
-    REQUIRE(arm->read_pose(60s));
-  };
   const auto heartbeats_after = [&](std::uint32_t periods) {
     const std::size_t before = commands_sent();
-    time_periods += periods;
-    hear_pose();
-    arm->keep_alive();
+    auto pose = pose_number(1);
+    pose.time_periods = time_periods += periods;
+    server.send(1, bytes_of(pose));
+    REQUIRE(arm->read_pose(60s));
+    for (int i = 0; i < 3; ++i) arm->keep_alive();
     return commands_sent() - before - 1;
   };
-  hear_pose();
   CHECK(heartbeats_after(199) == 0);
+  std::this_thread::sleep_for(20ms);
+  CHECK(heartbeats_after(0) == 0);  // its time stands still
   CHECK(heartbeats_after(200) == 1);
   CHECK(heartbeats_after(20'000) == 1);
-  // Nor does it by the clock on the wall: the board's time may stand still.
-  std::this_thread::sleep_for(20ms);
-  CHECK(heartbeats_after(0) == 0);
 }
 
 TEST_CASE("poses, frames, samples and transactions are on one time that does not wrap with the board's counters") {
@@ -544,6 +538,22 @@ TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
   CHECK_THROWS_AS(arm->read_scope(60s), device::Disconnected);
   CHECK_THROWS_AS(arm->information(), device::Disconnected);
   CHECK_THROWS_AS(arm->send(protocol::Command::heartbeat), device::Disconnected);
+}
+
+TEST_CASE("with a seed the claim and the tickets are the same each time, without one they are random") {
+  const auto numbers_with = [](std::optional<std::uint64_t> seed) {
+    FakeUsbipServer server;
+    auto endpoint = server.endpoint();
+    endpoint.seed = seed;
+    const auto arm = device::Device::open(endpoint);
+    arm->claim();
+    arm->stop();
+    const auto command = server.commands().back();
+    return std::pair(std::uint32_t{command.claim}, std::uint32_t{command.ticket});
+  };
+  CHECK(numbers_with(7) == numbers_with(7));
+  CHECK(numbers_with(7) != numbers_with(8));
+  CHECK(numbers_with(std::nullopt) != numbers_with(std::nullopt));
 }
 
 TEST_CASE("a device continues on another link, and calls that wait on the old one end") {

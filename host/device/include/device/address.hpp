@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,12 +38,16 @@ class SeveralArms : public NoDevice {
 ///     usbip:unix:PATH  the same at a Unix socket
 ///     virtual          a virtual board that is started for it
 ///     virtual:FILE     the same, with the arm that FILE describes
+///     virtual?seed=7&arm=FILE&elf=FILE
+///                      the same, with any of these: the seed of all noise, an arm, the firmware to run
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
-  std::string serial_number{};  ///< for `usb`; empty for the only one
-  SocketAddress server{};       ///< for `usbip`
-  std::filesystem::path arm{};  ///< for `own_board`; empty for the Omni
+  std::string serial_number{};          ///< for `usb`; empty for the only one
+  SocketAddress server{};               ///< for `usbip`
+  std::filesystem::path arm{};          ///< for `own_board`; empty for the Omni
+  std::filesystem::path elf{};          ///< for `own_board`; empty for the firmware of this installation
+  std::optional<std::uint64_t> seed{};  ///< for `own_board`
 };
 
 /// Throws BadAddress.

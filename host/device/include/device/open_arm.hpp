@@ -20,8 +20,9 @@ struct OpenArm {
 };
 
 /// A board of its own is started with these options and the address's arm, whose parameters its firmware gets; if it
-/// starts paused, it stands by. Throws Error, as NoDevice if no arm is there.
-OpenArm open_arm(const Address& address, VirtualBoardOptions board_options);
+/// starts paused, it stands by. With a virtual board, the device is in `lock_step`, unless that is null. Throws Error,
+/// as NoDevice if no arm is there.
+OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step = nullptr);
 
 /// The rows of the parameter table that an arm description sets. Throws Error that names the line to mend.
 std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file);

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +15,20 @@
 #include <device/socket_address.hpp>
 
 namespace inkwell::device {
+
+/// The calls of a program that is in lock step with a virtual board: each report that the program reads is a turn, and
+/// what calls wait for is looked at once in each turn.
+class LockStep {
+ public:
+  virtual ~LockStep() = default;
+  /// Whether this thread's calls have to wait like this: another thread reads reports.
+  virtual bool is_in_step() const = 0;
+  /// Waits until `is_over` holds in a turn; false if no report comes for this long. Throws Disconnected.
+  virtual bool wait(const std::function<bool()>& is_over, std::chrono::milliseconds patience) = 0;
+};
+
+/// Of a program that uses the device in one thread.
+LockStep& one_thread();
 
 /// Where a device is.
 struct Endpoint {
@@ -23,6 +39,10 @@ struct Endpoint {
   std::string path;         ///< hidapi's path for `usb`, bus id for `usbip`
   SocketAddress server{};   ///< for `usbip`
   bool is_virtual = false;  ///< a virtual board, so what comes from it is a simulation
+  /// For a virtual board: asks for one report at a time, when it is read. Outlives the transport.
+  LockStep* lock_step = nullptr;
+  /// For a virtual board: the numbers that are random otherwise follow from this, so that a run can be repeated.
+  std::optional<std::uint64_t> seed = {};
 };
 
 /// The arms on this computer's USB.
@@ -35,7 +55,8 @@ std::vector<Endpoint> find_usbip_devices(const SocketAddress& server);
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Waits for an input report. Returns its length with the report id in front, 0 on time-out.
+  /// Waits for an input report. Returns its length with the report id in front, 0 on time-out. In lock step this asks
+  /// the board for the report, except with a time-out of 0.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
   /// Returns before the device has the report, unless many are under way.
   virtual void write_report(std::span<const std::byte> report) = 0;

@@ -37,6 +37,7 @@ struct VirtualBoardOptions {
   unsigned brown_out_level = 0;  ///< in its option bytes: 0 is off, as in a new chip; `inkwell flash` sets 3
   bool real_time = true;         ///< paces board time to the wall clock
   bool paused = false;           ///< starts with board time standing still
+  bool lock_step = false;        ///< board time passes only while the programs that use the device wait for it
   /// Of board time, then it ends. A processor that locks up does not stop the time then, as its watchdog may bite.
   std::optional<double> seconds = {};
   bool from_boot_loader = false;  ///< the chip's boot loader starts the firmware, not a reset

@@ -227,6 +227,10 @@ INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose
  * last known one. A lost link is INKWELL_DISCONNECTED without waiting; a silent device is waited for. */
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
+/* Waits until this much board time has passed. A virtual board's time follows the program, not the PC's clock. If no
+ * pose comes for 2 s it is INKWELL_TIMED_OUT. */
+INKWELL_API inkwell_result inkwell_sleep(inkwell_arm* arm, double duration_s);
+
 /* 1 while the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been lost. With
  * 0 the newest pose's position, joints and rotation mean nothing, and its velocity is 0. */
 INKWELL_API inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced);
@@ -297,7 +301,8 @@ INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double forc
 
 /* Called at each pose, a thousand times a second, in a thread of the library. Writes the force on the hand, which is
  * 0 before and where it is infinite or no number. Returns 0 to go on, anything else to end the servo. See
- * inkwell_servo_result() for what else ends it. */
+ * inkwell_servo_result() for what else ends it. The time of a virtual board does not pass until it returns, so that it
+ * misses no pose. */
 typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
 /* Has `servo` called from now on, with `user` as it was given. */
 INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);

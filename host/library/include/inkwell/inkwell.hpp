@@ -86,6 +86,7 @@ class Arm {
     require(inkwell_wait_for_pose(get(), timeout_s, &pose));
     return pose;
   }
+  void sleep(double duration_s) const { require(inkwell_sleep(get(), duration_s)); }
   inkwell_information information() const {
     inkwell_information information;
     require(inkwell_get_information(get(), &information));
