@@ -184,6 +184,11 @@ Answers last_pose(const Arguments& arguments) {
   return {struct_of(pose, is_referenced != 0)};
 }
 
+Answers sleep(const Arguments& arguments) {
+  require(inkwell_sleep(find(arguments)->second, number(argument(arguments, 1))));
+  return {};
+}
+
 Answers enable(const Arguments& arguments) {
   const bool on = number(argument(arguments, 1)) != 0.0;
   inkwell_arm* arm = find(arguments)->second;
@@ -362,6 +367,7 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"close", close},
     {"pose", pose},
     {"last_pose", last_pose},
+    {"sleep", sleep},
     {"enable", enable},
     {"stop", stop},
     {"take_over", take_over},

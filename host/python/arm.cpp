@@ -1,5 +1,6 @@
 #include "arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -111,6 +112,17 @@ Pose Arm::wait_for_pose(double timeout_s) {
   Pose pose;
   call_patiently(timeout_s, [&](inkwell_arm* arm, double time_s) { return inkwell_wait_for_pose(arm, time_s, &pose); });
   return pose;
+}
+
+void Arm::sleep(double duration_s) {
+  if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is no time. Give seconds, from 0 on.");
+  constexpr double attempt_s = 0.05;  // so that Ctrl-C is heard
+  const double end_s = pose().time_s + duration_s;
+  for (double left_s = duration_s; left_s > 0; left_s = end_s - pose().time_s) {
+    const Use arm(*this);
+    call([&] { return inkwell_sleep(arm, std::min(left_s, attempt_s)); });
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
 }
 
 bool Arm::is_referenced() {

@@ -30,6 +30,7 @@ class Arm {
 
   Pose pose();
   Pose wait_for_pose(double timeout_s);
+  void sleep(double duration_s);
   inkwell_information information();
   std::string board_name();
   bool is_referenced();
@@ -150,6 +151,7 @@ template <class Attempt, class GoesOn>
 void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
   constexpr double attempt_s = 0.05;
   if (!(timeout_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The time-out is no time. Give seconds, from 0 on.");
+  // The attempts are counted, because the library waits for board time.
   for (double left_s = timeout_s;; left_s -= attempt_s) {
     const bool is_last = left_s <= attempt_s;
     inkwell_result result;

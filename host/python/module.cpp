@@ -252,6 +252,7 @@ void define_arm(py::module_& module) {
       .def("is_closed", &Arm::is_closed)
       .def("pose", &Arm::pose)
       .def("wait_for_pose", &Arm::wait_for_pose)
+      .def("sleep", &Arm::sleep)
       .def("is_referenced", &Arm::is_referenced)
       .def("information", &Arm::information)
       .def("board_name", &Arm::board_name)

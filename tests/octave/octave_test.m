@@ -119,6 +119,27 @@ push_until(arm, 0, @(pose) ! pose.limited_by_current);
 table = inkwell_parameters();
 inkwell_parameters(arm, 'current_limit_1_A', table(strcmp({table.name}, 'current_limit_1_A')).default_value);
 
+% With a seed, time passes only while a function waits: a loop misses no pose, and each run is the same.
+function samples = run_with_seed(seed)
+  arm = inkwell_open('virtual', seed);
+  pose = inkwell_pose(arm);
+  begin_s = pose.time_s;
+  for i = 1:20
+    inkwell_force(arm, [0 0 0]);
+    pose = inkwell_pose(arm);
+  end
+  assert(pose.time_s - begin_s, 0.02, 1e-9);
+  inkwell_sleep(arm, 0.25);
+  pose = inkwell_pose(arm);
+  assert(pose.time_s - begin_s, 0.271, 1e-9);
+  samples = inkwell_capture(arm, {'supply_V', 'position_z_m'}, 0.05);
+  inkwell_close(arm);
+end
+samples = run_with_seed(7);
+assert(isequal(run_with_seed(7), samples));
+assert(! isequal(run_with_seed(8), samples));
+refused(@() inkwell_open('usbip:127.0.0.1:1', 7), 'A seed is for a simulated arm');
+
 % A recording of the command line is loaded whole, and its marks are text.
 [programs, ~] = fileparts(fileparts(which('inkwell_mex')));
 file = [tempname() '.h5'];

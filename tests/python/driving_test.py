@@ -5,6 +5,8 @@
 
 import math
 import os
+import subprocess
+import sys
 import threading
 import unittest
 
@@ -190,6 +192,52 @@ class Driving(unittest.TestCase):
             thread.join()
         self.assertEqual([str(error) for error in raised], ["The arm is closed. Open it anew."] * 4)
         self.arm.close()
+
+
+class Seeds(unittest.TestCase):
+    """Arms whose time passes only while a call waits for it."""
+
+    def run_program(self, seed):
+        with inkwell.open("virtual", seed=seed) as arm:
+            make_active(arm)
+            missed, before = 0, None
+
+            @arm.servo
+            def spring(pose):
+                nonlocal missed, before
+                missed += 0 if before is None else pose.sequence - before - 1
+                before = pose.sequence
+                return -100 * (pose.position_m - [0.02, *FREE_POINT_M[1:]])
+
+            begin_s = arm.pose.time_s
+            arm.sleep(0.12)
+            self.assertAlmostEqual(arm.pose.time_s - begin_s, 0.12, places=6)
+            samples = arm.capture("position_x_m", "force_x_N", duration_s=0.05)
+            arm.stop_servo()
+            self.assertEqual(missed, 0)
+            return samples.periods.tobytes() + samples.values.tobytes()
+
+    def test_the_same_seed_gives_the_same_samples_on_a_busy_computer_too(self):
+        idle = self.run_program(7)
+        busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
+        try:
+            self.assertEqual(self.run_program(7), idle)
+        finally:
+            for process in busy:
+                process.kill()
+                process.wait()
+
+    def test_a_seed_is_a_number_for_a_virtual_board(self):
+        for address in (None, "usbip:127.0.0.1:3240", "3932"):
+            with self.assertRaisesRegex(inkwell.BadArgument, 'Open "virtual"'):
+                inkwell.open(address, seed=7)
+        for seed in (-1, 1.5, "7"):
+            with self.assertRaisesRegex(inkwell.BadArgument, "whole number"):
+                inkwell.open("virtual", seed=seed)
+        with self.assertRaisesRegex(inkwell.Error, "no_such_arm.toml"):
+            inkwell.open("virtual:no_such_arm.toml", seed=7)
+        with self.assertRaisesRegex(inkwell.BadArgument, "time"):
+            inkwell.open("virtual", seed=7).sleep(-1)
 
 
 if __name__ == "__main__":

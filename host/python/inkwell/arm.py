@@ -154,6 +154,11 @@ class Arm:
         what has ended the servo, if neither the program nor the servo itself did."""
         return _call(self._native.wait_for_pose, timeout_s, wants=_SECONDS)
 
+    def sleep(self, duration_s: float) -> None:
+        """Waits until so much board time has passed. Use it instead of time.sleep(): a virtual board's time is not that
+        of the PC's clock. Raises TimedOut if no pose comes for 2 s."""
+        _call(self._native.sleep, duration_s, wants=_SECONDS)
+
     def poses(self, duration_s: float = float("inf")) -> Iterator[Pose]:
         """Each next pose, for so much board time; those that come while the loop's body runs are passed over."""
         pose = first = self.wait_for_pose()
@@ -236,13 +241,19 @@ class Arm:
         return self._native.servo_is_running()
 
     def wait_for_servo(self, timeout_s: float = float("inf")) -> bool:
-        """Waits until the servo ends by itself, and returns whether it did. Raises what it raised, or what else has ended
-        it."""
-        give_up_at = time.monotonic() + timeout_s
+        """Waits until the servo ends by itself, for so much board time, and returns whether it did. Raises what it
+        raised, or what else has ended it."""
+        waited_s = 0.0
         while self.servo_is_running:
-            if time.monotonic() > give_up_at:
+            if waited_s > timeout_s:
                 return False
-            time.sleep(0.01)
+            try:
+                self.sleep(0.01)
+                waited_s += 0.01
+            except errors.TimedOut:
+                waited_s += 2.0
+            except errors.Disconnected:
+                time.sleep(0.01)  # which ends the servo
         self.stop_servo()
         return True
 
@@ -301,7 +312,7 @@ class Arm:
         """Records these signals into a file (.h5, or .csv) until the end of `with`:
 
             with arm.record("push.h5", "position_x_m", "force_x_N") as recording:
-                time.sleep(5)
+                arm.sleep(5)
             print(recording.samples, recording.lost)
 
         Raises at its end what has ended the servo meanwhile, if neither the program nor the servo itself did.
@@ -319,7 +330,7 @@ class Arm:
         self._native.check_servo()
 
 
-def open(address: str | None = None) -> Arm:
+def open(address: str | None = None, *, seed: int | None = None) -> Arm:
     """Opens an arm; its force is off.
 
     address: None           what the environment's INKWELL_DEVICE says, else the only arm on USB
@@ -327,6 +338,17 @@ def open(address: str | None = None) -> Arm:
              "usbip:HOST:PORT"  that of a USB/IP server, such as a virtual board that runs already;
                             "usbip:unix:PATH" at a Unix socket
              "virtual"      a virtual board of its own, which ends with the arm; "virtual:FILE" with the arm that FILE
-                            describes
+                            describes, "virtual?arm=FILE&elf=FILE" with another firmware too
+    seed:    for a virtual board: the seed of its noise. Its time then passes only while a call of this package waits for
+             it, such as sleep(), so the same program gives the same samples each time.
     """
-    return Arm(address)
+    if seed is None:
+        return Arm(address)
+    if not isinstance(seed, int) or seed < 0:
+        raise errors.BadArgument(f"The seed is {seed!r}. Give a whole number from 0 on.")
+    if address is None or not (address == "virtual" or address.startswith(("virtual:", "virtual?"))):
+        raise errors.BadArgument(f'A seed is for a virtual board, not for {address!r}. Open "virtual".')
+    kind, _, options = address.partition("?")
+    if kind != "virtual":
+        options = "arm=" + address.removeprefix("virtual:")
+    return Arm("&".join(filter(None, [f"virtual?seed={seed}", options])))
