@@ -413,7 +413,7 @@ TEST_CASE("the board's counter of periods may wrap in the midst of a black box")
 
 TEST_CASE("all rows before a fault are there, however many were written since the fault before it") {
   constexpr std::uint32_t written = 51;  // by meet_fault()
-  for (const std::uint32_t end_of_numbers : {0u, 0x8000'0000u - std::uint32_t{rows_before}}) {
+  for (const std::uint32_t end_of_numbers : {std::uint32_t{0}, 0x8000'0000 - std::uint32_t{rows_before}}) {
     CAPTURE(end_of_numbers);
     Board board;
     board.memory.notes.rows_written = end_of_numbers - written + 2;
