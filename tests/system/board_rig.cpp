@@ -44,7 +44,7 @@ BoardRig::BoardRig(const std::string& image)
     : BoardRig(with_image(options(device::SimulationMode::fast, 1, device::CyclePricing::likely), image)) {}
 
 BoardRig::BoardRig(device::VirtualBoardOptions options)
-    : board(strictly(std::move(options))), control(board.control()) {
+    : board(strictly(options)), control(board.control()), seed_(options.seed) {
   control.stand_by();
   connect();
   run(0.05);
@@ -57,6 +57,7 @@ void BoardRig::connect() {
     REQUIRE_MESSAGE(board_time_s() < begin_s + 1.0, "the device did not enumerate within a second of board time");
     control.run(slice_s);
   }
+  endpoint->seed = seed_;
   device = device::Device::open(*endpoint);
   set({{protocol::Parameter::host_timeout_s, 2.0f}});  // tests decide when the host is silent
 }

@@ -56,6 +56,7 @@ class BoardRig {
 
  private:
   void pass_slice();
+  std::uint64_t seed_;  ///< of the board, and of the numbers that the host draws
   double since_sign_of_life_s_ = 0;
   std::vector<device::Pose> poses_;
 };
