@@ -39,7 +39,7 @@ Pose ask(device::Device& device, Command command, Wanted wanted) {
 
 /// A program that was there before this one may have gone with the force on.
 void clear_what_a_host_left(device::Device& device) {
-  PoseReport pose = next_pose(device);
+  Pose pose = next_pose(device);
   if (pose.state != State::fault || !device::is_left_by_a_host(pose.fault)) return;
   const auto shown = [&] { return device::ShownFault{pose.time_periods, pose.state, pose.fault}; };
   device::clear_fault(device, shown(), [&] {
