@@ -45,7 +45,7 @@ constexpr std::uint32_t ms_periods = protocol::servo_rate_Hz / 1000;
 
 /// How many poses were waited for, a millisecond apart, where the board shows `shown(ms)`.
 template <class Shown>
-unsigned cleared_after_ms(std::uint32_t begin_periods, State first, Shown shown) {
+unsigned cleared_after_ms(std::int64_t begin_periods, State first, Shown shown) {
   unsigned written = 0, ms = 0;
   device::Device device(std::make_unique<CountingTransport>(written));
   const auto fault = [](State state) { return state == State::fault ? Fault::bridge_fault : Fault::none; };
@@ -64,7 +64,7 @@ TEST_CASE("without a fault clearing waits for nothing, with one for a fifth of a
   const auto ready = [](unsigned) { return State::ready; };
   CHECK(cleared_after_ms(1000, State::ready, ready) == 0);
   CHECK(cleared_after_ms(1000, State::fault, ready) == 200);
-  CHECK(cleared_after_ms(0xFFFF'FFF0, State::fault, ready) == 200);  // the counter begins anew meanwhile
+  CHECK(cleared_after_ms(0xFFFF'FFF0, State::fault, ready) == 200);  // the board's counter wraps meanwhile
 }
 
 TEST_CASE("clearing waits until a self-test is over, but not for ever, and a fault that comes after it stays") {
