@@ -616,6 +616,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
   const auto token = implementation_->send(report, [&] {
     const std::lock_guard lock(implementation_->scope_mutex);
+    implementation_->decoder.pass_time(static_cast<std::uint32_t>(implementation_->time_periods.newest()));
     implementation_->decoder.expect(report.token, {signals.begin(), signals.end()});
   });
   if (signals.empty()) implementation_->transport()->release_scope();

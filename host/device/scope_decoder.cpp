@@ -125,6 +125,7 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
   if (!reader.ok() || !reader.at_end()) return refuse();
 
   next_period_ = header.first_period + header.sample_count;
+  pass_time(header.first_period);
   return samples;
 }
 

@@ -83,6 +83,26 @@ TEST_CASE("a frame of an earlier program is none, though its token is the same; 
   }
 }
 
+TEST_CASE("frames are decoded however long ago the device was opened") {
+  constexpr std::uint32_t begin = 1'000, quarter = 0x4000'0000;
+  device::ScopeDecoder decoder;
+  decoder.forget_before(begin);
+  SUBCASE("in a selection that lasts for days") {
+    decoder.expect(token, few);
+    for (std::uint32_t i = 0; i < 6; ++i) CHECK(decoder.decode(full_frame(i, begin + i * quarter)));
+  }
+  SUBCASE("in a selection that begins days later") {
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      const std::uint32_t now = begin + i * (quarter + 1'000);
+      decoder.pass_time(now);
+      decoder.expect(token, few);
+      CHECK_FALSE(decoder.decode(full_frame(0, now - 40)));
+      if (i > 3) CHECK(decoder.decode(full_frame(0, now)));
+    }
+  }
+  CHECK(decoder.malformed_frames() == 0);
+}
+
 TEST_CASE("a full frame gives every signal in its unit") {
   auto decoder = decoder_for(few);
   const auto samples = decoder.decode(full_frame(0, 1000));

@@ -30,6 +30,12 @@ class ScopeDecoder {
   /// What was sampled before this control period was for a program that ran earlier, whatever its token: an endpoint
   /// may hold its last frame for hours.
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
+  /// Call it with the present control period before each selection. A frame that comes 29 hours after the period of
+  /// forget_before(), half of the counter's range, would seem to come before it.
+  void pass_time(std::uint32_t now_period) {
+    constexpr std::uint32_t recent_periods = 0x4000'0000;
+    if (first_wanted_period_ && now_period - *first_wanted_period_ > recent_periods) first_wanted_period_ = now_period;
+  }
 
   /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
   /// newest (a left-over of the one before, or of a program that ran earlier). `first_period` is not widened.
