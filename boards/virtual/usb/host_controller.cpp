@@ -98,6 +98,10 @@ void HostController::submit(Urb&& urb) {
     client_.completed(std::move(urb), transfer_status::invalid);
     return;
   }
+  // The schedule of a frame is fixed when it begins. Were a report sent in the frame in which it is submitted, one
+  // command between two forces would delay every later force by a frame.
+  if (pipe.type == TransferType::interrupt && !urb.in && pipe.urbs.empty())
+    pipe.due_frame = std::max(pipe.due_frame, frame_ + 1);
   pipe.urbs.push_back(std::move(urb));
   busy_pipes_ |= 1u << index;
 }

@@ -175,6 +175,19 @@ TEST_CASE("bits that are stuffed take bus time") {
   CHECK(added_bits == doctest::Approx(12 * (86 - 1)).epsilon(0.001));
 }
 
+TEST_CASE("an interrupt OUT goes out in the frame after its submission, whenever the one before it went out") {
+  RootPortBench bench;
+  bench.use();
+  for (int i = 0; i < 3; ++i) {
+    const unsigned before = bench.firmware.frames;
+    while (bench.firmware.frames == before) bench.run_for(0.0001);
+    const auto report = bench.submit_out(1, Bytes(8));
+    while (!bench.outcomes.contains(report)) bench.run_for(0.0001);
+    CHECK(bench.firmware.frames == before + 2);
+    if (i == 1) bench.run_for(0.005);
+  }
+}
+
 TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
   RootPortBench bench;
   bench.firmware.stream(true);
