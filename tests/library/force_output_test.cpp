@@ -2,6 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <memory>
+#include <optional>
+#include <semaphore>
+#include <thread>
 
 #include <control/settings.hpp>
 #include <device/device.hpp>
@@ -30,6 +33,22 @@ TEST_CASE("while the device does not accept a force or a command, only the newes
   CHECK(reports.forces.size() == 2);
   CHECK(reports.forces.back().force_N[0] == 101.0f);
   CHECK(reports.forces.back().sequence == 1);  // no force counts as lost
+}
+
+TEST_CASE("who reads the poses asks for the driver without waiting for the request of another thread") {
+  QueuedReports reports;
+  std::binary_semaphore is_asked(0), may_answer(0);
+  reports.on_feature_request = [&] {
+    is_asked.release();
+    may_answer.acquire();
+  };
+  device::Device device(std::make_unique<QueuedTransport>(reports));
+  std::thread asks([&] { CHECK_THROWS_AS(device.frame(), device::Error); });
+  is_asked.acquire();
+  std::optional<device::Driver> driver;
+  CHECK_FALSE(device.try_driver(driver));
+  may_answer.release();
+  asks.join();
 }
 
 TEST_CASE("a reader that was late passes on the newest pose, with the velocity of the whole path") {

@@ -134,16 +134,17 @@ TEST_CASE("a slow servo and a slow loop in C miss no pose of a virtual board") {
   }
 }
 
-TEST_CASE("a slow servo in C++ misses no pose of a virtual board, and stops its time") {
+TEST_CASE("a slow servo in C++ misses no pose of a virtual board, and keeps its claim, which counts board time") {
   inkwell::Arm arm("virtual?seed=2");
   int calls = 0, missed = 0;
   arm.start_servo([&, sequence = std::uint32_t{0}](const inkwell::Pose& pose) mutable {
     if (calls++ > 0) missed += static_cast<int>(pose.sequence - sequence - 1);
     sequence = pose.sequence;
-    std::this_thread::sleep_for(std::chrono::milliseconds(7));
+    std::this_thread::sleep_for(std::chrono::milliseconds(calls == 20 ? 1200 : 1));  // longer than claim_expiry_s
     return inkwell::Vector{};
   });
   arm.sleep(0.04);
+  CHECK(arm.driver().is_this_arm == 1);
   arm.stop_servo();
   CHECK(calls >= 40);
   CHECK(missed == 0);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ struct QueuedReports {
   std::deque<protocol::PoseReport> poses;     ///< that the device has sent
   std::vector<protocol::ForceReport> forces;  ///< that were written
   int under_way = 0;                          ///< written, and not accepted yet
+  std::function<void()> on_feature_request;   ///< before it is answered, with nothing
 
   void accept_one() {
     const std::lock_guard lock(mutex);
@@ -58,7 +60,10 @@ class QueuedTransport final : public device::Transport {
     std::unique_lock lock(reports_.mutex);
     return reports_.changed.wait_for(lock, timeout, [&] { return reports_.under_way == 0; });
   }
-  std::size_t get_feature(std::span<std::byte>) override { return 0; }
+  std::size_t get_feature(std::span<std::byte>) override {
+    if (reports_.on_feature_request) reports_.on_feature_request();
+    return 0;
+  }
   void set_feature(std::span<const std::byte>) override {}
   void claim_scope() override {}
   void release_scope() override {}
