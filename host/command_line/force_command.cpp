@@ -55,11 +55,13 @@ int keep_on(const DeviceOptions& options, double seconds) {
   const auto is_over = [&] {
     return seconds > 0 && device::board_time_s(pose.time_periods - begin_periods) >= seconds;
   };
-  while (protocol::force_is_on(pose.state) && !is_over() && !interrupt.was_asked_to_end()) {
+  auto loss = force.loss(pose);
+  while (!loss && !is_over() && !interrupt.was_asked_to_end()) {
     device.keep_alive();
     pose = next_pose(device);
+    loss = force.loss(pose);
   }
-  if (!protocol::force_is_on(pose.state)) throw device::Error(why_force_went_off(pose));
+  if (loss) throw device::Error(*loss);
   tell_force(options, force.switch_off());
   return 0;
 }

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <device/clear_fault.hpp>
 #include <device/fault_text.hpp>
 #include <protocol/faults.hpp>
@@ -82,16 +84,20 @@ ForceSwitch::~ForceSwitch() {
 
 Pose ForceSwitch::switch_off() {
   may_be_on_ = false;
-  return switch_force_off(device_);
+  return device_.drives() ? switch_force_off(device_) : next_pose(device_);
+}
+
+std::optional<std::string> ForceSwitch::loss(const Pose& pose) const {
+  if (!device_.drives())
+    if (const auto driver = device_.driver())
+      return fmt::format("The arm was taken over by {}.", device::driver_text(*driver));
+  if (protocol::force_is_on(pose.state)) return std::nullopt;
+  return "The force went off." +
+         (pose.state == State::ready ? " Another program or a window has switched it off." : what_keeps_it_off(pose));
 }
 
 std::string force_sentence(const Pose& pose) {
   return protocol::force_is_on(pose.state) ? "The force is on." : "The force is off." + what_keeps_it_off(pose);
-}
-
-std::string why_force_went_off(const Pose& pose) {
-  return "The force went off." +
-         (pose.state == State::ready ? " Another program or a window has switched it off." : what_keeps_it_off(pose));
 }
 
 }  // namespace inkwell::command_line

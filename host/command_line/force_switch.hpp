@@ -1,6 +1,7 @@
 // The force, switched by a command.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <device/device.hpp>
@@ -20,8 +21,10 @@ class ForceSwitch {
   ForceSwitch(const ForceSwitch&) = delete;
   ForceSwitch& operator=(const ForceSwitch&) = delete;
 
-  /// As switch_force_off(). Throws device::Error.
+  /// As switch_force_off(), but without effect once another program drives the arm. Throws device::Error.
   device::Pose switch_off();
+  /// Why the force is not this program's any more at this pose; none while it is.
+  std::optional<std::string> loss(const device::Pose& pose) const;
 
  private:
   device::Device& device_;
@@ -30,8 +33,5 @@ class ForceSwitch {
 
 /// Whether the force is on, and what keeps it off: a sentence with the remedy.
 std::string force_sentence(const device::Pose& pose);
-
-/// Why the force, which was on, no longer is.
-std::string why_force_went_off(const device::Pose& pose);
 
 }  // namespace inkwell::command_line

@@ -141,8 +141,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
     if (pose)
       for (const auto& event : device::events_between(std::exchange(before, pose), *pose, std::nullopt))
         recorder.note(event);
-    if (force && pose && !protocol::force_is_on(pose->state) && !force_went_off)
-      force_went_off = why_force_went_off(*pose);
+    if (force && pose && !force_went_off) force_went_off = force->loss(*pose);
     if (silent_reads * read_timeout > silence_limit) throw device::Error(device_is_silent);
     while (keys) {
       const auto text = keys->next();
