@@ -115,6 +115,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
   std::int64_t newest_periods = 0;
   std::optional<Pose> before;
   std::uint8_t parity = 0;
+  bool was_silent = false;
   while (!stopping) {
     if (const auto pose = served->read_pose(1ms)) {
       last_pose = Clock::now();
@@ -138,7 +139,9 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
           static_cast<double>(poses_in_window) / std::chrono::duration<double>(now - window_start).count();
       state.scope_frames_malformed = served->malformed_scope_frames();
       note_losses(newest_periods);
-      if (now - last_pose > silence_limit) state.message = "The device is connected but silent: it is paused or stuck.";
+      const bool is_silent = now - last_pose > silence_limit;
+      if (is_silent) state.message = "The device is connected but silent: it is paused or stuck.";
+      if (std::exchange(was_silent, is_silent) && !is_silent) state.message = connected_message();
       window_start = now;
       poses_in_window = 0;
     }

@@ -466,7 +466,7 @@ TEST_CASE("scope frames reach the one who asked for them, counted with those tha
   CHECK(eventually([&] { return session.status().scope_frames_malformed == 1; }));
 }
 
-TEST_CASE("an arm that falls silent is said to be so, and its rate of poses falls to zero") {
+TEST_CASE("an arm that falls silent is said to be so while it is, and its rate of poses falls to zero") {
   FakeUsbipServer server;
   device::Session session([&] { return std::optional(server.endpoint()); });
   REQUIRE(eventually([&] { return is_connected(session); }));
@@ -478,6 +478,11 @@ TEST_CASE("an arm that falls silent is said to be so, and its rate of poses fall
   CHECK(eventually([&] { return session.status().message.find("silent") != std::string::npos; }));
   CHECK(session.status().pose_rate_Hz == 0.0);
   CHECK(is_connected(session));
+  std::uint32_t sequence = 60'000;
+  CHECK(eventually([&] {
+    server.send(1, bytes_of(pose_at(sequence++)));
+    return session.status().message.find("silent") == std::string::npos;
+  }));
 }
 
 TEST_CASE("nothing is left of an arm that went away, but its parameters") {
