@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <set>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -21,11 +22,23 @@ namespace {
 
 /// All that a run leaves behind.
 struct Story {
-  std::vector<device::Pose> poses;
+  std::vector<std::string> poses;
   std::vector<float> samples;
   std::vector<double> truth;
   std::uint64_t instructions = 0;
 };
+
+/// Of the members, without the padding between them. An unknown position is not a number, and equal to itself here.
+std::string bytes_of(const device::Pose& pose) {
+  std::string bytes;
+  const auto append = [&](const auto&... members) {
+    (bytes.append(reinterpret_cast<const char*>(&members), sizeof members), ...);
+  };
+  append(pose.state, pose.fault, pose.limits, pose.is_referenced, pose.sequence, pose.time_periods, pose.position_m,
+         pose.gimbal_rad, pose.force_N, pose.joint_rad, pose.switches, pose.driver_parity, pose.force_sources,
+         pose.servo_load, pose.command_token, pose.supply_dV);
+  return bytes;
+}
 
 constexpr std::size_t story_signals = 5;
 
@@ -54,7 +67,7 @@ Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
   Story story;
   while (const auto frame = rig.device->read_scope(0ms))
     story.samples.insert(story.samples.end(), frame->values.begin(), frame->values.end());
-  story.poses = rig.poses();
+  for (const auto& pose : rig.poses()) story.poses.push_back(bytes_of(pose));
   story.truth = rig.control.trace_read(100'000).values;
   story.instructions = rig.control.status().all.at("instructions");
   return story;
