@@ -257,6 +257,10 @@ struct Device::Implementation {
             .is_this_device = is_own(report)};
   }
 
+  std::optional<Driver> driver_if_any(const protocol::DriverReport& report) const {
+    return report.is_driven == 0 ? std::nullopt : std::optional(driver_in(report));
+  }
+
   InUse driven_by_another() {
     const auto report = driver_report();
     if (report.is_driven == 0 || is_own(report))
@@ -462,10 +466,13 @@ std::string driver_text(const Driver& driver) {
   return fmt::format("{}, which claimed it {:.0f} s ago", program, driver.driven_s);
 }
 
-std::optional<Driver> Device::driver() {
-  const auto report = implementation_->driver_report();
-  if (report.is_driven == 0) return std::nullopt;
-  return implementation_->driver_in(report);
+std::optional<Driver> Device::driver() { return implementation_->driver_if_any(implementation_->driver_report()); }
+
+bool Device::try_driver(std::optional<Driver>& driver) {
+  auto& self = *implementation_;
+  const std::unique_lock lock(self.feature_mutex, std::try_to_lock);
+  if (lock) driver = self.driver_if_any(self.driver_report(lock));
+  return lock.owns_lock();
 }
 
 void Device::claim() { implementation_->become_driver(protocol::ClaimOperation::claim); }

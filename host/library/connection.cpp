@@ -108,14 +108,15 @@ void Connection::read_poses(const OnPose& on_pose) {
   PoseReader reader;  // the board may have restarted
   Clock::duration silence{};
   auto before = Clock::now();
-  bool drove = false;
+  bool drove = false, has_lost_claim = false;
   while (!ends() && poses_.begin_turn()) {
     arm_.device->keep_alive();
     const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry());
     const auto now = Clock::now();
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
     before = now;
-    if (std::exchange(drove, arm_.device->drives()) && !drove) tell_lost_claim();
+    if (std::exchange(drove, arm_.device->drives()) && !drove) has_lost_claim = true;
+    if (has_lost_claim) has_lost_claim = !drove && !tell_lost_claim();
     if (newest) {
       poses_.publish(newest->pose, newest->is_referenced);
       on_pose(*newest);
@@ -127,14 +128,16 @@ void Connection::read_poses(const OnPose& on_pose) {
   }
 }
 
-void Connection::tell_lost_claim() {
-  const auto driver = arm_.device->driver();
+bool Connection::tell_lost_claim() {
+  std::optional<device::Driver> driver;
+  if (!arm_.device->try_driver(driver)) return false;
   // A release by this program itself is no loss.
   if (driver && !driver->is_this_device)
     poses_.lose_claim(fmt::format("The arm was taken over by {}. Its force is the other program's now.",
                                   device::driver_text(*driver)));
   else if (!driver)
     poses_.lose_claim("This program fell silent, so the board ended its claim to the arm. Switch the force on again.");
+  return true;
 }
 
 // ---- after a loss ------------------------------------------------------------------------------------------

@@ -44,8 +44,8 @@ class Connection {
   using OnPose = std::function<void(const ReadPose&)>;
   /// Until the arm is to be closed. Throws when the link is lost.
   void read_poses(const OnPose& on_pose);
-  /// Another program drives the arm now, or none does.
-  void tell_lost_claim();
+  /// Another program drives the arm now, or none does. False if this is not known yet.
+  bool tell_lost_claim();
   /// Waits until the arm is there again, and opens it. False if it is to be closed before.
   bool reopen();
   bool try_to_reopen();

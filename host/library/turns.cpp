@@ -25,9 +25,15 @@ Turns::Board::Board(std::shared_ptr<Turns> turns, bool is_stepped)
 
 Turns::Board::~Board() { leave(); }
 
+bool Turns::is_stepped() const { return std::ranges::any_of(boards_, &Board::is_stepped_); }
+
+void Turns::forget_late_answers(std::chrono::seconds waited) {
+  const bool are_servos_late = waited >= (is_stepped() ? patience_if_stepped : patience);
+  std::erase_if(answering_, [&](const auto& entry) { return entry.second == Answer::loop || are_servos_late; });
+}
+
 bool Turns::may_begin() const {
-  const bool is_stepped = std::ranges::any_of(boards_, &Board::is_stepped_);
-  const bool is_wanted = !is_stepped || waiting_ > 0 || std::ranges::any_of(boards_, &Board::is_opening_);
+  const bool is_wanted = !is_stepped() || waiting_ > 0 || std::ranges::any_of(boards_, &Board::is_opening_);
   return is_wanted && answering_.empty() && std::ranges::all_of(boards_, &Board::is_ready_);
 }
 
@@ -53,8 +59,8 @@ bool Turns::Board::begin() {
   is_ready_ = true;
   const std::uint64_t turn_before = turns_->turn_;
   const auto goes_on = [&] { return has_left_ || turns_->turn_ != turn_before || turns_->may_begin(); };
-  while (!turns_->changed_.wait_for(lock, patience, goes_on))
-    std::erase_if(turns_->answering_, [](const auto& entry) { return entry.second == Answer::loop; });
+  for (auto waited = patience; !turns_->changed_.wait_for(lock, patience, goes_on); waited += patience)
+    turns_->forget_late_answers(waited);
   if (has_left_) return false;
   if (turns_->turn_ == turn_before) turns_->begin_turn();
   return true;
@@ -75,7 +81,9 @@ bool Turns::Board::meet() {
 bool Turns::Board::wait_for_servos() {
   std::unique_lock lock(turns_->mutex_);
   const auto is_servo = [](const auto& entry) { return entry.second == Answer::servo; };
-  turns_->changed_.wait(lock, [&] { return has_left_ || std::ranges::none_of(turns_->answering_, is_servo); });
+  const auto goes_on = [&] { return has_left_ || std::ranges::none_of(turns_->answering_, is_servo); };
+  for (auto waited = patience; !turns_->changed_.wait_for(lock, patience, goes_on); waited += patience)
+    turns_->forget_late_answers(waited);
   return !has_left_;
 }
 

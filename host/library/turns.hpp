@@ -40,7 +40,8 @@ class Turns {
     bool begin();
     /// Waits until all boards of the turn are as far. False after `leave`.
     bool meet();
-    /// Waits until no servo answers a pose. False after `leave`.
+    /// Waits until no servo answers a pose, but not for ever: the thread that would let it return may wait for the
+    /// board. False after `leave`.
     bool wait_for_servos();
     void end();
     /// The link of the board is lost: it is in the group again from its next turn on, which begins by itself.
@@ -65,7 +66,7 @@ class Turns {
   enum class Answer : std::uint8_t {
     none,
     loop,   ///< a loop that waits for a pose and sets a force; it may be over without a word
-    servo,  ///< a servo, which always comes back
+    servo,  ///< a servo, which comes back
   };
   /// This thread answers a pose until it waits again, or until it ends the answer.
   void begin_answer(std::thread::id thread, Answer answer);
@@ -76,9 +77,13 @@ class Turns {
   void end_waiting(std::thread::id thread, Answer answer);
 
  private:
-  /// How long a loop may stay away before board time passes without its answer.
-  static constexpr std::chrono::seconds patience{3};
+  /// How long an answer may take before board time passes without it; a servo's in a stepped group longer, so that it
+  /// does not depend on the load of the computer.
+  static constexpr std::chrono::seconds patience{3}, patience_if_stepped{60};
 
+  bool is_stepped() const;
+  /// Answers that have been waited for so long are waited for no more.
+  void forget_late_answers(std::chrono::seconds waited);
   bool may_begin() const;
   void begin_turn();
 

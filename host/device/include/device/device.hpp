@@ -97,6 +97,9 @@ class Device {
 
   /// The program that drives the arm; none if no program does.
   std::optional<Driver> driver();
+  /// The same, put into `driver`. False, without waiting, if another thread has a request under way: in lock step that
+  /// thread waits for the next pose.
+  bool try_driver(std::optional<Driver>& driver);
   /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it
   /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm. If no
   /// such process is on this computer, it was probably killed: then its claim is waited for to end.
