@@ -15,16 +15,41 @@
 namespace inkwell::tests {
 namespace {
 
+using Words = std::vector<std::string>;
+
 struct Interface {
   std::string name;
-  std::vector<std::string> words;
+  Words words, commands, endings;
 };
 
+const Words everything{"stop", "disable", "clear", "set", "store", "shapes"},
+    without_shapes{"stop", "disable", "clear", "set", "store"};
+const Words every_end{"close", "exit", "kill", "unplug"};
+
+/// With the commands and the ends that the interface has. Commands of the drop-ins return no result; the end of their
+/// device does. The command line and the window have done all when they end by themselves.
 std::vector<Interface> interfaces() {
-  const std::string programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
-  return {{"C", {build_directory() + "/library-ending", "c"}},
-          {"C++", {build_directory() + "/library-ending", "cpp"}},
-          {"Python", {INKWELL_PYTHON, programs + "ending.py"}}};
+  const std::string build = build_directory(), programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
+  std::vector<Interface> all{
+      {"C", {build + "/library-ending", "c"}, everything, every_end},
+      {"C++", {build + "/library-ending", "cpp"}, everything, every_end},
+      {"command line", {INKWELL_PYTHON, programs + "command_ending.py", build}, without_shapes, {"exit", "unplug"}},
+      {"window", {build + "/window-ending"}, without_shapes, {"exit", "unplug"}}};
+#ifndef __SANITIZE_ADDRESS__  // interpreters that were built without it do not load libraries that have it
+  all.push_back({"Python", {INKWELL_PYTHON, programs + "ending.py"}, everything, every_end});
+  for (const char* const dropin : {"hdapi", "hdphantom"})
+    all.push_back({dropin,
+                   {INKWELL_PYTHON, programs + "dropin_ending.py", build, dropin},
+                   {"disable"},
+                   {"exit", "kill", "unplug"}});
+#ifdef INKWELL_OCTAVE
+  all.push_back({"Octave",
+                 {INKWELL_OCTAVE, "--norc", "--quiet", "--path", build + "/octave", programs + "ending.m"},
+                 without_shapes,
+                 every_end});
+#endif
+#endif
+  return all;
 }
 
 /// A board out of its inkwell, and an arm that looks on.
@@ -118,14 +143,11 @@ void play(Watched& board, const Interface& interface, const std::string& command
   board.check(command);
 }
 
-constexpr const char* commands[]{"stop", "disable", "clear", "set", "store", "shapes"};
-constexpr const char* endings[]{"close", "exit", "kill", "unplug"};
-
 TEST_CASE("a command that has returned has happened, however its program ends") {
   Watched board;
   for (const auto& interface : interfaces())
-    for (const char* const command : commands)
-      for (const char* const ending : endings) play(board, interface, command, ending);
+    for (const auto& command : interface.commands)
+      for (const auto& ending : interface.endings) play(board, interface, command, ending);
 }
 
 TEST_CASE("a program drives the arm at its first try after one that was killed") {
