@@ -40,6 +40,7 @@ struct Place {
   X(calibrate)              \
   X(tune)                   \
   X(check)                  \
+  X(measure)                \
   X(record)                 \
   X(replay)                 \
   X(plot)                   \

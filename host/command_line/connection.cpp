@@ -64,6 +64,7 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
   wanted.seed = seed;
   wanted.real_time = real_time || pace == BoardPace::real_time;
   wanted.paused = pace == BoardPace::as_asked;
+  wanted.lock_step = pace == BoardPace::lock_step;
   wanted.strict = is_strict;
   return wanted;
 }
@@ -79,7 +80,8 @@ device::Address DeviceOptions::address() const {
 }
 
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace, device::SimulationMode default_mode) {
-  auto arm = device::open_arm(options.address(), options.virtual_board(default_mode, pace));
+  auto arm = device::open_arm(options.address(), options.virtual_board(default_mode, pace),
+                              pace == BoardPace::lock_step ? &device::one_thread() : nullptr);
   if (options.take_over) arm.device->take_over();
   return arm;
 }

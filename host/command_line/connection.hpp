@@ -25,6 +25,7 @@ class UsageError : public device::Error {
 enum class BoardPace : std::uint8_t {
   as_it_can,
   real_time,  ///< with the clock on the wall
+  lock_step,  ///< only while the command, in one thread, waits for a pose or a request
   as_asked,   ///< stands still from its first instruction on, but while OpenArm::control lets it pass
 };
 

@@ -296,7 +296,7 @@ TEST_CASE("every command explains itself") {
       "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
       "parameters save", "parameters diff", "parameters arm", "parameters store", "parameters restore",
       "parameters stored", "parameters factory", "experiment", "experiment wall", "calibrate", "tune",
-      "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot",
+      "tune current-loop", "check", "check connection", "check directions", "measure", "measure delay", "record", "replay", "plot",
       "reference", "signals", "run", "campaign", "campaign list", "campaign run", "campaign merge", "soak", "devices", "fault",
       "fault clear", "self-test", "force", "force on", "force off",
       "flash"};

@@ -303,3 +303,31 @@ TEST_CASE("a recording that is refused leaves the force off") {
   CHECK(refused.err.find("scope") != std::string::npos);
   CHECK(rig.run({"force"}).out == "The force is off.\n");
 }
+
+TEST_CASE("the delay of a program's force is measured, with its frequency response, and does not grow") {
+  const auto result = run_program("inkwell", {"measure", "delay", "--virtual", "--recordings", "5", "--json"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto measured = nlohmann::json::parse(result.out);
+  CHECK(measured.at("is_simulation") == true);
+  CHECK(measured.at("poses_missed") == 0);
+  REQUIRE(measured.at("recordings").size() == 5);
+  constexpr double period_ms = 1e3 / protocol::servo_rate_Hz;
+  const double first_ms = measured.at("recordings")[0].at("shortest_ms");
+  CHECK(first_ms > 1.0);
+  CHECK(first_ms < 2.5);
+  for (const auto& recording : measured.at("recordings"))
+    CHECK(std::abs(recording.at("longest_ms").get<double>() - first_ms) <= period_ms);
+  REQUIRE(measured.at("responses").size() == 4);
+  for (const auto& response : measured.at("responses")) {
+    const double frequency_Hz = response.at("frequency_Hz");
+    CAPTURE(frequency_Hz);
+    const double turns = M_PI * frequency_Hz / 1000, sinc = std::sin(turns) / turns;
+    const auto& force = response.at("program_force");
+    CHECK(force.at("gain").get<double>() == doctest::Approx(sinc * sinc).scale(0).epsilon(0.03));
+    CHECK(force.at("delay_ms").get<double>() == doctest::Approx(first_ms).scale(0).epsilon(0.05));
+    CHECK(response.at("current").at("gain").get<double>() > 0.75);
+    CHECK(response.at("current").at("gain").get<double>() < 1.05);
+    CHECK(response.at("current").at("delay_ms").get<double>() < 0.5);
+  }
+}
