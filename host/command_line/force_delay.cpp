@@ -17,33 +17,33 @@ namespace inkwell::command_line {
 namespace {
 
 using namespace std::chrono_literals;
+using device::Pose;
 using device::ScopeSamples;
-using protocol::PoseReport;
 using protocol::Signal;
 
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double periods_per_ms = rate_Hz / 1000;
-constexpr std::uint32_t periods_in(double seconds) { return static_cast<std::uint32_t>(seconds * rate_Hz); }
+constexpr std::int64_t periods_in(double seconds) { return static_cast<std::int64_t>(seconds * rate_Hz); }
 /// From the first force of a recording, or of a vibration, until it counts.
-constexpr std::uint32_t settling_periods = periods_in(0.02);
-constexpr std::uint32_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
+constexpr std::int64_t settling_periods = periods_in(0.02);
+constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
 /// Until the last samples of a vibration have come, which has to be complete.
-constexpr std::uint32_t sample_delay_periods = periods_in(0.01);
+constexpr std::int64_t sample_delay_periods = periods_in(0.01);
 
 /// A program that answers each pose with a force along x, and reads the scope between two poses.
 class Program {
  public:
   /// The force for an instant, which is a control period.
-  using Law = std::function<double(std::uint32_t period)>;
+  using Law = std::function<double(std::int64_t period)>;
   using Read = std::function<void(const ScopeSamples&)>;
 
   explicit Program(device::Device& device) : device_(device) {}
 
   /// For so many control periods.
-  void run(std::uint32_t periods, const Law& law, const Read& read) {
-    PoseReport pose = next();
-    for (const std::uint32_t begin = pose.time_periods; pose.time_periods - begin < periods; pose = next()) {
-      if (!protocol::force_is_on(pose.state)) throw device::Error(why_force_went_off(pose));
+  void run(std::int64_t periods, const Law& law, const Read& read) {
+    Pose pose = next();
+    for (const std::int64_t begin = pose.time_periods; pose.time_periods - begin < periods; pose = next()) {
+      if (!protocol::force_is_on(pose.state)) throw device::Error(force_sentence(pose));
       if (sequence_ && pose.sequence != *sequence_ + 1) poses_missed_ += pose.sequence - *sequence_ - 1;
       sequence_ = pose.sequence;
       answer(pose, law(pose.time_periods));
@@ -58,43 +58,43 @@ class Program {
     sequence_.reset();
   }
 
-  std::uint32_t now() { return next().time_periods; }
-  std::uint32_t poses_missed() const { return poses_missed_; }
+  std::int64_t now() { return next().time_periods; }
+  std::int64_t poses_missed() const { return poses_missed_; }
 
  private:
   /// The newest one: those that came during a request are too old to be answered.
-  PoseReport next() {
-    PoseReport pose = next_pose(device_);
+  Pose next() {
+    Pose pose = next_pose(device_);
     while (const auto newer = device_.read_pose(0ms)) pose = *newer;
     return pose;
   }
 
-  void answer(const PoseReport& pose, double force_N) {
+  void answer(const Pose& pose, double force_N) {
     if (!device_.wait_until_written(0ms)) return;  // a command takes the frame
     device_.send_force({.force_N = {static_cast<float>(force_N), 0, 0},
                         .mode = protocol::ForceMode::instead_of_walls,
-                        .pose_sequence = pose.sequence});
+                        .pose_sequence = static_cast<std::uint32_t>(pose.sequence)});
   }
 
   device::Device& device_;
-  std::optional<std::uint32_t> sequence_;
-  std::uint32_t poses_missed_ = 0;
+  std::optional<std::int64_t> sequence_;
+  std::int64_t poses_missed_ = 0;
 };
 
 /// The force rises evenly, so that its value tells the instant for which it was computed.
 ForceDelay::Recording record_ramp(Program& program) {
   program.select({Signal::program_force_x_N});
-  const std::uint32_t begin = program.now();
-  const double N_per_period = 2.0 * delay_force_N / ramp_periods;
-  const auto law = [&](std::uint32_t period) {
-    return std::min(N_per_period * (period - begin), 2.0 * delay_force_N) - delay_force_N;
+  const std::int64_t begin = program.now();
+  const double N_per_period = 2.0 * delay_force_N / static_cast<double>(ramp_periods);
+  const auto law = [&](std::int64_t period) {
+    return std::min(N_per_period * static_cast<double>(period - begin), 2.0 * delay_force_N) - delay_force_N;
   };
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   program.run(ramp_periods, law, [&](const ScopeSamples& samples) {
     for (std::size_t i = 0; i < samples.count; ++i) {
-      const std::uint32_t passed = samples.first_period + static_cast<std::uint32_t>(i) - begin;
+      const std::int64_t passed = samples.first_period + static_cast<std::int64_t>(i) - begin;
       if (passed < settling_periods || passed >= ramp_periods) continue;
-      const double delay = passed - (samples.values[i] + delay_force_N) / N_per_period;
+      const double delay = static_cast<double>(passed) - (samples.values[i] + delay_force_N) / N_per_period;
       shortest = std::min(shortest, delay);
       longest = std::max(longest, delay);
     }
@@ -108,9 +108,9 @@ ForceDelay::Recording record_ramp(Program& program) {
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}
-  double operator()(std::uint32_t period) const { return delay_force_N * std::sin(angle(period)); }
+  double operator()(std::int64_t period) const { return delay_force_N * std::sin(angle(period)); }
   /// `value` times the complex unit that turns with the sine.
-  std::complex<double> part(std::uint32_t period, double value) const {
+  std::complex<double> part(std::int64_t period, double value) const {
     return value * std::complex<double>(std::sin(angle(period)), std::cos(angle(period)));
   }
   Transmission transmission(std::complex<double> from, std::complex<double> to) const {
@@ -121,8 +121,8 @@ class Sine {
   }
 
  private:
-  double angle(std::uint32_t period) const {
-    const double turns = period * (frequency_Hz_ / rate_Hz);
+  double angle(std::int64_t period) const {
+    const double turns = static_cast<double>(period) * (frequency_Hz_ / rate_Hz);
     return 2 * std::numbers::pi * (turns - std::floor(turns));
   }
   double frequency_Hz_;
@@ -132,12 +132,12 @@ Response vibrate(Program& program, double frequency_Hz) {
   const std::vector<Signal> signals{Signal::program_force_x_N, Signal::current_reference_1_A, Signal::current_1_A};
   program.select(signals);
   const Sine sine(frequency_Hz);
-  const std::uint32_t begin = program.now() + settling_periods;
+  const std::int64_t begin = program.now() + settling_periods;
   std::complex<double> computed = 0, force = 0, reference = 0, current = 0;
   program.run(settling_periods + vibration_periods + sample_delay_periods, sine, [&](const ScopeSamples& samples) {
     for (std::size_t i = 0; i < samples.count; ++i) {
-      const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
-      if (period - begin >= vibration_periods) continue;  // before it, the difference wraps
+      const std::int64_t period = samples.first_period + static_cast<std::int64_t>(i);
+      if (period < begin || period >= begin + vibration_periods) continue;
       const float* const row = &samples.values[i * signals.size()];
       computed += sine.part(period, sine(period));
       force += sine.part(period, row[0]);

@@ -25,7 +25,7 @@ struct ForceDelay {
   };
   std::vector<Recording> recordings;
   std::vector<Response> responses;
-  std::uint32_t poses_missed = 0;  ///< by the program, outside of the requests of a recording
+  std::int64_t poses_missed = 0;  ///< by the program, outside of the requests of a recording
 };
 
 /// Amplitude of the vibrations, and bound of all forces.

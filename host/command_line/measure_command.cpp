@@ -49,12 +49,12 @@ class FastForce {
 void hold(device::OpenArm& arm) {
   constexpr device::Vector3 middle_m{0, 0, -0.03};
   auto pose = next_pose(*arm.device);
-  for (const std::uint32_t begin_periods = pose.time_periods; pose.state != protocol::State::ready;
+  for (const std::int64_t begin_periods = pose.time_periods; pose.state != protocol::State::ready;
        pose = next_pose(*arm.device))
     if (pose.time_periods - begin_periods > 5 * protocol::servo_rate_Hz) throw device::Error(force_sentence(pose));
   arm.control->hand({.holds = true, .target_m = middle_m, .stiffness_N_per_m = 1500, .damping_Ns_per_m = 15});
   arm.control->dock(false);
-  const std::uint32_t begin_periods = next_pose(*arm.device).time_periods;
+  const std::int64_t begin_periods = next_pose(*arm.device).time_periods;
   while (next_pose(*arm.device).time_periods - begin_periods < protocol::servo_rate_Hz / 2) arm.device->keep_alive();
 }
 
