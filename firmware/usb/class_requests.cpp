@@ -141,7 +141,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
     return true;
   }
   if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
-  // The TransactionReport says what is wrong with a transaction; a stall would not.
+  // The TransactionReport states the error of a transaction; a stall could not.
   if (is_permitted(link::header_of(data).claim))
     link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
   else

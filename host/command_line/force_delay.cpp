@@ -104,7 +104,7 @@ ForceDelay::Recording record_ramp(Program& program) {
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 
-/// What a sine that began in period 0 became: its part of one frequency.
+/// A sine that began in period 0, and the component of a signal at its frequency.
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}

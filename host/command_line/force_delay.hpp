@@ -1,4 +1,4 @@
-// How long a program's force is on its way from the pose that it answers, and what is left of a vibration.
+// Delay from a pose to the program's force that answers it, and the frequency response of that force.
 #pragma once
 
 #include <vector>
@@ -31,7 +31,7 @@ struct ForceDelay {
 /// Amplitude of the vibrations, and bound of all forces.
 inline constexpr float delay_force_N = 0.5f;
 
-/// The force is on meanwhile, and somebody holds the stylus. Answers each pose with a force along x. Throws
+/// The force must be on, and a hand must hold the stylus. Answers each pose with a force along x. Throws
 /// device::Error if the force goes off.
 ForceDelay measure_force_delay(device::Device& device, int recordings, const std::vector<double>& frequencies_Hz);
 

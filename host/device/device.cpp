@@ -87,7 +87,7 @@ int next_object() {
   return ++opened;
 }
 
-/// Numbers by which this object's requests are told from those of others.
+/// Numbers that distinguish the requests of this object from others.
 struct OwnNumbers {
   std::uint32_t claim, ticket;
   std::uint16_t transaction_ticket;

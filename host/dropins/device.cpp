@@ -74,7 +74,7 @@ void Device::claim() {
   inkwell_pose pose;
   require(inkwell_get_pose(arm(), &pose));
   if (pose.state == INKWELL_ACTIVE) require(inkwell_disable_force(arm()));
-  // What cannot be cleared is told by the first frame.
+  // The first frame reports a fault that cannot be cleared.
   if (pose.state == INKWELL_FAULT && is_of_a_host(pose.fault)) inkwell_clear_fault(arm());
 }
 
@@ -195,7 +195,7 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame tells a lost link, and a fault by what it is; the program is to see that there is no force.
+  // The next frame reports a lost link or a fault with its own code; the program must see that there is no force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_told_lost_;
   is_force_told_lost_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;

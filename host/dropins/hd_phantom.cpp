@@ -67,7 +67,7 @@ struct Servo {
 
 std::atomic<Servo*> current = nullptr;
 
-/// A forked child has one of its own: what is open is its parent's.
+/// A forked child has its own object, because the open devices belong to its parent.
 Servo& servo() {
   static const bool is_made = [] {
     current = new Servo;

@@ -137,7 +137,7 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-// During a silence too: the board may hear what it does not answer.
+// Also during a silence: the board may receive requests that it does not answer.
 void Arm::disable_force() {
   expecting_force_off([this] { linked_device().disable_force(); });
 }

@@ -58,7 +58,7 @@ class Arm {
   /// Drives the arm from now on, as set_force(), place_shapes() and start_servo() do. Throws InUse, naming the driver,
   /// if another program or another arm object of this one drives it.
   void enable_force(double timeout_s);
-  /// Takes the arm over from whoever drives it.
+  /// Takes the arm over from its current driver.
   void take_over();
   void disable_force();
   void stop();

@@ -131,7 +131,7 @@ void Connection::read_poses(const OnPose& on_pose) {
 bool Connection::tell_lost_claim() {
   std::optional<device::Driver> driver;
   if (!arm_.device->try_driver(driver)) return false;
-  // A release by this program itself is no loss.
+  // A release by this program is not a loss.
   if (driver && !driver->is_this_device)
     poses_.lose_claim(fmt::format("The arm was taken over by {}. Its force is the other program's now.",
                                   device::driver_text(*driver)));

@@ -26,7 +26,7 @@ class ForceOutput : private TurnPart {
 
   void set_mode(protocol::ForceMode mode);
   /// `pose_sequence` is that of the newest pose that the program had seen when it computed the force. Throws
-  /// BadArgument for what is no finite number.
+  /// BadArgument if it is not a finite number.
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
   /// The force is over, and fades.
   void let_go();

@@ -96,7 +96,7 @@ void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
 
 void PoseFeed::note(const inkwell_pose& pose, bool is_referenced) {
   const bool is_on = pose.state == INKWELL_ACTIVE;
-  const bool is_first = loss_ == Loss::link;  // of a new link: what was before it is no change
+  const bool is_first = loss_ == Loss::link;  // of a new link: a difference from the old one is not a change
   const bool was_on = is_first ? is_on : seen_.pose.state == INKWELL_ACTIVE;
   if (is_first) had_force_ = false;
   if (was_on && !is_on && !(expects_force_off_ && pose.state == INKWELL_READY)) lose_force(why_off(pose));

@@ -114,7 +114,7 @@ class PoseFeed final : public device::LockStep {
 
   // ---- the force ---------------------------------------------------------------------------------------------
 
-  /// This program gives forces from now on, so that it is told when they are lost.
+  /// This program sets forces from now on, so losses of the force are reported to it.
   void use_force();
   /// This program switches the force on, or accepts that it is off.
   void forget_lost_force();

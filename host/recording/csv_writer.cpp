@@ -98,7 +98,7 @@ class CsvWriter final : public Writer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  process::OwnDescriptor own_;  ///< a child would write what is buffered once more
+  process::OwnDescriptor own_;  ///< a child would write the buffered data again
   std::size_t simulated_;       ///< how many simulated quantities stand behind the signals
   fmt::memory_buffer text_;
 };

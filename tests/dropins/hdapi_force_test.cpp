@@ -222,7 +222,7 @@ TEST_CASE("a force that was set once ends when no poses come, and is not there w
   CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
 }
 
-TEST_CASE("another program's stop is told once, and the force stays off until the program asks for it again") {
+TEST_CASE("another program's stop is reported once, and the force stays off until the program asks for it again") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);
   const auto push = [] { set_force({1, 0, 0}); };

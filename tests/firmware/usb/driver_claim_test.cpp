@@ -212,7 +212,7 @@ TEST_CASE("claim: a reset of the bus ends it") {
   CHECK(bench.driver().is_driven == 0);
 }
 
-TEST_CASE("claim: what is no claim has no effect") {
+TEST_CASE("claim: a malformed report has no effect") {
   DrivenBench bench;
   auto report = claim_report(ClaimOperation::take_over, second);
   report.version = 1;

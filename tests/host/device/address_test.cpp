@@ -75,7 +75,7 @@ TEST_CASE("what is no address is told with one that is") {
   }
 }
 
-TEST_CASE("the path of a socket that cannot be used is told with the reason") {
+TEST_CASE("the error for an unusable socket path states the reason") {
   for (const auto& wrong :
        {std::string("usbip:unix:"), std::string("usbip:unix:/a b"), "usbip:unix:/" + std::string(200, 'x')}) {
     CAPTURE(wrong);

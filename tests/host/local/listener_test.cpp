@@ -106,7 +106,7 @@ TEST_CASE("a socket of another program that took the name stays") {
   CHECK(local::connect_to(path).is_open());
 }
 
-TEST_CASE("a folder that other users may change is no place for a socket") {
+TEST_CASE("a socket is refused in a folder that other users can change") {
   const TemporaryDirectory directory;
   for (const auto others : {fs::perms::others_write, fs::perms::group_write}) {
     fs::permissions(directory.path(), fs::perms::owner_all | others);

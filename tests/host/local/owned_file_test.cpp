@@ -148,7 +148,7 @@ TEST_CASE("a file that took the place of the owned one is not overwritten, and o
   CHECK(text_in(file) == "new");
 }
 
-TEST_CASE("the file that is written first is no link that somebody has put there") {
+TEST_CASE("the temporary file is never a planted link") {
   const TemporaryDirectory directory;
   const fs::path file = directory / "file", victim = directory / "victim";
   std::ofstream(file) << "old";
@@ -208,7 +208,7 @@ TEST_CASE("a program that was started meanwhile does not keep the file") {
   waitpid(process, nullptr, 0);
 }
 
-TEST_CASE("a file system without locks is no obstacle, but there is a warning") {
+TEST_CASE("on a file system without locks there is a warning, and the board goes on") {
   const TemporaryDirectory directory;
   OwnedFile owned(directory / "file", [](int, int) {
     errno = ENOLCK;

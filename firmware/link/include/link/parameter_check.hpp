@@ -44,7 +44,7 @@ struct TransactionHeader {
   std::uint32_t claim;
 };
 
-/// The header of a ParametersReport; zeros for what is missing of it.
+/// The header of a ParametersReport; missing bytes are zero.
 TransactionHeader header_of(std::span<const std::byte> report);
 
 /// What became of a transaction: `set` is valid if `refusal` is accepted.

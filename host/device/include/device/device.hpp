@@ -104,7 +104,7 @@ class Device {
   /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm. If no
   /// such process is on this computer, it was probably killed: then its claim is waited for to end.
   void claim();
-  /// The same, from whoever drives the arm now. The force of that program fades.
+  /// Like claim(), but it ends the claim of the current driver. The force of that program fades.
   void take_over();
   /// Ends the claim, and with it shapes and force. Without effect if this object does not drive, and in a forked child,
   /// whose copy of the claim is its parent's.

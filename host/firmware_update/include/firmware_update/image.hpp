@@ -77,7 +77,7 @@ std::string describe(const protocol::ImageIdentity& identity);
 /// Why this image should not go into a board, a sentence each; none if it should. `there` is the identity of the image
 /// that the board has, if it has one.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
-/// A sentence if the image is older than the firmware that the board has. It is no objection: the image may be fine.
+/// Returns a sentence if the image is older than the installed firmware. This is a warning and not an objection.
 std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 
 /// Throws Objected with the objections, or Downgrade with the warning, unless the user has agreed to them.

@@ -53,7 +53,7 @@ class OwnedFile {
   Flock flock_;
   bool is_locked_ = true;
   Descriptor file_;   ///< what `path_` names now
-  Descriptor first_;  ///< what it named at first: other hard links may still lead there
+  Descriptor first_;  ///< the original file: other hard links may still refer to it
   Descriptor next_;   ///< written in full before it takes the place of the file; locked before others can see it
 };
 

@@ -34,7 +34,7 @@ class CancellationGuard {
 };
 
 /// Around a wait: the thread is cancelled here if its owner allows it. Every frame between this and the interface's
-/// function must unwind: none is noexcept, and each `catch (...)` throws again what is a cancellation.
+/// function must unwind: none is noexcept, and each `catch (...)` rethrows a cancellation.
 class CancellationPoint {
  public:
   CancellationPoint() {

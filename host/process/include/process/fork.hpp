@@ -19,8 +19,8 @@ class Origin {
   pid_t process_ = getpid();
 };
 
-/// Has a fork wait until no other thread holds the mutex, so that a child finds it free and what it guards whole. Both
-/// live until the process ends. A thread that holds the mutex locks no other one of these.
+/// Delays a fork until no other thread holds the mutex, so that a child finds the mutex free and its data complete. The
+/// object and the mutex live until the process ends. A thread that holds such a mutex does not lock another one.
 class HeldAtFork {
  public:
   explicit HeldAtFork(std::mutex& mutex) : HeldAtFork(&mutex, calls_of<std::mutex>) {}
@@ -46,9 +46,9 @@ class HeldAtFork {
   HeldAtFork* const next_;
 };
 
-/// A descriptor that a forked child may not use. There it leads to /dev/null instead, so that the child neither keeps
-/// open what its parent closes, nor writes what its parent has buffered. Belongs to whoever closes the descriptor, and
-/// ends before that.
+/// A descriptor that a forked child may not use. In the child it refers to /dev/null, so that the child neither keeps
+/// the parent's file open nor writes the parent's buffers. The owner of the descriptor destroys this object before it
+/// closes the descriptor.
 class OwnDescriptor {
  public:
   OwnDescriptor() = default;

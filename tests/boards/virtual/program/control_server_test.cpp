@@ -61,7 +61,7 @@ std::ptrdiff_t open_files() {
 }  // namespace
 
 TEST_SUITE("virtual board: control socket") {
-  TEST_CASE("a client of another protocol is told so and disconnected, and nothing that it sends is carried out") {
+  TEST_CASE("a client of another protocol gets an error and is disconnected, and none of its bytes has an effect") {
     AnsweringServer server;
     const std::string command = "{\"command\":\"buttons\",\"pressed\":[true,true]}\n";
     for (const auto& begin : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string("POST / HTTP/1.1\r\n\r\n"),

@@ -67,7 +67,7 @@ TEST_CASE("a board whose process was killed holds up no other, and its place is 
   CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("16 boards use it"), std::runtime_error);
 }
 
-TEST_CASE("a file that is no clock stays as it is") {
+TEST_CASE("a file that is not a clock is not changed") {
   const TemporaryDirectory directory;
   const auto file = directory / "notes";
   std::ofstream(file) << "mine";
