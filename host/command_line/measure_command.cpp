@@ -115,7 +115,7 @@ void add_measure_command(const Place& place) {
   command->require_subcommand(1);
   add_examples(*command, "inkwell measure delay --virtual");
   auto* delay = command->add_subcommand(
-      "delay", "Delay from a pose to the force that answers it, and the frequency response of a program's force");
+      "delay", "Delay from a pose to the program's force that answers it, and its frequency response");
   const auto wanted = std::make_shared<DelayOptions>();
   delay->add_option("--recordings", wanted->recordings, "Recordings of 60 ms in which the delay is measured, 1 to 1000")
       ->type_name("NUMBER")
