@@ -234,8 +234,8 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.control.resume();
   CHECK(rig.look().state() == "ready");
 
-  const auto other_program = device::Device::open(*rig.board.find());
-  other_program->send(protocol::Command::enable_force);
+  RunningProgram other_program(
+      {build_directory() + "/inkwell", "force", "on", "--take-over", "--usbip", rig.board.usbip().text()});
   rig.look_until("the force is on", force_is_on);
   rig.look_until("it is told", [](const Sight& now) { return now.says("what you see is a recording"); });
   rig.click("status/STOP");
