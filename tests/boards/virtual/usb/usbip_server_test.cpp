@@ -458,7 +458,8 @@ TEST_CASE("a client that cannot be accepted for want of files does not hold up t
     REQUIRE(::connect(next.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
     for (int i = 0; i < 3; ++i) board.call([&] { board.usb.settle(); });
   }
-  const auto request = usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list});
+  const usbip::OperationHeader header{.operation = usbip::Operation::request_device_list};
+  const auto request = usbip::bytes_of(header);
   REQUIRE(::send(next.number(), request.data(), request.size(), MSG_NOSIGNAL) == request.size());
   std::array<std::byte, sizeof(usbip::DeviceListReply)> reply{};
   CHECK(::recv(next.number(), reply.data(), reply.size(), MSG_WAITALL) == reply.size());
