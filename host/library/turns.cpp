@@ -27,9 +27,10 @@ Turns::Board::~Board() { leave(); }
 
 bool Turns::is_stepped() const { return std::ranges::any_of(boards_, &Board::is_stepped_); }
 
-void Turns::forget_late_answers(std::chrono::seconds waited) {
-  const bool are_servos_late = waited >= (is_stepped() ? patience_if_stepped : patience);
-  std::erase_if(answering_, [&](const auto& entry) { return entry.second == Answer::loop || are_servos_late; });
+void Turns::forget_late_answers(std::chrono::milliseconds waited) {
+  const Patience& limit = is_stepped() ? patience_if_stepped : patience;
+  std::erase_if(answering_,
+                [&](const auto& entry) { return waited >= (entry.second == Answer::loop ? limit.loop : limit.servo); });
 }
 
 bool Turns::may_begin() const {
@@ -59,7 +60,7 @@ bool Turns::Board::begin() {
   is_ready_ = true;
   const std::uint64_t turn_before = turns_->turn_;
   const auto goes_on = [&] { return has_left_ || turns_->turn_ != turn_before || turns_->may_begin(); };
-  for (auto waited = patience; !turns_->changed_.wait_for(lock, patience, goes_on); waited += patience)
+  for (auto waited = patience.loop; !turns_->changed_.wait_for(lock, patience.loop, goes_on); waited += patience.loop)
     turns_->forget_late_answers(waited);
   if (has_left_) return false;
   if (turns_->turn_ == turn_before) turns_->begin_turn();
@@ -82,7 +83,7 @@ bool Turns::Board::wait_for_servos() {
   std::unique_lock lock(turns_->mutex_);
   const auto is_servo = [](const auto& entry) { return entry.second == Answer::servo; };
   const auto goes_on = [&] { return has_left_ || std::ranges::none_of(turns_->answering_, is_servo); };
-  for (auto waited = patience; !turns_->changed_.wait_for(lock, patience, goes_on); waited += patience)
+  for (auto waited = patience.loop; !turns_->changed_.wait_for(lock, patience.loop, goes_on); waited += patience.loop)
     turns_->forget_late_answers(waited);
   return !has_left_;
 }

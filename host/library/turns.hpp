@@ -77,13 +77,17 @@ class Turns {
   void end_waiting(std::thread::id thread, Answer answer);
 
  private:
-  /// How long an answer may take before board time passes without it; a servo's in a stepped group longer, so that it
-  /// does not depend on the load of the computer.
-  static constexpr std::chrono::seconds patience{3}, patience_if_stepped{60};
+  /// How long an answer may take before board time passes without it. In a stepped group the limits are long, so that
+  /// they do not depend on the load of the computer.
+  struct Patience {
+    std::chrono::milliseconds loop, servo;
+  };
+  static constexpr Patience patience{std::chrono::milliseconds(300), std::chrono::seconds(3)};
+  static constexpr Patience patience_if_stepped{std::chrono::seconds(3), std::chrono::seconds(60)};
 
   bool is_stepped() const;
-  /// Answers that have been waited for so long are waited for no more.
-  void forget_late_answers(std::chrono::seconds waited);
+  /// Stops the wait for answers that have taken too long.
+  void forget_late_answers(std::chrono::milliseconds waited);
   bool may_begin() const;
   void begin_turn();
 
