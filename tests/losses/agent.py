@@ -209,8 +209,12 @@ class HdPhantom:
     def pose(self):
         place = [ctypes.c_double(math.nan) for _ in range(3)]
         turn = [ctypes.c_double(math.nan) for _ in range(9)]
-        result = self.library.hdPhantomGetPosition(0, *map(ctypes.byref, place))
-        turned = self.library.hdPhantomGetRotation(0, *map(ctypes.byref, turn))
+        result, turned = 0, -1
+        for _ in range(3):  # a loss may begin or end between the two
+            result = self.library.hdPhantomGetPosition(0, *map(ctypes.byref, place))
+            turned = self.library.hdPhantomGetRotation(0, *map(ctypes.byref, turn))
+            if (result < 0) == (turned < 0):
+                break
         assert (result < 0) == (turned < 0)
         assert abs(math.hypot(*(each.value for each in turn[:3])) - 1) < 1e-3, [each.value for each in turn]
         self.require(result, place[1].value)
