@@ -59,13 +59,16 @@ FirmwareSymbol firmware_place(std::string_view name) {
 
 std::uint32_t endless_loop_address() {
   constexpr std::string_view loop = "\xBF\xF3\x4F\x8F\xFC\xE7";
+  const FirmwareSymbol waits_for_reset = firmware_place("17start_boot_loader");
   const std::string elf = read_firmware();
   const auto header = read_header<Elf32_Ehdr>(elf, 0);
   for (std::size_t i = 0; i < header.e_phnum; ++i) {
     const auto segment = read_header<Elf32_Phdr>(elf, header.e_phoff + i * sizeof(Elf32_Phdr));
     if (segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0) continue;
     for (std::uint32_t offset = 0; offset + loop.size() <= segment.p_filesz; offset += 2)
-      if (elf.compare(segment.p_offset + offset, loop.size(), loop) == 0) return segment.p_paddr + offset;
+      if (waits_for_reset.contains(segment.p_paddr + offset) &&
+          elf.compare(segment.p_offset + offset, loop.size(), loop) == 0)
+        return segment.p_paddr + offset;
   }
   FAIL("the firmware holds no endless loop to jump to");
   return 0;
