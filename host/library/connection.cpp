@@ -67,7 +67,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
     auto opening = open_arm(address, &poses_);
     arm_ = std::move(opening.arm);
     if (arm_.endpoint.is_virtual)
-      poses_.take_turns(arm_.board ? Turns::of_own_boards() : std::make_shared<Turns>(), opening.is_stepped);
+      poses_.take_turns(arm_.board ? Turns::of_own_boards() : std::make_shared<Turns>(false), opening.is_stepped);
     set_geometry(arm_.device->parameters());
     read_poses([&](const ReadPose& first) {
       // A board of its own has its stylus in the inkwell until the program moves the hand.

@@ -113,7 +113,7 @@ void Turns::Board::leave() {
 
 void Turns::begin_answer(std::thread::id thread, Answer answer) {
   const std::lock_guard lock(mutex_);
-  answering_[thread] = answer;
+  if (is_waited_for(answer)) answering_[thread] = answer;
 }
 
 void Turns::end_answer(std::thread::id thread) {
@@ -135,7 +135,7 @@ Turns::Answer Turns::begin_waiting(std::thread::id thread) {
 void Turns::end_waiting(std::thread::id thread, Answer answer) {
   const std::lock_guard lock(mutex_);
   --waiting_;
-  if (answer != Answer::none) answering_[thread] = answer;
+  if (is_waited_for(answer)) answering_[thread] = answer;
 }
 
 }  // namespace inkwell::library

@@ -24,6 +24,9 @@ class Turns {
   /// Of the virtual boards that this process has started: they share one clock.
   static std::shared_ptr<Turns> of_own_boards();
 
+  /// A board of another process does not wait for loops: other programs use its time too.
+  explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
+
   // ---- threads that read poses, one for each board ----
 
   class Board {
@@ -85,12 +88,16 @@ class Turns {
   static constexpr Patience patience{std::chrono::milliseconds(300), std::chrono::seconds(3)};
   static constexpr Patience patience_if_stepped{std::chrono::seconds(3), std::chrono::seconds(60)};
 
+  bool is_waited_for(Answer answer) const {
+    return answer == Answer::servo || (answer == Answer::loop && waits_for_loops_);
+  }
   bool is_stepped() const;
   /// Stops the wait for answers that have taken too long.
   void forget_late_answers(std::chrono::milliseconds waited);
   bool may_begin() const;
   void begin_turn();
 
+  const bool waits_for_loops_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::set<Board*> boards_;  ///< from their first turn on
