@@ -107,7 +107,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   }
 }
 
-TEST_CASE("a slow servo and a slow loop in C miss no pose of a virtual board") {
+TEST_CASE("a slow servo misses no pose of a virtual board, nor does a slow loop on a board of its own program") {
   std::string address = "virtual";
   std::optional<Board> board;
   SUBCASE("that was started for it") {}
@@ -127,7 +127,8 @@ TEST_CASE("a slow servo and a slow loop in C miss no pose of a virtual board") {
   inkwell_pose pose, before;
   for (int i = 0; i < 40; ++i) {
     REQUIRE(inkwell_wait_for_pose(arm.arm, 10.0, &pose) == INKWELL_OK);
-    if (i > 1) CHECK(pose.sequence == before.sequence + 1);  // from its second force on it is in a loop
+    // From its second force on it is in a loop.
+    if (i > 1 && !board) CHECK(pose.sequence == before.sequence + 1);
     before = pose;
     std::this_thread::sleep_for(slow);
     REQUIRE(inkwell_set_force(arm.arm, none_N) == INKWELL_OK);
