@@ -9,29 +9,16 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <utility>
+#include <stdexcept>
 
 #include <fmt/format.h>
+
+#include <local/descriptor.hpp>
 
 namespace inkwell::device {
 namespace {
 
 constexpr int killed_by = 128;  // as shells report it
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(std::exchange(number_, -1));
-  }
-
- private:
-  int number_;
-};
 
 /// What the child does before its program starts.
 class SpawnActions {
@@ -72,26 +59,21 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-PrivateFolder::PrivateFolder() {
-  std::error_code code;
-  std::string pattern = (std::filesystem::temp_directory_path(code) / "inkwell-XXXXXX").string();
-  if (code || mkdtemp(pattern.data()) == nullptr)
-    throw Error(fmt::format("No temporary folder {} can be made. Check TMPDIR and the space left.", pattern));
-  path_ = pattern;
-}
-
-PrivateFolder::~PrivateFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+local::PrivateFolder make_private_folder() {
+  try {
+    return local::PrivateFolder::for_files();
+  } catch (const std::runtime_error& error) {
+    throw Error(error.what());
+  }
 }
 
 int run_child_program(const ChildProgram& program, const std::function<void(std::string_view)>& on_output) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe can be made: too many files are open. Close some programs.");
-  const Descriptor from_child(ends[0]);
-  Descriptor to_parent(ends[1]);
+  const local::Descriptor from_child(ends[0]);
+  local::Descriptor to_parent(ends[1]);
   const pid_t child = spawn(program, to_parent.number());
-  to_parent.close();
+  to_parent = local::Descriptor();  // so that the end of the child's output is seen
   std::array<char, 4096> chunk;
   for (;;) {
     const ssize_t length = read(from_child.number(), chunk.data(), chunk.size());

@@ -163,7 +163,7 @@ std::vector<std::string> openocd_arguments_for_writing(const std::string& interf
 void update_by_probe(const Image& image, const std::string& interface, Consent consent,
                      const std::function<void(const std::string&)>& on_line) {
   if (!is_interface_name(interface)) throw device::Error(no_interface_name(interface));
-  const device::PrivateFolder folder;
+  const auto folder = device::make_private_folder();
   std::optional<protocol::ImageIdentity> installed;
   if (consent != Consent::to_everything) installed = read_installed(interface, folder.path(), on_line);
   insist(image, installed, consent);

@@ -37,8 +37,7 @@ void check_folder(const fs::path& folder, const SocketAddress& where, std::strin
   if (!fs::is_directory(folder, code))
     throw refusal(where, option, "its folder does not exist. Create the folder, or choose another one");
   if (!only_owner_changes(folder))
-    throw refusal(where, option,
-                  "other users may change its folder. Choose a folder of yours that nobody else can write");
+    throw refusal(where, option, "other users may change its folder. Choose a folder that only you can write");
 }
 
 /// Programs that start at the same time look at a name one after the other. The lock ends with the descriptor. A user

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -36,22 +38,36 @@ bool is_suitable(const char* folder) {
 
 }  // namespace
 
-PrivateFolder::PrivateFolder() {
-  int reason = 0;
-  const std::array<const char*, 3> parents{std::getenv("XDG_RUNTIME_DIR"), std::getenv("TMPDIR"), "/tmp"};
-  for (const char* parent : parents) {
-    if (!is_suitable(parent)) continue;
-    std::string path = std::string(parent) + pattern;
+PrivateFolder PrivateFolder::for_files() {
+  std::error_code ignored;
+  const std::string parent = std::filesystem::temp_directory_path(ignored).string();
+  return PrivateFolder(std::array{parent});
+}
+
+PrivateFolder PrivateFolder::for_sockets() {
+  std::vector<std::string> parents;
+  for (const char* parent : std::array<const char*, 3>{std::getenv("XDG_RUNTIME_DIR"), std::getenv("TMPDIR"), "/tmp"})
+    if (is_suitable(parent)) parents.emplace_back(parent);
+  return PrivateFolder(parents);
+}
+
+PrivateFolder::PrivateFolder(std::span<const std::string> parents) {
+  int reason = ENOENT;
+  for (const std::string& parent : parents) {
+    std::string path = parent + pattern;
     if (::mkdtemp(path.data()) != nullptr) {  // with mode 0700
       path_ = path;
       return;
     }
     reason = errno;
   }
-  throw std::runtime_error(fmt::format("No private folder can be made in /tmp: {}. Set TMPDIR to a folder of yours.",
-                                       std::strerror(reason)));
+  throw std::runtime_error(fmt::format("No private folder can be made in {}: {}. Set TMPDIR to a folder of yours.",
+                                       parents.empty() ? "/tmp" : parents.back(), std::strerror(reason)));
 }
 
-PrivateFolder::~PrivateFolder() { ::rmdir(path_.c_str()); }
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
 
 }  // namespace inkwell::local

@@ -304,7 +304,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
     throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
-  const device::PrivateFolder work;
+  const auto work = device::make_private_folder();
   FigureData data = data_of(recording, quantities, shown, from_s, to_s);
   if (options.over != nullptr) add_over(data, *options.over, quantities);
   data.write(work.path() / "data.csv");

@@ -33,7 +33,7 @@ std::string announced(const local::SocketAddress& address) {
 
 local::SocketAddress PrivateSockets::address_of(const PortOption& option, const std::string& name) {
   if (!option.is_private) return option.address;
-  if (!folder_) folder_.emplace();
+  if (!folder_) folder_.emplace(local::PrivateFolder::for_sockets());
   return {.path = folder_->path() / name};
 }
 

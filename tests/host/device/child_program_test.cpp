@@ -58,7 +58,7 @@ TEST_CASE("a child program's errors, exit code and signal come back, and one tha
 TEST_CASE("a private folder is empty, for this user only, and goes away with its files") {
   std::filesystem::path path;
   {
-    const device::PrivateFolder folder;
+    const auto folder = device::make_private_folder();
     path = folder.path();
     struct stat about {};
     REQUIRE(stat(path.c_str(), &about) == 0);

@@ -142,7 +142,7 @@ TEST_CASE("a private folder lies in the user's runtime folder, or where there is
   fs::path path;
   {
     const Environment runtime("XDG_RUNTIME_DIR", directory.path());
-    const local::PrivateFolder folder;
+    const auto folder = local::PrivateFolder::for_sockets();
     path = folder.path();
     CHECK(path.parent_path() == directory.path());
     CHECK(mode_of(path) == 0700);
@@ -152,6 +152,6 @@ TEST_CASE("a private folder lies in the user's runtime folder, or where there is
   for (const std::string& unsafe :
        {directory.path(), std::string("relative"), std::string("/nowhere"), directory.path() + "/a b"}) {
     const Environment runtime("XDG_RUNTIME_DIR", unsafe), temporary("TMPDIR", unsafe);
-    CHECK(local::PrivateFolder().path().parent_path() == "/tmp");
+    CHECK(local::PrivateFolder::for_sockets().path().parent_path() == "/tmp");
   }
 }

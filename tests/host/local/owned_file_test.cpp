@@ -219,8 +219,6 @@ TEST_CASE("on a file system without locks there is a warning, and the board goes
   CHECK(text_in(directory / "file") == "new");
 }
 
-TEST_CASE("a text for the terminal is printable") {
-  CHECK(local::printable("a b~") == "a b~");
-  CHECK(local::printable("\x1b]0;\x07\x7f\x9b\n\xc3\xa9") == "?]0;??????");
+TEST_CASE("a process is named with its number") {
   CHECK(local::name_of_process(getpid()).ends_with(of_this_process()));
 }

@@ -9,22 +9,12 @@
 #include <vector>
 
 #include <device/error.hpp>
+#include <local/private_folder.hpp>
 
 namespace inkwell::device {
 
-/// A new folder that only this user can open. It goes away with this object.
-class PrivateFolder {
- public:
-  /// Throws Error if the system refuses it.
-  PrivateFolder();
-  ~PrivateFolder();
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+/// A new, empty folder for files. Throws Error if the system refuses it.
+local::PrivateFolder make_private_folder();
 
 struct ChildProgram {
   std::vector<std::string> words;  ///< its name, which is looked for on PATH, and its arguments

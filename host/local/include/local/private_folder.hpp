@@ -2,22 +2,31 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
 
 namespace inkwell::local {
 
-/// In the user's runtime folder (XDG_RUNTIME_DIR) if there is one, else in that for temporary files. Removed with the
-/// object if it is empty then.
+/// Has mode 0700, and is removed with the object and its files. Both functions throw std::runtime_error with a
+/// sentence.
 class PrivateFolder {
  public:
-  /// @throws std::runtime_error with a sentence.
-  PrivateFolder();
+  /// In the folder for temporary files.
+  static PrivateFolder for_files();
+  /// In the user's runtime folder (XDG_RUNTIME_DIR) if there is one, else in the folder for temporary files. Its path
+  /// is short enough for sockets, and no other user can replace the folder.
+  static PrivateFolder for_sockets();
   ~PrivateFolder();
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  PrivateFolder(PrivateFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  PrivateFolder& operator=(PrivateFolder&&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  /// In the first of these folders that allows it.
+  explicit PrivateFolder(std::span<const std::string> parents);
+
   std::filesystem::path path_;
 };
 
