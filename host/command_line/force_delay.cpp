@@ -81,7 +81,7 @@ class Program {
   std::int64_t poses_missed_ = 0;
 };
 
-/// The force rises evenly, so that its value tells the instant for which it was computed.
+/// The force rises linearly, so that its value identifies the instant for which it was computed.
 ForceDelay::Recording record_ramp(Program& program) {
   program.select({Signal::program_force_x_N});
   const std::int64_t begin = program.now();

@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 struct DelayOptions {
   int recordings = 100;
-  bool is_held = false;  ///< somebody holds the stylus of a real arm
+  bool is_held = false;  ///< the user holds the stylus of a real arm
 };
 
 /// Bounds what is measured, unless it is set to its largest value meanwhile.

@@ -40,11 +40,11 @@ constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
 /// The self-test's counter is not widened: only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
-/// A claim that nobody renews has ended by then.
+/// A claim that is not renewed has ended by then.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
 /// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
-/// Objects with the same seed, each on a virtual board of its own, have the same claim.
+/// Objects with the same seed, on different virtual boards, have the same claim.
 class OwnClaims {
  public:
   void add(std::uint32_t digest, int object) {

@@ -57,7 +57,7 @@ class Devices {
 
   const ParentsDevices parents_;
   const process::Origin origin_;
-  std::atomic<Handle> handles_given_ = 0;  ///< so many at most at once
+  std::atomic<Handle> handles_given_ = 0;  ///< upper bound of the number in use
   std::mutex mutex_, opening_;
   std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty places were closed
   Handle current_ = invalid_handle;               ///< for threads that made none current

@@ -9,8 +9,8 @@
 //   ScopeStream  reads samples                   which signals, samples that are not read yet, the recording
 //   Servo        calls the program's function    the function, and whether it is being called
 //
-// Each part has mutexes of its own, and with one held calls no other part but PoseFeed, which calls only Turns with one
-// held. In lock step the thread that reads poses does the work of those of ForceOutput and ScopeStream.
+// Each part has private mutexes. While a part holds one, it may call PoseFeed but no other part; PoseFeed may then call
+// Turns only. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>

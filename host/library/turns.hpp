@@ -39,7 +39,7 @@ class Turns {
 
     /// Until this call, turns of a stepped board begin by themselves.
     void let_program_decide();
-    /// Waits until the next turn begins, for all boards at once. False after `leave`.
+    /// Waits until the next turn begins, in the same instant for all boards. False after `leave`.
     bool begin();
     /// Waits until all boards of the turn are as far. False after `leave`.
     bool meet();

@@ -115,7 +115,7 @@ Pose Arm::wait_for_pose(double timeout_s) {
 }
 
 void Arm::sleep(double duration_s) {
-  if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is no time. Give seconds, from 0 on.");
+  if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is not a time. Give seconds, from 0 on.");
   constexpr double attempt_s = 0.05;  // so that Ctrl-C is heard
   const double end_s = pose().time_s + duration_s;
   for (double left_s = duration_s; left_s > 0; left_s = end_s - pose().time_s) {

@@ -265,7 +265,7 @@ class Hdf5Writer final : public Writer {
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
   process::OwnDescriptor own_;         ///< of the file
   std::vector<Handle> columns_;        ///< of the signals, then of the simulated quantities
-  std::vector<std::int64_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
+  std::vector<std::int64_t> periods_;  ///< of samples that are not in the file yet, with the columns below
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;
   hsize_t size_ = 0;  ///< samples in the file

@@ -177,7 +177,7 @@ Recording read(const std::filesystem::path& file) {
   make_plain(recording);
   if (!recording.periods.empty())
     for (Mark& mark : recording.marks) mark.period = period_after(recording.periods.front(), mark.period);
-  // What a device did is told a moment after what the user notes.
+  // Events of the device arrive shortly after the user's notes.
   std::ranges::stable_sort(recording.marks, {}, &Mark::period);
   recording.name = protocol::plain_text(file.stem().string());
   return recording;

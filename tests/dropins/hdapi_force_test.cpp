@@ -152,7 +152,7 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
       return held.pulled_m(0) > 0.0028;
     }));
   }
-  SUBCASE("set by synchronous calls at 60 Hz beside a reader in each tick") {
+  SUBCASE("set by synchronous calls at 60 Hz, with a reader in each tick") {
     hdDisable(HD_ONE_FRAME_LIMIT);
     const auto reader = hdScheduleAsynchronous(
         [](void* user) {

@@ -17,7 +17,7 @@
 namespace inkwell::tests {
 namespace {
 
-TEST_CASE("forked children neither use nor disturb their parent's arm, and may open one of their own") {
+TEST_CASE("forked children neither use nor disturb their parent's arm, and may open another arm") {
   const TemporaryDirectory directory;
   std::string file;
   SUBCASE("while CSV is written") { file = directory.file("parent.csv"); }

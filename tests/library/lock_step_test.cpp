@@ -65,7 +65,7 @@ struct TimedServo {
 TEST_CASE("recordings add nothing to the delay from pose to force, and a vibration keeps its size") {
   VirtualArm arm("virtual?seed=3");
   arm.make_active();
-  SUBCASE("100 recordings beside a servo") {
+  SUBCASE("100 recordings during a servo") {
     constexpr int recordings = 100;
     // The commands that select signals take the frames of two forces, which is over after 2 ms.
     constexpr std::size_t displaced = 60, rows = 100;
@@ -107,7 +107,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   }
 }
 
-TEST_CASE("a slow servo misses no pose of a virtual board, nor does a slow loop on a board of its own program") {
+TEST_CASE("a slow servo misses no pose of a virtual board; a slow loop misses none of an own board") {
   std::string address = "virtual";
   std::optional<Board> board;
   SUBCASE("that was started for it") {}

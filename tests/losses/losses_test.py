@@ -129,8 +129,7 @@ class Losses(unittest.TestCase):
         self.assertGreater(self.pulled_m(), 0.0025)
 
     def is_not_felt(self, says=None):
-        """Though the program pushes on, for half a second of the board; with `says` it is told why, or was at its last
-        question."""
+        """The program continues to push for half a second of board time. With `says`, it gets an error with this text."""
         end_s = self.board.truth()["board_time_s"] + 0.5
         while self.board.truth()["board_time_s"] < end_s:
             self.ask("push", 1)

@@ -268,7 +268,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // Its flash is erased, and it reports that the image is verified, in the words that it is told.
+  // Its flash is erased. It reports that the image is verified, with the marker from its arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";

@@ -76,7 +76,7 @@ std::ptrdiff_t files_in(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("no port lets a browser in, and clients that do nothing hold up nobody") {
+TEST_CASE("no port accepts a browser, and idle clients block no other client") {
   const BoardWithPorts board("0");
   for (const auto& port : board.ports()) {
     CAPTURE(port);
@@ -114,7 +114,7 @@ TEST_CASE("each port can be a Unix socket that only its user can open, in a fold
   CHECK_NOTHROW(device::find_usbip_devices(board.address("usbip")));
   {
     PlainClient terminal(board.address("uart1"));
-    terminal.send("GET /\n");  // nobody but this user can have sent it
+    terminal.send("GET /\n");  // only this user can have sent it
     CHECK(terminal.receive(6) == "GET /\n");
     PlainClient gdb(board.address("gdb"));
     gdb.send("+$qSupported#37");

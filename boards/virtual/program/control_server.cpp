@@ -102,7 +102,7 @@ bool ControlServer::serve_lines(int socket, std::string& received) {
     const std::string line = received.substr(begin, end - begin);
     if (!may_be_command(line)) break;
     const auto reply = ask(line);
-    // An error may quote bytes of the client that are no UTF-8.
+    // An error may quote bytes of the client that are not UTF-8.
     constexpr auto replace = nlohmann::json::error_handler_t::replace;
     if (!reply || !local::send_all(socket, reply->dump(-1, ' ', false, replace) + '\n')) return false;
   }

@@ -33,7 +33,7 @@ constexpr const char* description =
     "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
     "hand. Its USB device is exported by the USB/IP protocol; a control "
     "socket moves the hand, presses buttons, runs\n"
-    "and stops the time, and tells what no real board could.\n"
+    "stops the time, and reports quantities that a real board cannot measure.\n"
     "A PORT is a TCP port of 127.0.0.1, which every user of this computer can use (0: any free one), or unix:PATH, a\n"
     "Unix socket of mode 0600. `unix:` alone is a socket in a new private folder, which is removed at the end.\n"
     "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"

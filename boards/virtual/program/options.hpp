@@ -39,7 +39,7 @@ struct Options {
   bool slowest_flash = false;    ///< the longest times to erase and program, not the usual
   double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;
-  std::filesystem::path clock;    ///< of a group of boards that share it; empty: a clock of its own
+  std::filesystem::path clock;    ///< file of a clock that several boards share; empty: a separate clock
   bool lock_step = false;         ///< board time passes only while the programs that use the device wait for it
   std::uint64_t seed = 1;         ///< of all noise
   UniqueId unique_id{};           ///< of the chip, and so its serial number

@@ -46,7 +46,7 @@ SharedClock::SharedClock(const std::filesystem::path& file)
   try {
     struct stat about {};
     if (::fstat(file_, &about) != 0 || (about.st_size != 0 && about.st_size != sizeof(Places)))
-      throw failure(file, "it is another file. Name a file of its own.");
+      throw failure(file, "it is not a clock. Name a file that does not exist yet.");
     if (::ftruncate(file_, sizeof(Places)) != 0) throw failure(file, std::strerror(errno));
     void* const memory = ::mmap(nullptr, sizeof(Places), PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     if (memory == MAP_FAILED) throw failure(file, std::strerror(errno));

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto look_again = 100ms;  // whether a client with bytes that nobody takes is gone
+constexpr auto look_again = 100ms;  // checks whether a client with unread bytes has disconnected
 
 }  // namespace
 

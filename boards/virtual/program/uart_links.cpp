@@ -25,7 +25,7 @@ bool may_be_anything(std::string_view) { return true; }
 UartOption UartOption::of(const std::string& text) {
   const auto wrong = [&] {
     return std::invalid_argument(
-        fmt::format("\"{}\" is no UART and its place; write usart1=stdio, usart1=PORT, usart1=unix:PATH or "
+        fmt::format("\"{}\" is not a UART with an address. Write usart1=stdio, usart1=PORT, usart1=unix:PATH or "
                     "usart1=PATH, with usart1 to usart3, uart4, uart5 or usart6.",
                     text));
   };

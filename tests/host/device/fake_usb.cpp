@@ -111,7 +111,7 @@ void LIBUSB_CALL libusb_exit(libusb_context* context) {
   count(-1);
 }
 
-// No file of its own, so that there is none for a forked child to give up.
+// It has no source file, so it has no state that a forked child would have to drop.
 const libusb_pollfd** LIBUSB_CALL libusb_get_pollfds(libusb_context*) { return nullptr; }
 void LIBUSB_CALL libusb_free_pollfds(const libusb_pollfd**) {}
 

@@ -73,7 +73,7 @@ TEST_CASE("in a child the parent's descriptor leads nowhere, and the parent keep
     CHECK(write(ends[1], &byte, 1) == 1);
     CHECK(read(ends[0], &byte, 1) == 1);
   }
-  CHECK(in_child([&] { return write(ends[1], &byte, 1) == 1; }));  // it is nobody's own any more
+  CHECK(in_child([&] { return write(ends[1], &byte, 1) == 1; }));  // no object owns it any more
   CHECK(read(ends[0], &byte, 1) == 1);
   close(ends[0]);
   close(ends[1]);

@@ -1,6 +1,6 @@
 // Forks while the library's threads run: many times in its main thread, then in its servo. A child calls every function
-// on its parent's arm, closes it, opens one of its own, and ends with all destructors. Prints what is not as it should
-// be, then what the parent still has.
+// on its parent's arm, closes it, opens another arm, and exits with all destructors. Prints each deviation, then the
+// state of the parent.
 #include <sys/wait.h>
 #include <unistd.h>
 

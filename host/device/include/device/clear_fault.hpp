@@ -28,8 +28,8 @@ struct ShownFault {
 /// device is asked.
 std::string fault_line(protocol::Fault fault, Device& device);
 
-/// Whether the board has ended the force with this fault because its host was gone or silent. If a program finds it, it
-/// tells of the program before, and nothing is wrong with the arm.
+/// Whether the board raises this fault when its host disconnects or falls silent with the force on. A program that
+/// finds this fault when it starts can clear it: the previous program caused it, and the arm is healthy.
 bool is_left_by_a_host(protocol::Fault fault);
 
 /// Clears the fault and looks for a fifth of a second of the board whether it stays away, or until the self-test is

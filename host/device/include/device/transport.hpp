@@ -17,7 +17,7 @@
 namespace inkwell::device {
 
 /// The calls of a program that is in lock step with a virtual board: each report that the program reads is a turn, and
-/// what calls wait for is looked at once in each turn.
+/// the conditions of waiting calls are checked once per turn.
 class LockStep {
  public:
   virtual ~LockStep() = default;

@@ -27,7 +27,7 @@ std::vector<std::string> openocd_arguments_for_writing(const std::string& interf
 inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
                       verified_line[] = "inkwell: the image is verified";
 
-/// Runs openocd in a folder of its own, because openocd looks for its scripts in its current folder first. Without
+/// Runs openocd in a private folder, because openocd looks for its scripts in its current folder first. Without
 /// consent to everything, a first run reads the identity of the installed firmware. `on_line` gets each line that
 /// openocd prints. Throws Objected and Downgrade as `update` does, and device::Error if there is no openocd, it fails,
 /// or it does not report that the image is verified.

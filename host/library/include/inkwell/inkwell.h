@@ -11,7 +11,7 @@
  * workspace axes; the Omni's are x to the right, y up, z to the user.
  *
  * Every function may be called from any thread, except that inkwell_close() must be the last one for its arm. None of
- * them throws or aborts; each tells how it ended by its result, and inkwell_error_text() says it as a sentence.
+ * them throws or aborts; each returns a result, and inkwell_error_text() returns the error as a sentence.
  *
  * A forked child cannot use an arm that its parent has opened: each function is INKWELL_REFUSED there, but
  * inkwell_close(), which does nothing. A thread may be cancelled: it ends where it waits for a pose, samples, the force or

@@ -97,7 +97,7 @@ TEST_SUITE("virtual board: streams") {
     CHECK(silent.receive(5) == "heard");
   }
 
-  TEST_CASE("bytes that nobody takes wait at the client, in full and in order") {
+  TEST_CASE("unread bytes wait at the client, complete and in order") {
     Receiver receiver(&may_be_terminal);
     PlainClient client(receiver.address());
     std::string sent;
@@ -110,7 +110,7 @@ TEST_SUITE("virtual board: streams") {
     CHECK(receiver.largest <= ByteStream::unread_maximum + 4096);
   }
 
-  TEST_CASE("a client that has gone, with bytes that nobody takes, makes room for the next one") {
+  TEST_CASE("a disconnected client with unread bytes makes room for the next one") {
     Receiver receiver(&may_be_terminal);
     {
       PlainClient gone(receiver.address());

@@ -47,7 +47,7 @@ class Injector {
 
   /// At once, or when its time has come: see next(). Takes the place of one of its kind at the same place. Throws
   /// InvalidInjection if there is nothing at its address, or if it would be one too many. Not from inside
-  /// Chip::run_until(). Returns a number by which it is told from all others, also of the same name and place.
+  /// Chip::run_until(). Returns a number that identifies it, also among others with the same name and position.
   unsigned add(const Injection& injection);
   /// When something is to be done, at the earliest. The board runs as far, then calls carry_out().
   Ticks next() const;
