@@ -52,6 +52,25 @@ TEST_CASE("a window that is closed with the force on lets it fall, and the board
   CHECK(pose->fault == protocol::Fault::none);
 }
 
+TEST_CASE("while another program drives, the window names it, and takes the arm over when asked") {
+  WindowRig rig;
+  RunningProgram other({build_directory() + "/inkwell", "force", "on", "--usbip", rig.board.usbip().text()});
+  REQUIRE(other.read_line() == "The force is on.");
+  const auto change = [&](const char* stiffness) {
+    rig.enter("tuning/wall_stiffness_N_per_m", stiffness);
+    rig.press_key("Return");
+  };
+  change("700");
+  rig.look_until("the driver is named", [](const Sight& now) {
+    return now.has("banner/Take over") && now.says("The arm is driven by inkwell (process");
+  });
+  rig.click("banner/Take over");
+  rig.look_until("the banner is gone", [](const Sight& now) { return !now.has("banner/Take over"); });
+  const auto before = rig.look().applied_at_periods();
+  change("900");
+  rig.look_until("the change has an effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+}
+
 TEST_CASE("a recording is started, marked, stopped and replayed") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("push.h5");
