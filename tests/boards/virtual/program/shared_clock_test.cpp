@@ -71,7 +71,7 @@ TEST_CASE("a file that is not a clock is not changed") {
   const TemporaryDirectory directory;
   const auto file = directory / "notes";
   std::ofstream(file) << "mine";
-  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("it is another file"), std::runtime_error);
+  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("it is not a clock"), std::runtime_error);
   std::string content;
   std::ifstream(file) >> content;
   CHECK(content == "mine");
