@@ -236,7 +236,17 @@ void Device::follow_force_output() {
   force_is_wanted_ = wants_force();
   force_is_asked_for_ = force_is_wanted_;
   fault_is_to_be_cleared_ = force_is_wanted_;
+  off_problem_.reset();
   care_changed_.notify_one();
+}
+
+void Device::wait_until_force_is_off() {
+  std::unique_lock lock(care_mutex_);
+  off_known_.wait(lock, [this] { return force_is_wanted_ || off_problem_; });
+  if (force_is_wanted_ || off_problem_->empty()) return;
+  const auto problem = *off_problem_;
+  lock.unlock();
+  raise(comm_error, problem);
 }
 
 void Device::care() {
@@ -270,20 +280,31 @@ void Device::care() {
       if (pose.state == INKWELL_READY && wanted && asked_for &&
           inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK)
         switched_on = is_on = had_force_ = true;
-      if (!wanted && std::exchange(switched_on, false)) {
-        inkwell_disable_force(arm());
-        lets_fall = is_on;
-      }
       inkwell_information information;
       if (Clock::now() >= heat_at && inkwell_get_information(arm(), &information) == INKWELL_OK) {
         std::copy_n(information.motor_heat, 3, motor_heat_);
         heat_at = Clock::now() + heat_period;
       }
     }
+    std::string off_problem;
+    if (!wanted && switched_on && (is_on || is_link_lost)) {
+      if (inkwell_disable_force(arm()) == INKWELL_OK) {
+        switched_on = false;
+        lets_fall = is_on;
+      } else {
+        off_problem = inkwell_error_text();
+      }
+    }
+    if (!is_on) switched_on = false;
     lock.lock();
+    if (!wanted && !force_is_wanted_) {
+      off_problem_ = off_problem;
+      off_known_.notify_all();
+    }
     if (force_is_wanted_ == wanted && !fault_is_to_be_cleared_) force_is_asked_for_ = asked_for;
-    care_changed_.wait_for(lock, care_period,
-                           [&] { return ends_ || force_is_wanted_ != wanted || fault_is_to_be_cleared_; });
+    care_changed_.wait_for(lock, care_period, [&] {
+      return ends_ || force_is_wanted_ != wanted || fault_is_to_be_cleared_ || (!force_is_wanted_ && !off_problem_);
+    });
   }
 }
 

@@ -93,6 +93,9 @@ class Device {
   void set_scheduler_runs(bool runs);
   /// The program wants its force, again if it was lost.
   void follow_force_output();
+  /// Returns once the board has confirmed that the force is off, or the program wants its force again. Raises
+  /// COMM_ERROR if the board does not confirm it. Called without the lock of Devices.
+  void wait_until_force_is_off();
   /// At the end of a tick: the force of the last frame goes on if the tick had no frame.
   void renew_force();
 
@@ -138,9 +141,12 @@ class Device {
   std::atomic<double> motor_heat_[3]{};
   std::atomic<bool> had_force_ = false;  ///< since the scheduler started and the link was made
   std::mutex care_mutex_;
-  std::condition_variable care_changed_;
+  std::condition_variable care_changed_, off_known_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
   bool force_is_asked_for_ = false;  ///< since it was lost
+  /// Reason why the board did not confirm that the force is off; "" once it has. Not set while the force is wanted or
+  /// the answer is awaited.
+  std::optional<std::string> off_problem_;
   std::thread care_thread_;
 };
 

@@ -122,6 +122,16 @@ void Devices::close_all() {
   }
 }
 
+void Devices::wait_until_forces_are_off() {
+  std::vector<std::shared_ptr<Device>> devices;
+  {
+    const std::lock_guard lock(mutex_);
+    devices = devices_;
+  }
+  for (const auto& device : devices)
+    if (device) device->wait_until_force_is_off();
+}
+
 ParentsDevices Devices::as_parents() const {
   return handles_given_ > 0 ? ParentsDevices{origin_.process(), handles_given_} : parents_;
 }
@@ -134,6 +144,11 @@ Device* Devices::find(Handle handle) {
             ? fmt::format("The device was opened by process {}. Open it again in this process.", parents_.process)
             : std::string());
   return nullptr;
+}
+
+std::shared_ptr<Device> Devices::hold_current() {
+  const Handle handle = current_handle();
+  return find(handle) == nullptr ? nullptr : devices_[handle];
 }
 
 Handle Devices::current_handle() const { return is_open(current_here) ? current_here : current_; }

@@ -34,6 +34,8 @@ class Devices {
   /// Takes the lock itself. False if there is no such device.
   bool close(Handle handle);
   void close_all();
+  /// Returns once every device has its force off. Takes the lock itself.
+  void wait_until_forces_are_off();
 
   // The following with the lock.
 
@@ -43,6 +45,8 @@ class Devices {
   /// program did last.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
+  /// Keeps the current device open while the lock is released; NULL, and BAD_HANDLE is raised, if there is none.
+  std::shared_ptr<Device> hold_current();
   bool make_current(Handle handle);
   /// Only for the calling thread; nothing if there is no such device.
   void make_current_here(Handle handle);

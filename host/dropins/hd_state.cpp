@@ -80,13 +80,6 @@ void with_capability(Enum capability, Action action) {
   });
 }
 
-void switch_capability(Enum capability, bool on) {
-  with_capability(capability, [&](Device& device, bool& is_on) {
-    is_on = on;
-    if (&is_on == &device.capabilities.force_output) device.follow_force_output();
-  });
-}
-
 }  // namespace
 
 void hdGetBooleanv(HdEnum parameter, HdBoolean* values) { get(parameter, type_boolean, values); }
@@ -111,8 +104,24 @@ const char* hdGetString(HdEnum parameter) {
   return text;
 }
 
-void hdEnable(HdEnum capability) { switch_capability(capability, true); }
-void hdDisable(HdEnum capability) { switch_capability(capability, false); }
+void hdEnable(HdEnum capability) {
+  with_capability(capability, [](Device& device, bool& is_on) {
+    is_on = true;
+    if (&is_on == &device.capabilities.force_output) device.follow_force_output();
+  });
+}
+
+void hdDisable(HdEnum capability) {
+  std::shared_ptr<Device> switched_off;
+  with_capability(capability, [&](Device& device, bool& is_on) {
+    is_on = false;
+    if (&is_on != &device.capabilities.force_output) return;
+    device.follow_force_output();
+    switched_off = runtime().devices.hold_current();
+  });
+  // A callback does not wait, because the ticks would stop meanwhile.
+  if (switched_off && !runtime().scheduler.tick_of_caller()) guarded([&] { switched_off->wait_until_force_is_off(); });
+}
 
 HdBoolean hdIsEnabled(HdEnum capability) {
   HdBoolean answer = 0;

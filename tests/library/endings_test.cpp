@@ -26,8 +26,8 @@ const Words everything{"stop", "disable", "clear", "set", "store", "shapes"},
     without_shapes{"stop", "disable", "clear", "set", "store"};
 const Words every_end{"close", "exit", "kill", "unplug"};
 
-/// With the commands and the ends that the interface has. Commands of the drop-ins return no result; the end of their
-/// device does. The command line and the window have done all when they end by themselves.
+/// With the commands and the endings that each interface has. A command of the command line or the window is complete
+/// when its program exits.
 std::vector<Interface> interfaces() {
   const std::string build = build_directory(), programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
   std::vector<Interface> all{
@@ -37,11 +37,12 @@ std::vector<Interface> interfaces() {
       {"window", {build + "/window-ending"}, without_shapes, {"exit", "unplug"}}};
 #ifndef __SANITIZE_ADDRESS__  // interpreters that were built without it do not load libraries that have it
   all.push_back({"Python", {INKWELL_PYTHON, programs + "ending.py"}, everything, every_end});
-  for (const char* const dropin : {"hdapi", "hdphantom"})
-    all.push_back({dropin,
-                   {INKWELL_PYTHON, programs + "dropin_ending.py", build, dropin},
-                   {"disable"},
-                   {"exit", "kill", "unplug"}});
+  const auto add_dropin = [&](const std::string& name, Words commands) {
+    const Words words{INKWELL_PYTHON, programs + "dropin_ending.py", build, name};
+    all.push_back({name, words, std::move(commands), {"exit", "kill", "unplug"}});
+  };
+  add_dropin("hdapi", {"disable", "stop_scheduler", "close_device"});
+  add_dropin("hdphantom", {"stop_scheduler", "close_device"});
 #ifdef INKWELL_OCTAVE
   all.push_back({"Octave",
                  {INKWELL_OCTAVE, "--norc", "--quiet", "--path", build + "/octave", programs + "ending.m"},

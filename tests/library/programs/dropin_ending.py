@@ -1,6 +1,7 @@
-"""As ending.cpp, through the drop-ins, whose only command that returns with its effect ends the device:
+"""As ending.cpp, through the drop-ins, whose commands switch the force off:
 
-    dropin_ending.py BUILD_FOLDER hdapi | hdphantom  disable  exit|kill|wait
+    dropin_ending.py BUILD_FOLDER hdapi      disable|stop_scheduler|close_device  exit|kill|wait
+    dropin_ending.py BUILD_FOLDER hdphantom  stop_scheduler|close_device          exit|kill|wait
 """
 
 import ctypes
@@ -9,8 +10,14 @@ import pathlib
 import signal
 import sys
 
-folder, interface, _, ending = sys.argv[1:]
+folder, interface, command, ending = sys.argv[1:]
 dropins = pathlib.Path(folder) / "dropins"
+
+
+class ErrorInfo(ctypes.Structure):
+    _fields_ = [("code", ctypes.c_uint), ("internal", ctypes.c_int), ("device", ctypes.c_uint)]
+
+
 hd = ctypes.CDLL(dropins / "libHD.so", mode=ctypes.RTLD_GLOBAL)
 TICKS = 500  # in which the force comes on
 if interface == "hdapi":
@@ -29,7 +36,12 @@ if interface == "hdapi":
     hd.hdEnable(FORCE_OUTPUT)
     hd.hdStartScheduler()
     hd.hdScheduleSynchronous(tick, None, ctypes.c_ushort(100))
-    hd.hdDisableDevice(device)
+    commands = {"disable": lambda: hd.hdDisable(FORCE_OUTPUT),
+                "stop_scheduler": hd.hdStopScheduler,
+                "close_device": lambda: hd.hdDisableDevice(device)}
+    commands[command]()
+    hd.hdGetError.restype = ErrorInfo
+    assert hd.hdGetError().code == 0
 else:
     phantom = ctypes.CDLL(dropins / "libhdPhantom.so")
     zero = ctypes.c_double(0)
@@ -37,7 +49,10 @@ else:
     assert phantom.hdPhantomOpen(0) == 0
     for _ in range(TICKS):
         phantom.hdPhantomSetForce(0, ctypes.byref(zero), ctypes.byref(zero), ctypes.byref(zero))
-    assert phantom.hdPhantomClose(0) == 0
+    if command == "stop_scheduler":
+        phantom.hdPhantomStopServo()
+    else:
+        assert phantom.hdPhantomClose(0) == 0
 print("returned", flush=True)
 if ending == "exit":
     sys.exit(0)
