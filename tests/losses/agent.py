@@ -1,13 +1,17 @@
 """A program of one interface, asked line by line; losses_test.py says for what.
 
-    agent.py BUILD_FOLDER c | python | hdapi | hdphantom
+    agent.py BUILD_FOLDER c | python | hdapi | hdphantom | command-line
 """
 
 import ctypes
+import json
 import math
 import os
 import pathlib
+import signal
+import subprocess
 import sys
+import time
 
 BUILD = pathlib.Path(sys.argv[1])
 PUSHES = 30
@@ -225,7 +229,63 @@ class HdPhantom:
         self.require(self.library.hdPhantomClose(0))
 
 
-INTERFACES = {"c": C, "python": Python, "hdapi": Hdapi, "hdphantom": HdPhantom}
+class CommandLine:
+    """`inkwell force on` drives for as long as it runs, `inkwell watch` reads poses. Neither asks for a force: the hand
+    feels a wall of the box."""
+
+    def __init__(self):
+        self.server = ""
+        self.force = self.watch = None
+        self.said = ""  # by the last `force on`
+        self.x_m = 0.0
+
+    def start(self, *words):
+        return subprocess.Popen([BUILD / "inkwell", *words, "--usbip", self.server],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def fail(self, sentence):
+        raise Failed(f"{self.x_m} {sentence.strip()}")
+
+    def open(self, address):
+        self.close()
+        self.server = address.removeprefix("usbip:")
+        self.enable()
+
+    def enable(self):
+        if self.force and self.force.poll() is None:
+            return
+        subprocess.run([BUILD / "inkwell", "fault", "clear", "--usbip", self.server], capture_output=True)
+        self.force, self.said = self.start("force", "on"), ""
+        if not self.force.stdout.readline():
+            self.said = self.force.communicate()[1]
+            self.fail(self.said)
+
+    def pose(self):
+        """The next line of one that runs, from its start or the last question on."""
+        self.watch = self.watch or self.start("watch", "--json", "--rate", "20")
+        line = self.watch.stdout.readline()
+        if not line:
+            watch, self.watch = self.watch, None
+            self.fail(watch.communicate()[1])
+        self.x_m = json.loads(line)["position_m"][0]
+        return self.x_m
+
+    def push(self, _):
+        if self.force is None:
+            self.fail("No command has the force on.")
+        time.sleep(0.03)
+        if self.force.poll() is not None:
+            self.said = self.said or self.force.stderr.read()
+            self.fail(self.said)
+
+    def close(self):
+        for program in filter(None, (self.force, self.watch)):
+            program.send_signal(signal.SIGINT)
+            program.wait(60)
+        self.force = self.watch = None
+
+
+INTERFACES = {"command-line": CommandLine, "c": C, "python": Python, "hdapi": Hdapi, "hdphantom": HdPhantom}
 
 
 def main():
@@ -238,6 +298,8 @@ def main():
             print("ok" if answer is None else f"ok {answer}", flush=True)
         except Failed as failure:
             print("error", failure, flush=True)
+    if isinstance(interface, CommandLine):
+        interface.close()
     os._exit(0)
 
 
