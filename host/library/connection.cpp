@@ -20,6 +20,7 @@ constexpr auto first_pose_limit = 60s;
 constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
+static_assert(Turns::patience.servo < silence_limit);
 /// A process that was stopped and goes on has not listened meanwhile: a longer wait counts as this one.
 constexpr auto longest_wait = 50ms;
 

@@ -27,6 +27,15 @@ class Turns {
   /// A board of another process does not wait for loops: other programs use its time too.
   explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
 
+  /// How long an answer may take before board time passes without it. In a stepped group the limits are long, so that
+  /// they do not depend on the load of the computer. The others are shorter than the silence after which a program
+  /// regards its board as lost: a servo that hangs does not take the board from other programs.
+  struct Patience {
+    std::chrono::milliseconds loop, servo;
+  };
+  static constexpr Patience patience{std::chrono::milliseconds(300), std::chrono::milliseconds(1500)};
+  static constexpr Patience patience_if_stepped{std::chrono::seconds(3), std::chrono::seconds(60)};
+
   // ---- threads that read poses, one for each board ----
 
   class Board {
@@ -80,14 +89,6 @@ class Turns {
   void end_waiting(std::thread::id thread, Answer answer);
 
  private:
-  /// How long an answer may take before board time passes without it. In a stepped group the limits are long, so that
-  /// they do not depend on the load of the computer.
-  struct Patience {
-    std::chrono::milliseconds loop, servo;
-  };
-  static constexpr Patience patience{std::chrono::milliseconds(300), std::chrono::seconds(3)};
-  static constexpr Patience patience_if_stepped{std::chrono::seconds(3), std::chrono::seconds(60)};
-
   bool is_waited_for(Answer answer) const {
     return answer == Answer::servo || (answer == Answer::loop && waits_for_loops_);
   }
