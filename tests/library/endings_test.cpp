@@ -82,16 +82,27 @@ struct Watched : Board {
     while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  /// Repeats a call of the watcher while poses do not come: after a pulled cable, or on a busy computer.
+  template <class Call>
+  void require(Call call) {
+    auto result = INKWELL_DISCONNECTED;
+    for (int i = 0; i < 6'000 && result == INKWELL_DISCONNECTED; ++i) {
+      if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      result = call(watcher.arm);
+    }
+    REQUIRE_MESSAGE(result == INKWELL_OK, std::string(inkwell_error_text()));
+  }
   double stiffness_N_per_m() {
     double value = 0;
-    REQUIRE(inkwell_get_parameter(watcher.arm, "wall_stiffness_N_per_m", &value) == INKWELL_OK);
+    require([&](inkwell_arm* arm) { return inkwell_get_parameter(arm, "wall_stiffness_N_per_m", &value); });
     return value;
   }
 
   void prepare(const std::string& command) {
     if (command == "clear") {
       control.inject({"bridge_fault"});
-      watcher.wait_until([](const auto& pose) { return pose.state == INKWELL_FAULT; });
+      while (newest().state != INKWELL_FAULT) {
+      }
       control.heal("bridge_fault");
     } else if (command == "stop") {
       driver.emplace(address);
@@ -99,10 +110,14 @@ struct Watched : Board {
     } else if (command == "set") {
       const char* const name = "wall_stiffness_N_per_m";
       const double value = 500;
-      REQUIRE(inkwell_set_parameters(watcher.arm, &name, &value, 1) == INKWELL_OK);
+      require([&](inkwell_arm* arm) { return inkwell_set_parameters(arm, &name, &value, 1); });
     } else if (command == "store") {
-      REQUIRE(inkwell_factory_reset(watcher.arm) == INKWELL_OK);
-      watcher.be_patient();
+      require(inkwell_factory_reset);
+      require([](inkwell_arm* arm) {
+        const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
+        const double values[]{2.0, 0.5};
+        return inkwell_set_parameters(arm, names, values, 2);
+      });
     }
   }
   /// What the command was for is so, and nothing else of the program is left.
@@ -112,12 +127,12 @@ struct Watched : Board {
     if (command == "set") CHECK(stiffness_N_per_m() == 777);
     if (command == "store") {
       inkwell_store store{};
-      REQUIRE(inkwell_get_store(watcher.arm, &store) == INKWELL_OK);
+      require([&](inkwell_arm* arm) { return inkwell_get_store(arm, &store); });
       CHECK(store.contents == INKWELL_STORED_PARAMETERS);
     }
     inkwell_driver left{.is_driven = 1};
     for (int i = 0; i < 6'000 && left.is_driven != 0; ++i) {
-      REQUIRE(inkwell_get_driver(watcher.arm, &left) == INKWELL_OK);
+      require([&](inkwell_arm* arm) { return inkwell_get_driver(arm, &left); });
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     CHECK(left.is_driven == 0);

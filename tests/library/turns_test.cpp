@@ -169,8 +169,8 @@ TEST_CASE("a lost link ends every wait, and its board takes turns with the other
   std::thread waits(
       [&] { CHECK_THROWS_AS(poses[0].wait([](const auto&, Loss) { return false; }), device::Disconnected); });
   waits.join();
-  CHECK(part.losses == 1);
   while (poses[0].last().pose.sequence < 51) std::this_thread::yield();  // a wait would end with the loss
+  CHECK(part.losses == 1);
   poses[0].let_program_decide();
   const auto now = poses[0].wait([](const auto&, Loss) { return false; }, 0.1);
   CHECK(board->sequence() == now.sequence);
