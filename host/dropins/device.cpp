@@ -263,6 +263,7 @@ void Device::care() {
     const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
     // A silence changes nothing here; the wait ends in time then.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
+    std::string off_problem = is_link_lost ? inkwell_error_text() : "";
     // A force that was taken away by another program, by a fault that does not pass, or with the link, is not switched
     // on again unless the program asks for it.
     const bool was_on = is_on;
@@ -286,8 +287,7 @@ void Device::care() {
         heat_at = Clock::now() + heat_period;
       }
     }
-    std::string off_problem;
-    if (!wanted && switched_on && (is_on || is_link_lost)) {
+    if (!wanted && switched_on && is_on) {
       if (inkwell_disable_force(arm()) == INKWELL_OK) {
         switched_on = false;
         lets_fall = is_on;

@@ -108,9 +108,8 @@ void hdStopScheduler(void) {
       const std::lock_guard lock(runtime().devices.mutex());
       runtime().devices.set_scheduler_runs(false);
     }
-    const bool is_in_tick = runtime().scheduler.tick_of_caller().has_value();
     runtime().scheduler.stop(for_ever);
-    if (!is_in_tick) runtime().devices.wait_until_forces_are_off();
+    if (!runtime().scheduler.tick_of_caller()) runtime().devices.wait_until_forces_are_off();
   });
 }
 

@@ -80,6 +80,18 @@ void with_capability(Enum capability, Action action) {
   });
 }
 
+/// Returns the device if the capability is its force output.
+std::shared_ptr<Device> switch_capability(Enum capability, bool on) {
+  std::shared_ptr<Device> switched;
+  with_capability(capability, [&](Device& device, bool& is_on) {
+    is_on = on;
+    if (&is_on != &device.capabilities.force_output) return;
+    device.follow_force_output();
+    switched = runtime().devices.hold_current();
+  });
+  return switched;
+}
+
 }  // namespace
 
 void hdGetBooleanv(HdEnum parameter, HdBoolean* values) { get(parameter, type_boolean, values); }
@@ -104,23 +116,12 @@ const char* hdGetString(HdEnum parameter) {
   return text;
 }
 
-void hdEnable(HdEnum capability) {
-  with_capability(capability, [](Device& device, bool& is_on) {
-    is_on = true;
-    if (&is_on == &device.capabilities.force_output) device.follow_force_output();
-  });
-}
+void hdEnable(HdEnum capability) { switch_capability(capability, true); }
 
 void hdDisable(HdEnum capability) {
-  std::shared_ptr<Device> switched_off;
-  with_capability(capability, [&](Device& device, bool& is_on) {
-    is_on = false;
-    if (&is_on != &device.capabilities.force_output) return;
-    device.follow_force_output();
-    switched_off = runtime().devices.hold_current();
-  });
+  const auto device = switch_capability(capability, false);
   // A callback does not wait, because the ticks would stop meanwhile.
-  if (switched_off && !runtime().scheduler.tick_of_caller()) guarded([&] { switched_off->wait_until_force_is_off(); });
+  if (device && !runtime().scheduler.tick_of_caller()) guarded([&] { device->wait_until_force_is_off(); });
 }
 
 HdBoolean hdIsEnabled(HdEnum capability) {

@@ -298,6 +298,27 @@ TEST_CASE("a lost link is an error of communication, and the device may be opene
   CHECK(until([&] { return hdCheckCalibration() == HD_CALIBRATION_OK; }));
 }
 
+TEST_CASE("a force that the board cannot confirm to be off is an error of communication") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+  const auto check = [&] {
+    SUBCASE("hdDisable") { hdDisable(HD_FORCE_OUTPUT); }
+    SUBCASE("hdStopScheduler") { hdStopScheduler(); }
+  };
+  SUBCASE("confirmed") {
+    check();
+    CHECK(only_error() == HD_SUCCESS);
+  }
+  SUBCASE("the cable is unplugged") {
+    held.control.usb(false);
+    while (hdCheckCalibration() == HD_CALIBRATION_OK) std::this_thread::yield();
+    forget_errors();
+    check();
+    CHECK(only_error() == HD_COMM_ERROR);
+  }
+}
+
 TEST_CASE("a lost link is back by itself, with the force off until the program asks for it again") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);

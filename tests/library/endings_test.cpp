@@ -101,8 +101,7 @@ struct Watched : Board {
   void prepare(const std::string& command) {
     if (command == "clear") {
       control.inject({"bridge_fault"});
-      while (newest().state != INKWELL_FAULT) {
-      }
+      for (int i = 0; newest().state != INKWELL_FAULT; ++i) REQUIRE(i < 6'000);
       control.heal("bridge_fault");
     } else if (command == "stop") {
       driver.emplace(address);
@@ -113,11 +112,7 @@ struct Watched : Board {
       require([&](inkwell_arm* arm) { return inkwell_set_parameters(arm, &name, &value, 1); });
     } else if (command == "store") {
       require(inkwell_factory_reset);
-      require([](inkwell_arm* arm) {
-        const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
-        const double values[]{2.0, 0.5};
-        return inkwell_set_parameters(arm, names, values, 2);
-      });
+      require(set_patience);
     }
   }
   /// What the command was for is so, and nothing else of the program is left.

@@ -18,6 +18,13 @@ inline bool says(const std::string& words) {
   return std::string(inkwell_error_text()).find(words) != std::string::npos;
 }
 
+/// Long limits for late programs: a busy computer is not under test.
+inline inkwell_result set_patience(inkwell_arm* arm) {
+  const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
+  const double values[]{2.0, 0.5};
+  return inkwell_set_parameters(arm, names, values, 2);
+}
+
 struct VirtualArm {
   inkwell_arm* arm = nullptr;
   explicit VirtualArm(const std::string& address = "virtual") {
@@ -43,12 +50,7 @@ struct VirtualArm {
     return pose;
   }
 
-  /// On a busy computer the programs are late, which is not what is tested.
-  void be_patient() {
-    const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
-    const double values[]{2.0, 0.5};
-    REQUIRE(inkwell_set_parameters(arm, names, values, 2) == INKWELL_OK);
-  }
+  void be_patient() { REQUIRE(set_patience(arm) == INKWELL_OK); }
   void hold_in_the_open() {
     wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
     REQUIRE(inkwell_move_virtual_hand(arm, free_point_m, hand_N_per_m) == INKWELL_OK);

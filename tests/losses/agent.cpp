@@ -1,9 +1,13 @@
-// A program of the C++ interface, asked line by line; losses_test.py says for what.
+// Carries out the commands of losses_test.py through the C++ interface.
 #include <iostream>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include <inkwell/inkwell.hpp>
+
+#include "answer_commands.hpp"
 
 namespace {
 
@@ -51,15 +55,13 @@ void carry_out(std::istringstream& words) {
 }  // namespace
 
 int main() {
-  for (std::string line; std::getline(std::cin, line);) {
-    std::istringstream words(line);
+  inkwell::tests::answer_commands([](std::istringstream& words) {
     try {
       carry_out(words);
     } catch (const inkwell::Disconnected& lost) {
-      std::cout << "error " << lost.last_pose.position_m[0] << ' ' << lost.what() << std::endl;
+      throw std::runtime_error(std::to_string(lost.last_pose.position_m[0]) + " " + lost.what());
     } catch (const std::exception& error) {
-      std::cout << "error 0 " << error.what() << std::endl;
+      throw std::runtime_error(std::string("0 ") + error.what());
     }
-  }
-  return 0;
+  });
 }

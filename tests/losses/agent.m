@@ -1,4 +1,4 @@
-% A program of the Octave interface, asked line by line; losses_test.py says for what.
+% Carries out the commands of losses_test.py through the Octave functions.
 1;
 
 function carry_out(words)

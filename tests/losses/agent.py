@@ -1,4 +1,4 @@
-"""A program of one interface, asked line by line; losses_test.py says for what.
+"""Carries out the commands of losses_test.py through one interface:
 
     agent.py BUILD_FOLDER c | python | hdapi | hdphantom | command-line
 """
@@ -230,13 +230,13 @@ class HdPhantom:
 
 
 class CommandLine:
-    """`inkwell force on` drives for as long as it runs, `inkwell watch` reads poses. Neither asks for a force: the hand
+    """`inkwell force on` drives for as long as it runs, `inkwell watch` reads poses. Neither sends a force: the hand
     feels a wall of the box."""
 
     def __init__(self):
         self.server = ""
         self.force = self.watch = None
-        self.said = ""  # by the last `force on`
+        self.force_error = ""  # of the last `force on`
         self.x_m = 0.0
 
     def start(self, *words):
@@ -255,13 +255,13 @@ class CommandLine:
         if self.force and self.force.poll() is None:
             return
         subprocess.run([BUILD / "inkwell", "fault", "clear", "--usbip", self.server], capture_output=True)
-        self.force, self.said = self.start("force", "on"), ""
+        self.force, self.force_error = self.start("force", "on"), ""
         if not self.force.stdout.readline():
-            self.said = self.force.communicate()[1]
-            self.fail(self.said)
+            self.force_error = self.force.communicate()[1]
+            self.fail(self.force_error)
 
     def pose(self):
-        """The next line of one that runs, from its start or the last question on."""
+        """The position in the next line of a running `watch`."""
         self.watch = self.watch or self.start("watch", "--json", "--rate", "20")
         line = self.watch.stdout.readline()
         if not line:
@@ -275,8 +275,8 @@ class CommandLine:
             self.fail("No command has the force on.")
         time.sleep(0.03)
         if self.force.poll() is not None:
-            self.said = self.said or self.force.stderr.read()
-            self.fail(self.said)
+            self.force_error = self.force_error or self.force.stderr.read()
+            self.fail(self.force_error)
 
     def close(self):
         for program in filter(None, (self.force, self.watch)):

@@ -13,6 +13,8 @@
 #include <device/open_arm.hpp>
 #include <device_desk/device_desk.hpp>
 
+#include "answer_commands.hpp"
+
 namespace {
 
 using namespace inkwell;
@@ -91,14 +93,4 @@ void carry_out(std::istringstream& words) {
 
 }  // namespace
 
-int main() {
-  for (std::string line; std::getline(std::cin, line);) {
-    std::istringstream words(line);
-    try {
-      carry_out(words);
-    } catch (const std::exception& error) {
-      std::cout << "error " << error.what() << std::endl;
-    }
-  }
-  return 0;
-}
+int main() { inkwell::tests::answer_commands(carry_out); }

@@ -43,7 +43,7 @@ struct BoardAndCompanion {
     while (!board.find()) control.run(0.1);
     control.run(0.5);
     control.resume();
-    // On a busy computer the companion is late, which no case here is about.
+    // On a busy computer the companion may be late. No case here tests that.
     REQUIRE(run({"parameters", "set", "host_timeout_s=2"}).exit_code == 0);
   }
 };
