@@ -107,8 +107,8 @@ Answer Device::get_report(const SetupPacket& setup) {
       return Answer::send(buffer.first(link_.stored.read(*report)));
     }
     case report_value(feature_report, ReportId::driver): return send(link_.driver.report(link_.poses.newest_periods()));
-    case report_value(feature_report, ReportId::command_results):
-      return send(link_.command_results.report(link_.status.state(), link_.poses.newest_periods()));
+    case report_value(feature_report, ReportId::request_results):
+      return send(link_.request_results.report(link_.status.state(), link_.poses.newest_periods()));
     case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
     case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
     default: return Answer::stall();

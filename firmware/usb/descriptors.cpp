@@ -89,7 +89,7 @@ constexpr auto report_descriptor =
          report(ReportId::store, 14, feature_item, sizeof(protocol::StoreReport)),
          report(ReportId::stored, 15, feature_item, sizeof(protocol::ParametersReport)),
          report(ReportId::driver, 16, feature_item, sizeof(protocol::DriverReport)),
-         report(ReportId::command_results, 17, feature_item, sizeof(protocol::CommandResultsReport)),
+         report(ReportId::request_results, 17, feature_item, sizeof(protocol::RequestResultsReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------

@@ -117,7 +117,7 @@ void Device::bus_reset() {
 
 void Device::host_gone() {
   link_.commands.host_gone();
-  link_.command_results.forget();
+  link_.request_results.forget();
   link_.driver.end();
   link_.program.driver_gone();
   if (held_command_) {
@@ -291,7 +291,7 @@ void Device::take_force(std::span<const std::byte> report) {
 bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   if (!command) return true;
   if (protocol::needs_claim(command->command) && !is_permitted(command->claim)) {
-    link_.command_results.note_refused(*command);
+    link_.request_results.note_dropped(*command, protocol::RequestResult::not_the_driver);
     return true;
   }
   // While a program drives, its sign of life alone keeps the force on.
@@ -303,7 +303,7 @@ bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
     link_.stored.ask(command->command, may_store());
   const bool was_pushed = link_.commands.push(*command);
-  if (was_pushed) link_.command_results.note_queued(*command);
+  if (was_pushed) link_.request_results.note_queued(*command);
   return was_pushed;
 }
 

@@ -321,8 +321,8 @@ struct Device::Implementation {
       lose_claim();
   }
 
-  protocol::CommandResultsReport command_results() {
-    protocol::CommandResultsReport report{};
+  protocol::RequestResultsReport request_results() {
+    protocol::RequestResultsReport report{};
     {
       const std::lock_guard lock(feature_mutex);
       get(report, "command results");
@@ -339,12 +339,12 @@ struct Device::Implementation {
     });
     std::optional<std::uint32_t> begin_periods;
     for (;;) {
-      const auto report = command_results();
+      const auto report = request_results();
       if (!begin_periods) begin_periods = report.time_periods;
-      const auto* entry = std::ranges::find(report.entries, command.ticket, &protocol::CommandResultEntry::ticket);
+      const auto* entry = std::ranges::find(report.entries, command.ticket, &protocol::RequestResultEntry::ticket);
       if (entry != std::end(report.entries)) {
-        if (entry->result == protocol::CommandResult::carried_out) return;
-        if (entry->result == protocol::CommandResult::not_the_driver) throw driven_by_another();
+        if (entry->result == protocol::RequestResult::carried_out) return;
+        if (entry->result == protocol::RequestResult::not_the_driver) throw driven_by_another();
       }
       if (report.time_periods - *begin_periods > command_patience_periods)
         throw Error("The board has not carried out a command. Reset it and try again.");
@@ -504,19 +504,19 @@ void Device::carry_out(Command command, const protocol::TestPulse& pulse) {
 
 void Device::stop() {
   carry_out(Command::stop);
-  if (protocol::force_is_on(implementation_->command_results().state))
+  if (protocol::force_is_on(implementation_->request_results().state))
     throw Error("The force is on again: another program has switched it on. End that program.");
 }
 
 void Device::disable_force() {
   carry_out(Command::disable_force);
-  auto report = implementation_->command_results();
+  auto report = implementation_->request_results();
   const std::uint32_t begin_periods = report.time_periods;
   while (protocol::force_is_on(report.state)) {
     if (report.time_periods - begin_periods > landing_patience_periods)
       throw Error("The force is still on: another program switches it on again. End that program.");
     keep_alive();
-    report = implementation_->command_results();
+    report = implementation_->request_results();
   }
 }
 

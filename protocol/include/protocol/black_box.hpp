@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include <protocol/reports.hpp>
+#include <protocol/request_result.hpp>
 #include <protocol/signals.hpp>
 
 namespace inkwell::protocol {
@@ -54,7 +55,7 @@ struct BlackBoxReport {
   CrashFacts crash;  ///< of the newest restart after a crash
 };
 
-/// Feature report, set: stalled if it is of another version or length.
+/// Feature report, set. BlackBoxRowsReport::result is its result.
 struct BlackBoxRequest {
   ReportId report_id = ReportId::black_box_rows;
   std::uint8_t version = protocol_version;
@@ -73,8 +74,9 @@ inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) -
 /// Feature report, get: some rows in the order of time.
 struct BlackBoxRowsReport {
   ReportId report_id = ReportId::black_box_rows;
-  std::uint8_t row_count;       ///< 0..black_box_report_rows; 0 behind the last row
-  std::uint16_t first_row;      ///< as it was asked for
+  std::uint8_t row_count : 4;  ///< 0..black_box_report_rows; 0 after the last row
+  std::uint8_t result : 4;     ///< RequestResult of the last request: accepted, also before the first one, or malformed
+  std::uint16_t first_row;     ///< of the last request that was accepted
   std::uint32_t fault_periods;  ///< BlackBoxReport::fault_periods, which tells one black box from another
   BlackBoxRow rows[black_box_report_rows];
 };
@@ -82,6 +84,7 @@ struct BlackBoxRowsReport {
 static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 136);
 static_assert(sizeof(BlackBoxRequest) == 4);
 static_assert(sizeof(BlackBoxRow) == 4 + 4 * (signal_count + force_law_signals_maximum));
+static_assert(black_box_report_rows < 16 && request_result_table.size() <= 16, "both share a byte");
 static_assert(sizeof(BlackBoxRowsReport) == 8 + black_box_report_rows * sizeof(BlackBoxRow) &&
               sizeof(BlackBoxRowsReport) <= sizeof(ParametersReport));
 

@@ -1,4 +1,4 @@
-// The program that drives the arm, and the results of its commands.
+// The program that drives the arm, and the results of its commands and shapes.
 //
 // Several programs may be connected to one arm. One of them drives it: it has claimed the arm with a random number, and
 // stamps its commands, forces, shapes and parameters with that claim. The board accepts them from no other program,
@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <protocol/reports.hpp>
+#include <protocol/request_result.hpp>
 
 namespace inkwell::protocol {
 
@@ -74,41 +75,28 @@ constexpr std::size_t copy_program_name(const char (&field)[program_name_maximum
   return length;
 }
 
-// clang-format off
-/// X(code, name, meaning)
-#define INKWELL_COMMAND_RESULTS(X)                                                          \
-  X(0, waiting, "The board has received the command and carries it out within a control period.") \
-  X(1, carried_out, "The control interrupt has carried out the command.")                   \
-  X(2, not_the_driver, "Another program drives the arm, so the board refused the command.")
-// clang-format on
-
-enum class CommandResult : std::uint8_t {
-#define X(code, name, ...) name = code,
-  INKWELL_COMMAND_RESULTS(X)
-#undef X
+struct RequestResultEntry {
+  std::uint32_t ticket;  ///< CommandReport::ticket or ShapesReport::ticket; 0 for an empty entry
+  ReportId request;      ///< command or shapes
+  Command command;       ///< of a CommandReport, else 0
+  RequestResult result;
+  std::uint8_t reserved;
 };
 
-struct CommandResultEntry {
-  std::uint32_t ticket;  ///< CommandReport::ticket; 0 for an empty entry
-  Command command;
-  CommandResult result;
-  std::uint16_t reserved;
-};
+inline constexpr std::size_t request_results_kept = 8;
 
-inline constexpr std::size_t command_results_kept = 8;
-
-/// Feature report, get: the results of the newest commands that have a ticket, of all programs. They are forgotten when
-/// the bus is reset or suspended, together with the commands that waited.
-struct CommandResultsReport {
-  ReportId report_id = ReportId::command_results;
+/// Feature report, get: the results of the newest commands and shapes that have a ticket, of all programs. They are
+/// forgotten when the bus is reset or suspended, together with the commands that waited.
+struct RequestResultsReport {
+  ReportId report_id = ReportId::request_results;
   State state;  ///< now
   std::uint16_t version = protocol_version;
   std::uint32_t time_periods;  ///< now
-  CommandResultEntry entries[command_results_kept];
+  RequestResultEntry entries[request_results_kept];
 };
 
 static_assert(sizeof(ClaimReport) == 44);
 static_assert(sizeof(DriverReport) == 60);
-static_assert(sizeof(CommandResultsReport) == 72);
+static_assert(sizeof(RequestResultEntry) == 8 && sizeof(RequestResultsReport) == 72);
 
 }  // namespace inkwell::protocol

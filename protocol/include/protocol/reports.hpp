@@ -10,8 +10,12 @@
 //   both             feature report  those of the black box: protocol/black_box.hpp
 //   host <- device   feature report  that of the self-test: protocol/self_test.hpp; that of the parameter store:
 //                                    protocol/store.hpp, and the ParametersReport of what the next start would give
-//   both             feature report  the claim of the program that drives the arm, and the results of commands:
-//                                    protocol/driver.hpp
+//   both             feature report  the claim of the program that drives the arm: protocol/driver.hpp
+//   host <- device   feature report  the results of commands and shapes: protocol/driver.hpp
+//
+// Sizes and directions of all reports are in protocol/report_table.hpp. A report that is set may be longer than its
+// used part; the device ignores the rest. Some hosts pad every report to the longest of its kind. A report that is read
+// is filled with zeros up to its declared size, or to the length that the host asks for (HID 1.11, section 7.2.1).
 //
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
@@ -39,7 +43,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 15 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -63,7 +67,7 @@ enum class ReportId : std::uint8_t {
   store = 0x19,            ///< feature, get: protocol/store.hpp
   stored = 0x1A,           ///< feature, get: a ParametersReport
   driver = 0x1B,           ///< feature, get and set: protocol/driver.hpp
-  command_results = 0x1C,  ///< feature, get: protocol/driver.hpp
+  request_results = 0x1C,  ///< feature, get: protocol/driver.hpp
 };
 
 /// Bits of PoseReport::switches.
@@ -212,16 +216,17 @@ struct TestPulse {
   float duration_s;  ///< 0..test_duration_maximum_s; the pulse ends before if it moved energy_reserve_J
 };
 
-/// Output report. A report of another version, length or with an unknown command is ignored and not
-/// acknowledged; `token` comes back in PoseReport::command_token when the command was carried out. While a program
-/// drives the arm, `stop` is the only command that is accepted from other programs.
+/// Output report. The device does not acknowledge a report of another version or length, a command that is not valid,
+/// or one that comes over endpoint 0 while the command queue is full. Otherwise `token` comes back in
+/// PoseReport::command_token when the command has been carried out. While a program drives the arm, `stop` is the only
+/// command that is accepted from other programs.
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
   std::uint8_t version = protocol_version;
   std::uint8_t token;
   std::uint32_t claim;   ///< of the program that sends it; 0 if it has none
-  std::uint32_t ticket;  ///< chosen by the program; CommandResultsReport names the result by it. 0 asks for no result
+  std::uint32_t ticket;  ///< chosen by the program; RequestResultsReport names the result by it. 0 asks for no result
   union {
     SignalSelection selection;  ///< select_signals
     TestPulse test;             ///< test_current, test_voltage
@@ -316,8 +321,9 @@ inline constexpr std::size_t parameter_entries_maximum = 96;
 static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
 /// Feature report. On get, the entries are those of the table in its order, then those of the force law. On set,
-/// only the used part is sent: parameters_report_size(count) bytes. The same with ReportId::stored, get only, tells
-/// what the next start would give each parameter: what is stored, or its default; its operation is restore_stored.
+/// only the used part has to be sent: parameters_report_size(count) bytes. The same with ReportId::stored, get only,
+/// tells what the next start would give each parameter: what is stored, or its default; its operation is
+/// restore_stored.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
   ParameterOperation operation;
@@ -344,7 +350,7 @@ struct TransactionReport {
 /// milliseconds and the board's control periods run against each other.
 struct FrameReport {
   ReportId report_id = ReportId::frame;
-  std::uint8_t reserved = 0;
+  std::uint8_t is_known;       ///< 0: no frame runs, or the board has no time for it yet; then the rest is 0
   std::uint16_t frame_number;  ///< 0..2047, as it came with the start of frame
   std::uint32_t sequence;      ///< PoseReport::sequence of the report that was meant for this frame
   std::uint32_t time_periods;  ///< the control period in which the frame began
@@ -379,15 +385,16 @@ inline constexpr float shape_distance_maximum_m = 10.0f;  ///< of every length a
 inline constexpr float friction_maximum = 3.0f;
 
 /// Feature report, set: the shapes from now on, each in a place of its own. They take the place of all that were there
-/// at the start of one control period, without a jump of the force. Only the used part is sent:
-/// shapes_report_size(plane_count) bytes. One that is not sound, or of a program that does not drive the arm, is
-/// refused whole, by a stall. All shapes end with the claim.
+/// at the start of one control period, without a jump of the force. Only the used part has to be sent:
+/// shapes_report_size(plane_count) bytes. A report that is not valid, or of a program that does not drive the arm, is
+/// refused whole; RequestResultsReport has the result. All shapes end with the claim.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
-  std::uint32_t claim;  ///< of the program that drives the arm
+  std::uint32_t claim;   ///< of the program that drives the arm
+  std::uint32_t ticket;  ///< chosen by the program; RequestResultsReport names the result by it. 0 asks for no result
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
 };

@@ -69,7 +69,7 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                     frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport),
                     law = force_law_report_maximum, box = sizeof(BlackBoxReport), rows = sizeof(BlackBoxRowsReport),
                     self_test = sizeof(SelfTestReport), store = sizeof(StoreReport), driver = sizeof(DriverReport),
-                    results = sizeof(CommandResultsReport);
+                    results = sizeof(RequestResultsReport);
   CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
                                                              0x00,
                                                              0xFF,

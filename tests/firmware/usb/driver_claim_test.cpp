@@ -8,7 +8,7 @@ namespace {
 
 using protocol::ClaimOperation;
 using protocol::Command;
-using protocol::CommandResult;
+using protocol::RequestResult;
 using protocol::DriverReport;
 using protocol::ReportId;
 
@@ -37,8 +37,8 @@ struct DrivenBench : DeviceBench {
     run(1, state);
     return last_command ? std::optional(last_command->command) : std::nullopt;
   }
-  std::optional<CommandResult> result_of(std::uint32_t ticket) {
-    const auto report = get_feature<protocol::CommandResultsReport>(ReportId::command_results);
+  std::optional<RequestResult> result_of(std::uint32_t ticket) {
+    const auto report = get_feature<protocol::RequestResultsReport>(ReportId::request_results);
     for (const auto& entry : report.entries)
       if (entry.ticket == ticket) return entry.result;
     return std::nullopt;
@@ -104,12 +104,12 @@ TEST_CASE("claim: commands, forces and parameters of another program are refused
                              Command::store_parameters, Command::factory_reset}) {
     CAPTURE(static_cast<int>(kind));
     CHECK_FALSE(bench.carried_out(kind, second, 100).has_value());
-    CHECK(bench.result_of(100) == CommandResult::not_the_driver);
+    CHECK(bench.result_of(100) == RequestResult::not_the_driver);
     CHECK(bench.carried_out(kind, first, 200) == kind);
-    CHECK(bench.result_of(200) == CommandResult::carried_out);
+    CHECK(bench.result_of(200) == RequestResult::carried_out);
   }
   CHECK(bench.carried_out(Command::stop, second, 300) == Command::stop);
-  CHECK(bench.result_of(300) == CommandResult::carried_out);
+  CHECK(bench.result_of(300) == RequestResult::carried_out);
   CHECK(bench.carried_out(Command::select_signals, second) == Command::select_signals);
   CHECK_FALSE(bench.accepts_force(second));
   CHECK_FALSE(bench.accepts_force(0));
@@ -245,13 +245,13 @@ TEST_CASE("command results: waiting until the interrupt has taken the command, a
   DrivenBench bench;
   REQUIRE(bench.port.out(1, bytes_of(command(Command::disable_force, 1, first, 5))) == Handshake::ack);
   bench.device.poll();
-  CHECK(bench.result_of(5) == CommandResult::waiting);
+  CHECK(bench.result_of(5) == RequestResult::waiting);
   bench.run(1);
-  CHECK(bench.result_of(5) == CommandResult::carried_out);
-  for (std::uint32_t ticket = 10; ticket < 10 + protocol::command_results_kept; ++ticket)
+  CHECK(bench.result_of(5) == RequestResult::carried_out);
+  for (std::uint32_t ticket = 10; ticket < 10 + protocol::request_results_kept; ++ticket)
     bench.carried_out(Command::disable_force, first, ticket);
   CHECK_FALSE(bench.result_of(5).has_value());
-  CHECK(bench.result_of(10) == CommandResult::carried_out);
+  CHECK(bench.result_of(10) == RequestResult::carried_out);
   bench.port.reset();
   bench.device.poll();
   bench.configure();

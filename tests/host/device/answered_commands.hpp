@@ -13,21 +13,21 @@ namespace inkwell::tests {
 /// Every command is carried out as soon as it is written.
 class AnsweredCommands {
  public:
-  void note(std::span<const std::byte> written) { put(written, protocol::CommandResult::carried_out); }
+  void note(std::span<const std::byte> written) { put(written, protocol::RequestResult::carried_out); }
   /// The same for a command of a program that does not drive the arm.
-  void refuse(std::span<const std::byte> written) { put(written, protocol::CommandResult::not_the_driver); }
+  void refuse(std::span<const std::byte> written) { put(written, protocol::RequestResult::not_the_driver); }
 
-  /// Writes the CommandResultsReport, if that is asked for.
+  /// Writes the RequestResultsReport, if that is asked for.
   std::size_t answer(std::span<std::byte> asked) const {
-    if (asked[0] != static_cast<std::byte>(protocol::ReportId::command_results)) return 0;
+    if (asked[0] != static_cast<std::byte>(protocol::ReportId::request_results)) return 0;
     std::memcpy(asked.data(), &report, std::min(asked.size(), sizeof report));
     return sizeof report;
   }
 
-  protocol::CommandResultsReport report{.state = protocol::State::ready};
+  protocol::RequestResultsReport report{.state = protocol::State::ready};
 
  private:
-  void put(std::span<const std::byte> written, protocol::CommandResult result) {
+  void put(std::span<const std::byte> written, protocol::RequestResult result) {
     protocol::CommandReport command{};
     std::memcpy(&command, written.data(), std::min(written.size(), sizeof command));
     if (command.report_id != protocol::ReportId::command || command.ticket == 0) return;

@@ -381,8 +381,8 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   parameters.report_id = protocol::ReportId::stored;
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::stored)] = bytes_of(parameters);
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::driver)] = bytes_of(protocol::DriverReport{});
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::command_results)] =
-      bytes_of(protocol::CommandResultsReport{});
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::request_results)] =
+      bytes_of(protocol::RequestResultsReport{});
   const protocol::StoreReport store{};
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }

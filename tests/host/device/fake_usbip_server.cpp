@@ -210,9 +210,9 @@ void FakeUsbipServer::take_output(const Bytes& data) {
     return take(protocol::ForceReport{}, forces_);
   take(protocol::CommandReport{}, commands_);
   if (!driver.permits(commands_.back().claim) && protocol::needs_claim(commands_.back().command))
-    command_results.refuse(data);
+    request_results.refuse(data);
   else
-    command_results.note(data);
+    request_results.note(data);
   const auto command = commands_.back().command;
   const bool is_for_store =
       command == protocol::Command::store_parameters || command == protocol::Command::factory_reset;
@@ -330,7 +330,7 @@ std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
                    control::installed_force_law.report + control::installed_force_law.report_size);
     case protocol::ReportId::store: return bytes_of(store);
     case protocol::ReportId::driver: return bytes_of(driver.report(frame.time_periods));
-    case protocol::ReportId::command_results: return bytes_of(command_results.report);
+    case protocol::ReportId::request_results: return bytes_of(request_results.report);
     case protocol::ReportId::parameters: return parameters_report(id, parameters);
     case protocol::ReportId::stored: return parameters_report(id, at_next_start);
     default: return std::nullopt;

@@ -55,7 +55,7 @@ class FakeUsbipServer {
   protocol::ParameterSet parameters = protocol::default_parameters();
   protocol::StoreReport store{};
   link::DriverClaim driver;
-  AnsweredCommands command_results;
+  AnsweredCommands request_results;
   protocol::ParameterSet at_next_start = protocol::default_parameters();
   /// What becomes of a command to store or to forget. While it is `under_way`, nothing is written.
   std::function<protocol::StoreResult(protocol::Command)> judge_store = [](protocol::Command) {

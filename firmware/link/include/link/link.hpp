@@ -24,7 +24,7 @@
 
 #include <link/black_box.hpp>
 #include <link/command_queue.hpp>
-#include <link/command_results.hpp>
+#include <link/request_results.hpp>
 #include <link/driver_claim.hpp>
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
@@ -52,7 +52,7 @@ struct Link {
   ParameterStore parameters;
   StoredParameters stored;
   CommandQueue commands;
-  CommandResults command_results{commands};
+  RequestResults request_results{commands};
   DriverClaim driver;
   ProgramRequests program;
   SampleRing samples;

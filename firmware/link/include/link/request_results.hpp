@@ -1,0 +1,52 @@
+// The results of commands and shapes, for the programs that sent them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <link/command_queue.hpp>
+#include <protocol/driver.hpp>
+
+namespace inkwell::link {
+
+/// The newest requests that have a ticket; those without one are not recorded. Main loop only.
+class RequestResults {
+ public:
+  explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}
+
+  /// The command has just been queued.
+  void note_queued(const protocol::CommandReport& command) {
+    note(entry_of(command, protocol::RequestResult::waiting), queue_.pushed());
+  }
+  /// The board dropped the command.
+  void note_dropped(const protocol::CommandReport& command, protocol::RequestResult result) {
+    note(entry_of(command, result), 0);
+  }
+  void note_shapes(std::uint32_t ticket, protocol::RequestResult result) {
+    note({ticket, protocol::ReportId::shapes, {}, result, 0}, 0);
+  }
+  /// The host is gone, and with it the commands that waited.
+  void forget() { requests_ = {}; }
+
+  /// `state` and `now_periods`: of the newest control period.
+  protocol::RequestResultsReport report(protocol::State state, std::uint32_t now_periods) const;
+
+ private:
+  struct Noted {
+    protocol::RequestResultEntry entry{};
+    std::uint32_t pushed = 0;  ///< CommandQueue::pushed() with this command as the last
+  };
+
+  static protocol::RequestResultEntry entry_of(const protocol::CommandReport& command,
+                                               protocol::RequestResult result) {
+    return {command.ticket, protocol::ReportId::command, command.command, result, 0};
+  }
+  void note(const protocol::RequestResultEntry& entry, std::uint32_t pushed);
+
+  const CommandQueue& queue_;
+  std::array<Noted, protocol::request_results_kept> requests_{};
+  std::size_t next_ = 0;
+};
+
+}  // namespace inkwell::link

@@ -1,0 +1,105 @@
+// Every report of the HID interface with its size. The device makes its report descriptor from this table and judges
+// GET_REPORT and SET_REPORT by it; the reference prints it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <protocol/black_box.hpp>
+#include <protocol/driver.hpp>
+#include <protocol/reports.hpp>
+#include <protocol/self_test.hpp>
+#include <protocol/store.hpp>
+
+namespace inkwell::protocol {
+
+/// As in the high byte of wValue (HID 1.11, section 7.2.1).
+enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
+
+// clang-format off
+/// X(id, usage, kind, get, set, bytes, set_bytes, meaning): the structures that are read and written, or `none`; the
+/// declared size, which both fit into; and the smallest used size of one that is written, or 0.
+#define INKWELL_REPORTS(X)                                                                                             \
+  X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The pose. It also comes over the interrupt endpoint, each millisecond.") \
+  X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command, which is a sign of life.") \
+  X(force, 8, output, none, ForceReport, sizeof(ForceReport), sizeof(ForceReport), "The force of a program, which is a sign of life.") \
+  X(information, 4, feature, InformationReport, none, sizeof(InformationReport), 0, "The identity of the device and its counters.") \
+  X(parameters, 5, feature, ParametersReport, ParametersReport, sizeof(ParametersReport), parameters_report_size(0), "Every parameter. Set: one transaction.") \
+  X(transaction, 6, feature, TransactionReport, none, sizeof(TransactionReport), 0, "The result of the last transaction.") \
+  X(frame, 7, feature, FrameReport, none, sizeof(FrameReport), 0, "The start of the newest bus frame in board time.")   \
+  X(shapes, 9, feature, none, ShapesReport, sizeof(ShapesReport), shapes_report_size(0), "The shapes that are felt from now on.") \
+  X(force_law, 10, feature, ForceLawReport, none, force_law_report_maximum, 0, "The parameters and signals that the force law of the image adds to the tables. Its header has its size.") \
+  X(black_box, 11, feature, BlackBoxReport, none, sizeof(BlackBoxReport), 0, "Whether a black box is kept, its fault, and where the firmware crashed or hung.") \
+  X(black_box_rows, 12, feature, BlackBoxRowsReport, BlackBoxRequest, sizeof(BlackBoxRowsReport), sizeof(BlackBoxRequest), "Rows of the black box. Set: the first row that is wanted.") \
+  X(self_test, 13, feature, SelfTestReport, none, sizeof(SelfTestReport), 0, "The findings of the self-test.")          \
+  X(store, 14, feature, StoreReport, none, sizeof(StoreReport), 0, "The contents of the parameter store and the result of the last command to it.") \
+  X(stored, 15, feature, ParametersReport, none, sizeof(ParametersReport), 0, "The value of every parameter after the next start.") \
+  X(driver, 16, feature, DriverReport, ClaimReport, std::max(sizeof(DriverReport), sizeof(ClaimReport)), sizeof(ClaimReport), "The program that drives the arm. Set: a claim.") \
+  X(request_results, 17, feature, RequestResultsReport, none, sizeof(RequestResultsReport), 0, "The results of the newest commands and shapes.")
+// clang-format on
+
+struct ReportInfo {
+  ReportId id;
+  std::uint8_t usage;  ///< in the report descriptor
+  ReportKind kind;
+  bool can_be_read;
+  std::size_t bytes;              ///< declared in the report descriptor, with the id
+  std::size_t set_bytes_minimum;  ///< 0 for a report that cannot be written
+
+  constexpr bool can_be_set() const { return set_bytes_minimum != 0; }
+};
+
+namespace detail {
+constexpr bool names_structure(std::string_view name) { return name != "none"; }
+}  // namespace detail
+
+inline constexpr auto report_table = std::to_array<ReportInfo>({
+#define X(id, usage, kind, get, set, bytes, set_bytes, ...) \
+  {ReportId::id, usage, ReportKind::kind, detail::names_structure(#get), bytes, set_bytes},
+    INKWELL_REPORTS(X)
+#undef X
+});
+
+/// For people: apart from the table, because the device needs none of it.
+struct ReportText {
+  std::string_view get, set;  ///< names of the structures; `none`
+  std::string_view meaning;
+};
+
+inline constexpr auto report_texts = std::to_array<ReportText>({
+#define X(id, usage, kind, get, set, bytes, set_bytes, meaning) {#get, #set, meaning},
+    INKWELL_REPORTS(X)
+#undef X
+});
+
+/// Null for a report that is not in the table.
+constexpr const ReportInfo* find_report(ReportKind kind, ReportId id) {
+  for (const auto& row : report_table)
+    if (row.kind == kind && row.id == id) return &row;
+  return nullptr;
+}
+
+/// The longest report of a kind. hidapi on Windows pads every report to this length, whatever its own declared size.
+constexpr std::size_t longest_report(ReportKind kind) {
+  std::size_t longest = 0;
+  for (const auto& row : report_table)
+    if (row.kind == kind) longest = std::max(longest, row.bytes);
+  return longest;
+}
+
+/// Whether the device accepts a written report of this length: its used part and anything after it.
+constexpr bool is_accepted_length(const ReportInfo& row, std::size_t bytes) {
+  return row.can_be_set() && bytes >= row.set_bytes_minimum && bytes <= longest_report(row.kind);
+}
+
+#define X(label, number, sort, get, set, size, set_size, ...)                                                         \
+  static_assert((set_size) <= (size), #label ": its used part is longer than it declares");                           \
+  static_assert(((set_size) != 0) == detail::names_structure(#set), #label ": a report that is set has a used part"); \
+  static_assert(find_report(ReportKind::sort, ReportId::label)->usage == (number), #label ": in the table twice");
+INKWELL_REPORTS(X)
+#undef X
+
+}  // namespace inkwell::protocol
