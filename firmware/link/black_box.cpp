@@ -169,23 +169,24 @@ protocol::BlackBoxReport BlackBox::report() const {
   return report;
 }
 
-bool BlackBox::select_rows(std::span<const std::byte> request) {
-  protocol::BlackBoxRequest wanted;
-  if (request.size() != sizeof wanted) return false;
-  std::memcpy(&wanted, request.data(), sizeof wanted);
-  if (wanted.version != protocol::protocol_version) return false;
-  first_row_ = wanted.first_row;
-  return true;
+void BlackBox::select_rows(std::span<const std::byte> request) {
+  protocol::BlackBoxRequest wanted{};
+  std::memcpy(&wanted, request.data(), std::min(request.size(), sizeof wanted));
+  const bool is_valid = request.size() >= sizeof wanted && wanted.version == protocol::protocol_version;
+  result_ = is_valid ? protocol::RequestResult::accepted : protocol::RequestResult::malformed;
+  if (is_valid) first_row_ = wanted.first_row;
 }
 
 protocol::BlackBoxRowsReport BlackBox::rows() const {
   protocol::BlackBoxRowsReport report{};
+  report.result = static_cast<std::uint8_t>(result_) & 0xFu;
   report.first_row = first_row_;
   report.fault_periods = notes_.cause.period;
   for (std::uint32_t i = first_row_; i < row_count() && report.row_count < protocol::black_box_report_rows; ++i) {
     const std::uint32_t number = notes_.rows_written - rows_before_ + i;
     const BlackBoxPlace& place = i < rows_before_ ? before(number) : line_[i - rows_before_];
-    report.rows[report.row_count++] = place.row;
+    report.rows[report.row_count] = place.row;
+    report.row_count = (report.row_count + 1u) & 0xFu;
   }
   return report;
 }

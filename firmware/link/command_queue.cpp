@@ -29,12 +29,16 @@ bool sound(const protocol::TestPulse& test) {
 
 }  // namespace
 
-std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report) {
+std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> report) {
   if (report.size() != sizeof(protocol::CommandReport)) return std::nullopt;
   protocol::CommandReport command;
   std::memcpy(&command, report.data(), sizeof command);
   if (command.report_id != protocol::ReportId::command || command.version != protocol::protocol_version)
     return std::nullopt;
+  return command;
+}
+
+bool is_valid(const protocol::CommandReport& command) {
   switch (command.command) {
     case Command::heartbeat:
     case Command::enable_force:
@@ -43,12 +47,17 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
     case Command::stop:
     case Command::self_test:
     case Command::store_parameters:
-    case Command::factory_reset: return command;
-    case Command::select_signals: return sound(command.selection) ? std::optional(command) : std::nullopt;
+    case Command::factory_reset: return true;
+    case Command::select_signals: return sound(command.selection);
     case Command::test_current:
-    case Command::test_voltage: return sound(command.test) ? std::optional(command) : std::nullopt;
+    case Command::test_voltage: return sound(command.test);
   }
-  return std::nullopt;
+  return false;
+}
+
+std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report) {
+  const auto command = whole_command(report);
+  return command && is_valid(*command) ? command : std::nullopt;
 }
 
 bool CommandQueue::push(const protocol::CommandReport& command) {

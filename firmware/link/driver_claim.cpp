@@ -15,7 +15,7 @@ constexpr auto expiry_periods = static_cast<std::uint32_t>(protocol::claim_expir
 
 bool DriverClaim::accept(std::span<const std::byte> report, std::uint32_t now_periods) {
   protocol::ClaimReport request;
-  if (report.size() != sizeof request) return false;
+  if (report.size() < sizeof request) return false;
   std::memcpy(&request, report.data(), sizeof request);
   if (request.version != protocol::protocol_version || request.claim == 0) return false;
   const bool is_held = claim_ != 0;

@@ -168,15 +168,12 @@ TransactionHeader header_of(std::span<const std::byte> report) {
 ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on,
                                  const ParameterSet* stored) {
   constexpr std::size_t header_size = protocol::parameters_report_size(0);
-  if (report.size() < header_size || report.size() > sizeof(protocol::ParametersReport))
-    return refuse(Refusal::wrong_length);
+  if (report.size() < header_size) return refuse(Refusal::wrong_length);
   const TransactionHeader header = header_of(report);
 
   if (header.version != protocol::protocol_version) return refuse(Refusal::wrong_version);
   if (header.count > protocol::parameter_entries_maximum) return refuse(Refusal::wrong_length);
-  if (report.size() != protocol::parameters_report_size(header.count) &&
-      report.size() != sizeof(protocol::ParametersReport))
-    return refuse(Refusal::wrong_length);
+  if (report.size() < protocol::parameters_report_size(header.count)) return refuse(Refusal::wrong_length);
 
   if (header.operation == protocol::ParameterOperation::restore_defaults)
     return header.count == 0 ? restore(image_defaults(), current, force_is_on) : refuse(Refusal::wrong_length);

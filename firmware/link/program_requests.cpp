@@ -1,7 +1,10 @@
 #include <link/program_requests.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+
+#include <protocol/report_table.hpp>
 
 namespace inkwell::link {
 
@@ -20,6 +23,8 @@ bool sound(const float (&coordinates)[3], float limit) {
 }
 
 Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coordinates[1], coordinates[2]}; }
+
+constexpr std::size_t longest_output_report = protocol::longest_report(protocol::ReportKind::output);
 
 /// As long as it takes that the squares of what comes stay finite.
 constexpr float longest_force_N = 1e6f;
@@ -78,7 +83,7 @@ std::uint32_t word_at(std::span<const std::byte> report, std::size_t offset) {
 
 std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report) {
   protocol::ForceReport force;
-  if (report.size() != sizeof force) return std::nullopt;
+  if (report.size() < sizeof force || report.size() > longest_output_report) return std::nullopt;
   std::memcpy(&force, report.data(), sizeof force);
   const bool is_sound = force.version == protocol::protocol_version && force.mode <= ForceMode::instead_of_walls &&
                         force.interval_ms >= 1 && force.interval_ms <= protocol::force_interval_maximum_ms &&
@@ -92,10 +97,10 @@ std::optional<control::ForceTarget> decode_force(std::span<const std::byte> repo
 
 bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes) {
   protocol::ShapesReport set;
-  if (report.size() < protocol::shapes_report_size(0) || report.size() > sizeof set) return false;
-  std::memcpy(&set, report.data(), report.size());
+  if (report.size() < protocol::shapes_report_size(0)) return false;
+  std::memcpy(&set, report.data(), std::min(report.size(), sizeof set));
   if (set.version != protocol::protocol_version || set.plane_count > protocol::shape_planes_maximum ||
-      report.size() != protocol::shapes_report_size(set.plane_count))
+      report.size() < protocol::shapes_report_size(set.plane_count))
     return false;
   shapes = {};
   if (!decode_surface(set.sphere.surface, shapes.surfaces[0], shapes.life_periods[0])) return false;
@@ -113,6 +118,13 @@ std::uint32_t claim_of_force(std::span<const std::byte> report) {
 
 std::uint32_t claim_of_shapes(std::span<const std::byte> report) {
   return word_at(report, offsetof(protocol::ShapesReport, claim));
+}
+
+std::uint32_t ticket_of_shapes(std::span<const std::byte> report) {
+  constexpr std::size_t version_at = offsetof(protocol::ShapesReport, version);
+  const bool is_of_this_version =
+      report.size() > version_at && report[version_at] == static_cast<std::byte>(protocol::protocol_version);
+  return is_of_this_version ? word_at(report, offsetof(protocol::ShapesReport, ticket)) : 0;
 }
 
 bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence) {
@@ -139,11 +151,12 @@ bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of
   return true;
 }
 
-bool ProgramRequests::accept_shapes(std::span<const std::byte> report) {
+protocol::RequestResult ProgramRequests::accept_shapes(std::span<const std::byte> report) {
   control::Shapes* next = shapes_.next();
-  if (next == nullptr || !decode_shapes(report, *next)) return false;
+  if (next == nullptr) return protocol::RequestResult::busy;
+  if (!decode_shapes(report, *next)) return protocol::RequestResult::malformed;
   shapes_.offer();
-  return true;
+  return protocol::RequestResult::accepted;
 }
 
 void ProgramRequests::driver_gone() {

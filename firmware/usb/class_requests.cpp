@@ -4,8 +4,7 @@
 #include <new>
 
 #include <control/installed_force_law.hpp>
-#include <protocol/black_box.hpp>
-#include <protocol/driver.hpp>
+#include <protocol/report_table.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/device.hpp>
 
@@ -29,13 +28,14 @@ enum FirmwareUpdateRequest : std::uint8_t {
   get_update_status_request = 3,
   get_state_request = 5,
 };
-enum ReportType : std::uint8_t { input_report = 1, output_report_type = 2, feature_report = 3 };
-
 constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, vendor_device_in = 0xC0;
 
-/// wValue of GET_REPORT and SET_REPORT.
-constexpr std::uint16_t report_value(ReportType type, ReportId id) {
-  return static_cast<std::uint16_t>(type << 8 | static_cast<std::uint8_t>(id));
+constexpr std::uint16_t controller_value = static_cast<std::uint16_t>(protocol::ReportKind::input) << 8;  // no id
+
+/// The report that wValue of GET_REPORT or SET_REPORT names; null if there is none.
+const protocol::ReportInfo* report_in(const SetupPacket& setup) {
+  return protocol::find_report(static_cast<protocol::ReportKind>(setup.value_high()),
+                               static_cast<ReportId>(setup.value_low()));
 }
 
 }  // namespace
@@ -57,13 +57,9 @@ Answer Device::hid_request(const SetupPacket& setup) {
     if (setup.request == get_idle_request) return send_byte(idle_rates_[setup.index]);
   } else if (setup.request_type == class_interface_out) {
     if (setup.request == set_report_request && !is_controller) {
-      const bool known = setup.value == report_value(output_report_type, ReportId::command) ||
-                         setup.value == report_value(output_report_type, ReportId::force) ||
-                         setup.value == report_value(feature_report, ReportId::parameters) ||
-                         setup.value == report_value(feature_report, ReportId::shapes) ||
-                         setup.value == report_value(feature_report, ReportId::black_box_rows) ||
-                         setup.value == report_value(feature_report, ReportId::driver);
-      return known && setup.length != 0 ? Answer::receive() : Answer::stall();
+      const protocol::ReportInfo* report = report_in(setup);
+      const bool is_accepted = report != nullptr && protocol::is_accepted_length(*report, setup.length);
+      return is_accepted ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
       idle_rates_[setup.index] = setup.value_high();  // reports are always new: there is never an idle time to fill
@@ -74,78 +70,84 @@ Answer Device::hid_request(const SetupPacket& setup) {
 }
 
 Answer Device::get_report(const SetupPacket& setup) {
+  const protocol::ReportInfo* report = report_in(setup);
+  if (report == nullptr || !report->can_be_read) return Answer::stall();
+  return Answer::send(compose(report->id), report->bytes);
+}
+
+std::span<const std::byte> Device::compose(ReportId id) {
   const std::span<std::byte> buffer = control_.buffer();
-  const auto send = [&](const auto& report) {
+  const auto put = [&](const auto& report) {
     static_assert(sizeof report <= ControlEndpoint::buffer_size);
     std::memcpy(buffer.data(), &report, sizeof report);
-    return Answer::send(buffer.first(sizeof report));
+    return buffer.first(sizeof report);
   };
-  switch (setup.value) {
-    case report_value(input_report, ReportId::pose): {
-      protocol::PoseReport pose;
-      if (!link_.poses.read(pose)) return Answer::stall();
-      pose.sequence = pose_sequence_;
-      pose.driver_parity = driver_parity();
-      return send(pose);
-    }
-    case report_value(feature_report, ReportId::information): return send(information());
-    case report_value(feature_report, ReportId::frame): {
-      const auto report = frame_report();
-      return report ? send(*report) : Answer::stall();
-    }
-    case report_value(feature_report, ReportId::transaction): return send(link_.parameters.result());
-    case report_value(feature_report, ReportId::parameters): {
+  switch (id) {
+    case ReportId::pose: return put(newest_pose());
+    case ReportId::information: return put(information());
+    case ReportId::frame: return put(frame_report());
+    case ReportId::transaction: return put(link_.parameters.result());
+    case ReportId::parameters: {
       auto* report = new (buffer.data()) protocol::ParametersReport;
-      return Answer::send(buffer.first(link_.parameters.read(*report)));
+      return buffer.first(link_.parameters.read(*report));
     }
-    case report_value(feature_report, ReportId::force_law):
-      return Answer::send(std::span(control::installed_force_law.report, control::installed_force_law.report_size));
-    case report_value(feature_report, ReportId::self_test): return send(link_.self_test.report());
-    case report_value(feature_report, ReportId::store): return send(link_.stored.report(link_.parameters.values()));
-    case report_value(feature_report, ReportId::stored): {
+    case ReportId::force_law:
+      return std::span(control::installed_force_law.report, control::installed_force_law.report_size);
+    case ReportId::self_test: return put(link_.self_test.report());
+    case ReportId::store: return put(link_.stored.report(link_.parameters.values()));
+    case ReportId::stored: {
       auto* report = new (buffer.data()) protocol::ParametersReport;
-      return Answer::send(buffer.first(link_.stored.read(*report)));
+      return buffer.first(link_.stored.read(*report));
     }
-    case report_value(feature_report, ReportId::driver): return send(link_.driver.report(link_.poses.newest_periods()));
-    case report_value(feature_report, ReportId::request_results):
-      return send(link_.request_results.report(link_.status.state(), link_.poses.newest_periods()));
-    case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
-    case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
-    default: return Answer::stall();
+    case ReportId::driver: return put(link_.driver.report(link_.poses.newest_periods()));
+    case ReportId::request_results:
+      return put(link_.request_results.report(link_.status.state(), link_.poses.newest_periods()));
+    case ReportId::black_box: return put(link_.black_box.report());
+    case ReportId::black_box_rows: return put(link_.black_box.rows());
+    case ReportId::command:
+    case ReportId::force:
+    case ReportId::shapes: break;  // cannot be read
   }
+  return {};
 }
 
 Answer Device::get_controller_report(const SetupPacket& setup) {
-  protocol::PoseReport pose;
-  if (setup.value != input_report << 8 || !link_.poses.read(pose)) return Answer::stall();
-  const auto report = controller_report(pose);
+  if (setup.value != controller_value) return Answer::stall();
+  const auto report = controller_report(newest_pose());
   std::memcpy(control_.buffer().data(), &report, sizeof report);
   return Answer::send(control_.buffer().first(sizeof report));
 }
 
+// GET_REPORT of an input report is mandatory (HID 1.11, section 7.2.1), so there is an answer before the first period.
+protocol::PoseReport Device::newest_pose() {
+  protocol::PoseReport pose{};
+  if (!link_.poses.read(pose)) pose.state = link_.status.state();
+  pose.sequence = pose_sequence_;
+  pose.driver_parity = driver_parity();
+  return pose;
+}
+
 bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> data) {
   if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the report's id, once more
-  if (setup.value == report_value(output_report_type, ReportId::command)) {
-    return pass_on(link::decode_command(data));  // a stall tells the host to try again
+  switch (static_cast<ReportId>(setup.value_low())) {
+    case ReportId::command: {
+      const auto command = read_command(data);
+      if (!pass_on(command)) link_.request_results.note_dropped(*command, protocol::RequestResult::busy);
+      break;
+    }
+    case ReportId::force: take_force(data); break;
+    case ReportId::shapes: take_shapes(data); break;
+    case ReportId::driver:
+      if (link_.driver.accept(data, link_.poses.newest_periods())) driver_gone();
+      break;
+    case ReportId::black_box_rows: link_.black_box.select_rows(data); break;
+    default:  // parameters
+      if (is_permitted(link::header_of(data).claim))
+        link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
+      else
+        link_.parameters.refuse(data);
+      break;
   }
-  if (setup.value == report_value(output_report_type, ReportId::force)) {
-    take_force(data);
-    return true;
-  }
-  if (setup.value == report_value(feature_report, ReportId::shapes)) {
-    const std::uint32_t claim = link::claim_of_shapes(data);
-    return is_permitted(claim) && link_.driver.is_held_by(claim) && link_.program.accept_shapes(data);
-  }
-  if (setup.value == report_value(feature_report, ReportId::driver)) {
-    if (link_.driver.accept(data, link_.poses.newest_periods())) driver_gone();
-    return true;
-  }
-  if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
-  // The TransactionReport states the error of a transaction; a stall could not.
-  if (is_permitted(link::header_of(data).claim))
-    link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
-  else
-    link_.parameters.refuse(data);
   return true;
 }
 
@@ -162,14 +164,18 @@ bool Device::may_store() const {
 }
 
 // DFU 1.1, section 5.1 and appendix A.2: idle, then detaching as soon as the status stage is over. Not while the hand
-// feels a force: it would go without the user having asked for that.
+// feels a force, which would end without the user's consent. Such a request is completed without effect, and GETSTATUS
+// reports errVENDOR (section 6.1.2) until a request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
+  constexpr std::byte no_error{0}, vendor_error{0x0B};
   const std::byte state = detach_asked_ ? application_detach : application_idle;
   if (setup.request_type == class_interface_out && setup.request == detach_request && setup.length == 0) {
-    if (force_is_on()) return Answer::stall();
-    detach_asked_ = true;
-    link_.update_asked.store(true);
+    detach_was_refused_ = !detach_asked_ && force_is_on();
+    if (!detach_was_refused_) {
+      detach_asked_ = true;
+      link_.update_asked.store(true);
+    }
     return Answer::done();
   }
   if (setup.request_type != class_interface_in) return Answer::stall();
@@ -179,8 +185,9 @@ Answer Device::firmware_update_request(const SetupPacket& setup) {
     return Answer::send(buffer.first(1));
   }
   if (setup.request == get_update_status_request) {
-    const auto status = buffer.first<6>();  // no error, no time to wait, the state, no text
+    const auto status = buffer.first<6>();  // the status, no time to wait, the state, no text
     std::ranges::fill(status, std::byte{0});
+    status[0] = detach_was_refused_ ? vendor_error : no_error;
     status[4] = state;
     return Answer::send(status);
   }
@@ -208,12 +215,12 @@ protocol::InformationReport Device::information() const {
   return report;
 }
 
-std::optional<protocol::FrameReport> Device::frame_report() {
-  const std::optional<BusFrame> frame = port_.frame();
-  if (!frame) return std::nullopt;
-  const auto time = link_.poses.time_of(frame->begin_cycles);
-  if (!time) return std::nullopt;
+protocol::FrameReport Device::frame_report() {
   protocol::FrameReport report{};
+  const std::optional<BusFrame> frame = port_.frame();
+  const auto time = frame ? link_.poses.time_of(frame->begin_cycles) : std::nullopt;
+  if (!time) return report;
+  report.is_known = 1;
   report.frame_number = frame->number;
   report.sequence = frame->count;
   report.time_periods = time->periods;

@@ -28,10 +28,10 @@ void ControlEndpoint::setup(std::span<const std::byte> packet) {
       if (setup_.length == 0)
         send_status();
       else
-        begin_data_in(answer.data);
+        begin_data_in(answer);
       break;
     case Answer::Kind::receive:
-      if (setup_.device_to_host() || setup_.length == 0 || setup_.length > buffer_size) {
+      if (setup_.device_to_host() || setup_.length == 0 || setup_.length > receive_maximum) {
         stall();
       } else {
         stage_ = Stage::data_out;
@@ -59,25 +59,34 @@ void ControlEndpoint::sent() {
   if (stage_ == Stage::status_in) {
     stage_ = Stage::idle;
   } else if (stage_ == Stage::data_in) {
-    if (!remaining_.empty() || end_with_empty_packet_)
+    if (!remaining_.empty() || zeros_ != 0 || end_with_empty_packet_)
       send_next_packet();
     else
       stage_ = Stage::status_out;
   }
 }
 
-void ControlEndpoint::begin_data_in(std::span<const std::byte> data) {
+void ControlEndpoint::begin_data_in(const Answer& answer) {
+  const std::size_t size = std::min<std::size_t>(std::max(answer.data.size(), answer.padded_size), setup_.length);
   // Less than was asked for ends with a short packet, an empty one if need be (USB 2.0, section 8.5.3.2).
-  end_with_empty_packet_ = data.size() < setup_.length && data.size() % packet_size_maximum == 0;
-  remaining_ = data.first(std::min<std::size_t>(data.size(), setup_.length));
+  end_with_empty_packet_ = size < setup_.length && size % packet_size_maximum == 0;
+  remaining_ = answer.data.first(std::min(answer.data.size(), size));
+  zeros_ = size - remaining_.size();
   stage_ = Stage::data_in;
   port_.receive(control_out);
   send_next_packet();
 }
 
 void ControlEndpoint::send_next_packet() {
-  const std::span<const std::byte> packet = remaining_.first(std::min(remaining_.size(), packet_size_maximum));
+  std::span<const std::byte> packet = remaining_.first(std::min(remaining_.size(), packet_size_maximum));
   remaining_ = remaining_.subspan(packet.size());
+  if (zeros_ != 0 && packet.size() < packet_size_maximum) {
+    const std::size_t added = std::min(zeros_, packet_size_maximum - packet.size());
+    zeros_ -= added;
+    padded_packet_ = {};
+    std::ranges::copy(packet, padded_packet_.begin());
+    packet = std::span(padded_packet_).first(packet.size() + added);
+  }
   if (packet.empty()) end_with_empty_packet_ = false;
   port_.send(control_in, packet);
 }
@@ -85,10 +94,11 @@ void ControlEndpoint::send_next_packet() {
 void ControlEndpoint::collect(std::span<const std::byte> packet) {
   const std::size_t wanted = setup_.length - collected_;
   if (packet.size() > wanted) return stall();
-  std::copy(packet.begin(), packet.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(collected_));
+  const auto place = std::span(buffer_).subspan(std::min(collected_, buffer_size));
+  std::ranges::copy(packet.first(std::min(packet.size(), place.size())), place.begin());
   collected_ += packet.size();
   if (collected_ == setup_.length) {
-    if (requests_.data_received(setup_, std::span(buffer_).first(collected_)))
+    if (requests_.data_received(setup_, std::span(buffer_).first(std::min(collected_, buffer_size))))
       send_status();
     else
       stall();

@@ -4,11 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include <protocol/black_box.hpp>
-#include <protocol/driver.hpp>
-#include <protocol/reports.hpp>
-#include <protocol/self_test.hpp>
-#include <protocol/store.hpp>
+#include <protocol/report_table.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/port.hpp>
 
@@ -17,7 +13,6 @@ namespace inkwell::usb {
 namespace {
 
 namespace identity = protocol::usb;
-using protocol::ReportId;
 
 // ---- building blocks -----------------------------------------------------------------------------
 
@@ -58,39 +53,40 @@ constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8
 constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
 constexpr std::uint8_t data_variable_absolute = 0x02;
 
-/// A report with its id and, behind it, `size` - 1 bytes.
-constexpr auto report(ReportId id, std::uint8_t usage, std::uint8_t item, std::size_t size) {
-  const std::size_t count = size - 1;
-  return bytes(0x85, static_cast<std::uint8_t>(id),  // report id
-               0x09, usage,                          // usage
-               0x96, low(count), high(count),        // report count, 16 bits
-               item, data_variable_absolute);
+constexpr std::uint8_t item_of(protocol::ReportKind kind) {
+  switch (kind) {
+    case protocol::ReportKind::input: return input_item;
+    case protocol::ReportKind::output: return output_item;
+    case protocol::ReportKind::feature: return feature_item;
+  }
+  return 0;
 }
 
-constexpr auto report_descriptor =
-    join(bytes(0x06, 0x00, 0xFF,  // usage page: vendor
-               0x09, 0x01,        // usage
-               0xA1, 0x01,        // application collection
-               0x15, 0x00,        // logical minimum 0
-               0x26, 0xFF, 0x00,  // logical maximum 255
-               0x75, 0x08),       // report size, 8 bits
-         report(ReportId::pose, 2, input_item, sizeof(protocol::PoseReport)),
-         report(ReportId::command, 3, output_item, sizeof(protocol::CommandReport)),
-         report(ReportId::force, 8, output_item, sizeof(protocol::ForceReport)),
-         report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
-         report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
-         report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
-         report(ReportId::frame, 7, feature_item, sizeof(protocol::FrameReport)),
-         report(ReportId::shapes, 9, feature_item, sizeof(protocol::ShapesReport)),
-         report(ReportId::force_law, 10, feature_item, protocol::force_law_report_maximum),
-         report(ReportId::black_box, 11, feature_item, sizeof(protocol::BlackBoxReport)),
-         report(ReportId::black_box_rows, 12, feature_item, sizeof(protocol::BlackBoxRowsReport)),
-         report(ReportId::self_test, 13, feature_item, sizeof(protocol::SelfTestReport)),
-         report(ReportId::store, 14, feature_item, sizeof(protocol::StoreReport)),
-         report(ReportId::stored, 15, feature_item, sizeof(protocol::ParametersReport)),
-         report(ReportId::driver, 16, feature_item, sizeof(protocol::DriverReport)),
-         report(ReportId::request_results, 17, feature_item, sizeof(protocol::RequestResultsReport)),
-         bytes(0xC0));  // end of the collection
+/// A report with its id and the bytes after it.
+constexpr auto items_of(const protocol::ReportInfo& row) {
+  const std::size_t count = row.bytes - 1;
+  return bytes(0x85, static_cast<std::uint8_t>(row.id),  // report id
+               0x09, row.usage,                          // usage
+               0x96, low(count), high(count),            // report count, 16 bits
+               item_of(row.kind), data_variable_absolute);
+}
+
+constexpr auto reports = []() {
+  constexpr std::size_t items_size = items_of(protocol::report_table[0]).size();
+  std::array<std::uint8_t, protocol::report_table.size() * items_size> items{};
+  for (std::size_t i = 0; i < protocol::report_table.size(); ++i)
+    std::ranges::copy(items_of(protocol::report_table[i]), items.begin() + i * items_size);
+  return items;
+}();
+
+constexpr auto report_descriptor = join(bytes(0x06, 0x00, 0xFF,  // usage page: vendor
+                                              0x09, 0x01,        // usage
+                                              0xA1, 0x01,        // application collection
+                                              0x15, 0x00,        // logical minimum 0
+                                              0x26, 0xFF, 0x00,  // logical maximum 255
+                                              0x75, 0x08),       // report size, 8 bits
+                                        reports,
+                                        bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------
 
@@ -160,7 +156,8 @@ constexpr auto firmware_update = []() {
   constexpr std::uint8_t can_download = 1, can_upload = 2, will_detach = 8;
   constexpr std::size_t detach_timeout_ms = 255, transfer_size = 2048;
   return bytes(9, type(DescriptorType::firmware_update), can_download | can_upload | will_detach,
-               low(detach_timeout_ms), high(detach_timeout_ms), low(transfer_size), high(transfer_size), 0x1A, 0x01);
+               low(detach_timeout_ms), high(detach_timeout_ms), low(transfer_size), high(transfer_size), 0x10,
+               0x01);  // DFU 1.1
 }();
 
 constexpr auto interfaces =
@@ -184,40 +181,60 @@ constexpr auto configuration =
                identity::interface_count, configuration_value, 0, self_powered, bus_current_2mA),
          interfaces);
 
-// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the scope's interface by itself -----------
+// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the interfaces that are not HID ----------
 
 constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
 
 constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
-constexpr auto property_value = utf16<2>("{5A1E7D6B-3C0F-4E59-9B7C-0D2B6C1F8A44}");
 
-constexpr auto registry_property = []() {
-  constexpr std::size_t size = 10 + property_name.size() + property_value.size();
+/// The property under which programs find an interface; each interface needs a GUID of its own.
+template <std::size_t size>
+constexpr auto interface_guid(const char (&guid)[size]) {
+  constexpr std::size_t value_size = 2 * (size - 1 + 2);
+  constexpr std::size_t property_size = 10 + property_name.size() + value_size;
   constexpr std::uint8_t multiple_strings = 7;
-  return join(bytes(low(size), high(size), 4, 0, multiple_strings, 0, low(property_name.size()), 0), property_name,
-              bytes(low(property_value.size()), 0), property_value);
-}();
+  return join(bytes(low(property_size), high(property_size), 4, 0, multiple_strings, 0, low(property_name.size()), 0),
+              property_name, bytes(low(value_size), 0), utf16<2>(guid));
+}
 
 constexpr auto compatible_id = bytes(20, 0, 3, 0, 'W', 'I', 'N', 'U', 'S', 'B', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
 
+template <std::size_t size>
+constexpr auto win_usb_function(std::uint8_t first_interface, const char (&guid)[size]) {
+  const auto property = interface_guid(guid);
+  const std::size_t function_size = 8 + compatible_id.size() + property.size();
+  return join(bytes(8, 0, 2, 0, first_interface, 0, low(function_size), high(function_size)), compatible_id, property);
+}
+
 constexpr auto microsoft_set = []() {
-  constexpr std::size_t function_size = 8 + compatible_id.size() + registry_property.size();
-  constexpr std::size_t subset_size = 8 + function_size;
+  constexpr auto functions =
+      join(win_usb_function(identity::scope_interface, "{5A1E7D6B-3C0F-4E59-9B7C-0D2B6C1F8A44}"),
+           win_usb_function(identity::firmware_update_interface, "{EC396C1F-BD53-4F5A-A880-E944C0308F12}"));
+  constexpr std::size_t subset_size = 8 + functions.size();
   constexpr std::size_t size = 10 + subset_size;
   return join(bytes(10, 0, 0, 0), windows_8_1, bytes(low(size), high(size)),
               bytes(8, 0, 1, 0, 0, 0, low(subset_size), high(subset_size)),  // first configuration
-              bytes(8, 0, 2, 0, identity::scope_interface, 0, low(function_size), high(function_size)), compatible_id,
-              registry_property);
+              functions);
 }();
 
+// ---- Binary object store (USB 2.0 ECN "Link Power Management", USB 3.2 section 9.6.2) ------------------
+
+/// A device of version 2.01 has to have it. No attribute is set: there is no link power management.
+constexpr auto usb_2_0_extension = bytes(7, type(DescriptorType::device_capability), 2, 0, 0, 0, 0);
+
 /// Platform capability with the identifier that Microsoft gave to its OS 2.0 descriptors.
-constexpr auto object_store = []() {
-  constexpr std::size_t capability_size = 28, size = 5 + capability_size;
-  constexpr std::uint8_t platform = 5;
-  return join(bytes(5, type(DescriptorType::binary_object_store), size, 0, 1),
-              bytes(capability_size, type(DescriptorType::device_capability), platform, 0),
+constexpr auto microsoft_capability = []() {
+  constexpr std::uint8_t capability_size = 28, platform = 5;
+  return join(bytes(capability_size, type(DescriptorType::device_capability), platform, 0),
               bytes(0xDF, 0x60, 0xDD, 0xD8, 0x89, 0x45, 0xC7, 0x4C, 0x9C, 0xD2, 0x65, 0x9D, 0x9E, 0x64, 0x8A, 0x9F),
               windows_8_1, bytes(low(microsoft_set.size()), high(microsoft_set.size()), microsoft_request, 0));
+}();
+
+constexpr auto object_store = []() {
+  constexpr std::size_t size = 5 + usb_2_0_extension.size() + microsoft_capability.size();
+  constexpr std::uint8_t capability_count = 2;
+  return join(bytes(5, type(DescriptorType::binary_object_store), low(size), high(size), capability_count),
+              usb_2_0_extension, microsoft_capability);
 }();
 
 }  // namespace

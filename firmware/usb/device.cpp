@@ -108,7 +108,7 @@ void Device::bus_reset() {
   scope_frame_open_ = scope_wants_end_ = false;
   configuration_ = 0;  // before host_gone(): no endpoint but 0 takes anything any more
   idle_rates_ = {};
-  detach_asked_ = false;
+  detach_asked_ = detach_was_refused_ = false;
   link_.update_asked.store(false);
   suspended_ = false;
   control_.reset();
@@ -278,7 +278,7 @@ void Device::take_report(std::span<const std::byte> report) {
     port_.receive(identity::hid_out_endpoint);
     return;
   }
-  held_command_ = link::decode_command(report);
+  held_command_ = read_command(report);
   pass_on_held_command();
 }
 
@@ -286,6 +286,21 @@ void Device::take_force(std::span<const std::byte> report) {
   const std::uint32_t claim = link::claim_of_force(report);
   const bool is_of_driver = is_permitted(claim) && link_.driver.is_held_by(claim);
   if (link_.program.accept_force(report, is_of_driver, pose_sequence_)) link_.commands.note_sign_of_life();
+}
+
+void Device::take_shapes(std::span<const std::byte> report) {
+  const std::uint32_t claim = link::claim_of_shapes(report);
+  const bool is_of_driver = is_permitted(claim) && link_.driver.is_held_by(claim);
+  link_.request_results.note_shapes(link::ticket_of_shapes(report), is_of_driver
+                                                                        ? link_.program.accept_shapes(report)
+                                                                        : protocol::RequestResult::not_the_driver);
+}
+
+std::optional<protocol::CommandReport> Device::read_command(std::span<const std::byte> report) {
+  const auto command = link::whole_command(report);
+  if (!command || link::is_valid(*command)) return command;
+  link_.request_results.note_dropped(*command, protocol::RequestResult::malformed);
+  return std::nullopt;
 }
 
 bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {

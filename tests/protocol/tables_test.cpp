@@ -9,7 +9,9 @@
 
 #include <protocol/faults.hpp>
 #include <protocol/parameters.hpp>
+#include <protocol/report_table.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/request_result.hpp>
 #include <protocol/scope.hpp>
 #include <protocol/signals.hpp>
 #include <protocol/store.hpp>
@@ -34,6 +36,35 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
 auto& fresh_table() {
   static auto table = parameter_table;
   return table = parameter_table;
+}
+
+TEST_CASE("reports: ids and usages are unique, and each is read or set") {
+  std::set<ReportId> ids;
+  std::set<unsigned> usages;
+  for (std::size_t i = 0; i < report_table.size(); ++i) {
+    const ReportInfo& row = report_table[i];
+    CAPTURE(static_cast<unsigned>(row.id));
+    CHECK(ids.insert(row.id).second);
+    CHECK(usages.insert(row.usage).second);
+    CHECK(find_report(row.kind, row.id) == &row);
+    const bool can_be_used = row.can_be_read || row.can_be_set();
+    CHECK(can_be_used);
+    CHECK(row.can_be_read == (report_texts[i].get != "none"));
+    CHECK(report_texts[i].meaning.ends_with('.'));
+  }
+  CHECK(find_report(ReportKind::input, ReportId::command) == nullptr);
+  CHECK(find_report(ReportKind::feature, static_cast<ReportId>(0)) == nullptr);
+}
+
+TEST_CASE("results of requests: each has its name, meaning and remedy; other codes are unknown") {
+  std::set<std::string_view> names;
+  for (const RequestResultInfo& row : request_result_table) {
+    CHECK(names.insert(row.name).second);
+    CHECK(row.meaning.ends_with('.'));
+    CHECK(row.remedy.ends_with('.'));
+  }
+  CHECK(info(RequestResult::busy).name == "busy");
+  CHECK(info(static_cast<RequestResult>(request_result_table.size())).name == "unknown");
 }
 
 TEST_CASE("parameters: names and ids are unique and found, names end in their unit, all have help") {

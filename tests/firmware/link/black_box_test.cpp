@@ -35,6 +35,10 @@ protocol::SignalValues signals_at(std::uint32_t period) {
   return signals;
 }
 
+protocol::RequestResult result_of(const protocol::BlackBoxRowsReport& report) {
+  return static_cast<protocol::RequestResult>(report.result);
+}
+
 /// A board whose memory outlives its runs. Its ring of samples is that of fresh_link(), which is new in each run.
 struct Board {
   link::BlackBoxMemory<rows_before, rows_from_fault> memory{};
@@ -65,8 +69,9 @@ struct Board {
   }
   std::vector<BlackBoxRow> rows_from(std::uint16_t first) {
     const protocol::BlackBoxRequest request{.first_row = first};
-    REQUIRE(box->select_rows(std::as_bytes(std::span(&request, 1))));
+    box->select_rows(std::as_bytes(std::span(&request, 1)));
     const auto report = box->rows();
+    REQUIRE(result_of(report) == protocol::RequestResult::accepted);
     CHECK(report.report_id == protocol::ReportId::black_box_rows);
     CHECK(report.first_row == first);
     CHECK(report.fault_periods == box->report().fault_periods);
@@ -387,18 +392,25 @@ TEST_CASE("rows of an image with other tables are not shown by this one") {
   CHECK(box.report().fault == Fault::none);
 }
 
-TEST_CASE("a request for rows of another version or length is refused, and the one before holds") {
+TEST_CASE("a request for rows of another version or too short is malformed, and the one before holds") {
   Board board;
   meet_fault(board);
-  board.rows_from(5);
+  CHECK(result_of(board.box->rows()) == protocol::RequestResult::accepted);
   protocol::BlackBoxRequest request{.first_row = 1};
   const auto bytes = std::as_bytes(std::span(&request, 1));
+  const auto is_malformed = [&](std::span<const std::byte> asked) {
+    const auto kept = board.rows_from(5);
+    board.box->select_rows(asked);
+    const auto report = board.box->rows();
+    return result_of(report) == protocol::RequestResult::malformed && report.first_row == 5 &&
+           report.row_count == kept.size();
+  };
   request.version = protocol::protocol_version + 1;
-  CHECK_FALSE(board.box->select_rows(bytes));
+  CHECK(is_malformed(bytes));
   request.version = protocol::protocol_version;
-  CHECK_FALSE(board.box->select_rows(bytes.first(3)));
-  CHECK_FALSE(board.box->select_rows({}));
-  CHECK(board.box->rows().first_row == 5);
+  CHECK(is_malformed(bytes.first(3)));
+  CHECK(is_malformed({}));
+  CHECK_FALSE(is_malformed(bytes));
   CHECK(board.rows_from(0xFFFF).empty());
 }
 

@@ -10,6 +10,7 @@ namespace {
 using namespace inkwell;
 using protocol::ForceMode;
 using protocol::ForceReport;
+using protocol::RequestResult;
 using protocol::ShapesReport;
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
@@ -149,7 +150,7 @@ TEST_CASE("a set of shapes is taken whole or refused whole") {
     return report;
   };
   link::ProgramRequests requests;
-  REQUIRE(requests.accept_shapes(bytes(broken([](auto&) {}))));
+  REQUIRE(requests.accept_shapes(bytes(broken([](auto&) {}))) == RequestResult::accepted);
   REQUIRE(requests.take_shapes() != nullptr);
   const ShapesReport reports[] = {
       broken([](auto& report) { report.version = 1; }),
@@ -169,15 +170,37 @@ TEST_CASE("a set of shapes is taken whole or refused whole") {
   std::size_t which = 0;
   for (const ShapesReport& report : reports) {
     CAPTURE(which++);
-    CHECK(!requests.accept_shapes(bytes(report)));
+    CHECK(requests.accept_shapes(bytes(report)) == RequestResult::malformed);
     CHECK(requests.take_shapes() == nullptr);
   }
   ShapesReport many = one_plane();
   many.plane_count = protocol::shape_planes_maximum + 1;
-  CHECK(!requests.accept_shapes(std::as_bytes(std::span(&many, 1))));
-  CHECK(!requests.accept_shapes(bytes(one_plane()).first(protocol::shapes_report_size(1) - 1)));
-  CHECK(!requests.accept_shapes(bytes(one_plane()).first(4)));
-  CHECK(!requests.accept_shapes({}));
+  const ShapesReport one = one_plane();
+  CHECK(requests.accept_shapes(std::as_bytes(std::span(&many, 1))) == RequestResult::malformed);
+  for (const std::size_t size : {protocol::shapes_report_size(1) - 1, std::size_t{4}, std::size_t{0}})
+    CHECK(requests.accept_shapes(bytes(one).first(size)) == RequestResult::malformed);
+  CHECK(requests.take_shapes() == nullptr);
+}
+
+TEST_CASE("shapes are busy while the interrupt has not taken the previous ones, which stay") {
+  link::ProgramRequests requests;
+  const ShapesReport one = one_plane(), none{};
+  REQUIRE(requests.accept_shapes(bytes(one)) == RequestResult::accepted);
+  CHECK(requests.accept_shapes(bytes(none)) == RequestResult::busy);
+  const control::Shapes* shapes = requests.take_shapes();
+  REQUIRE(shapes != nullptr);
+  CHECK(shapes->life_periods[1] != 0);
+  CHECK(requests.accept_shapes(bytes(none)) == RequestResult::accepted);
+}
+
+TEST_CASE("the ticket of shapes is known if they are of this version and long enough to hold it") {
+  ShapesReport report = one_plane();
+  report.ticket = 0x12345678;
+  CHECK(link::ticket_of_shapes(bytes(report)) == 0x12345678);
+  CHECK(link::ticket_of_shapes(bytes(report).first(11)) == 0);
+  CHECK(link::ticket_of_shapes({}) == 0);
+  ++report.version;
+  CHECK(link::ticket_of_shapes(bytes(report)) == 0);
 }
 
 TEST_CASE("a place without life may hold anything") {

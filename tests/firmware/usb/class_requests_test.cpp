@@ -45,7 +45,7 @@ TEST_CASE("HID: the controller's report can be asked for, and takes none") {
   DeviceBench bench;
   bench.configure();
   const auto ask = [&](std::uint16_t value) { return bench.control(request(0xA1, 1, value, 2, 64)); };
-  CHECK(ask(0x0100) == stall_result);  // there is none yet
+  CHECK(ask(0x0100) == answer({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));  // before the first period
   bench.run(101);
   CHECK(ask(0x0100) == answer({0xFF, 0x7F, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0}));
   for (const unsigned value : {0x0101u, 0x0300u, 0x0200u})
@@ -72,18 +72,38 @@ TEST_CASE("firmware update: the device leaves when the host has its answer, not 
   CHECK(bench.control(request(0xA1, 3, 0, 3, 6)) == answer({0, 0, 0, 0, 1, 0}));
 }
 
-TEST_CASE(
-    "firmware update: not while the hand feels a force, nor when it is about to, and a reset of the bus forgets it") {
+TEST_CASE("firmware update: with a force, or one about to come, a detach has no effect but the error errVENDOR") {
   DeviceBench bench;
   bench.configure();
   const auto detach = request(0x21, 0, 1000, 3, 0);
+  const auto status = [&] { return bench.control(request(0xA1, 3, 0, 3, 6)); };
+  const auto refused = answer({0x0B, 0, 0, 0, 0, 0});
   bench.run(1, protocol::State::active);
-  CHECK(bench.control(detach) == stall_result);
+  CHECK(bench.control(detach) == done_result);
+  CHECK(status() == refused);
+  CHECK(status() == refused);  // it is not cleared by being read
+  CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({0}));
+  bench.port.reset();
+  bench.device.poll();
+  bench.configure();
+  CHECK(status() == answer({0, 0, 0, 0, 0, 0}));
   bench.run(1);
   CHECK(bench.port.out(1, bytes_of(command(protocol::Command::enable_force, 1))) == Handshake::ack);
   bench.device.poll();
-  CHECK(bench.control(detach) == stall_result);
+  CHECK(bench.control(detach) == done_result);
+  CHECK(status() == refused);
   CHECK_FALSE(bench.device.leaves_for_update());
+  CHECK_FALSE(bench.link.update_asked.load());
+  bench.run(1);
+  CHECK(bench.control(detach) == done_result);
+  CHECK(status() == answer({0, 0, 0, 0, 1, 0}));
+  CHECK(bench.device.leaves_for_update());
+}
+
+TEST_CASE("firmware update: a reset of the bus forgets it") {
+  DeviceBench bench;
+  bench.configure();
+  const auto detach = request(0x21, 0, 1000, 3, 0);
   bench.run(1);
   bench.setup(detach);
   bench.port.reset();
@@ -109,13 +129,20 @@ TEST_CASE("firmware update: other requests, directions and lengths are refused")
 TEST_CASE("HID: the newest pose can be asked for") {
   DeviceBench bench;
   bench.configure();
-  CHECK(bench.get_report(1, 0x01, 64) == stall_result);  // there is none yet
+  const auto read = [&] {
+    const Bytes data = bench.get_report(1, 0x01, 64).data;
+    REQUIRE(data.size() == sizeof(protocol::PoseReport));
+    protocol::PoseReport pose;
+    std::memcpy(&pose, data.data(), sizeof pose);
+    return pose;
+  };
+  // Before the first control period all is zero, and nothing is known but the state.
+  const protocol::PoseReport first = read();
+  const protocol::PoseReport expected{.state = protocol::State::starting};
+  CHECK(std::memcmp(&first, &expected, sizeof first) == 0);
   bench.run(100);
-  const Bytes data = bench.get_report(1, 0x01, 64).data;
-  REQUIRE(data.size() == sizeof(protocol::PoseReport));
-  protocol::PoseReport pose;
-  std::memcpy(&pose, data.data(), sizeof pose);
-  CHECK(pose.time_periods == 99);
+  CHECK(read().time_periods == 99);
+  CHECK(read().is_referenced == 1);
 }
 
 TEST_CASE("HID: information tells tables, clocks and counters") {
@@ -135,7 +162,8 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   // What stands behind it is in tests/host/device/force_law_test.cpp.
   const auto law = bench.get_report(3, static_cast<std::uint8_t>(protocol::ReportId::force_law), 2048).data;
   const auto& installed = control::installed_force_law;
-  CHECK(std::ranges::equal(law, std::span(installed.report, installed.report_size)));
+  REQUIRE(law.size() == 2048);
+  CHECK(std::equal(installed.report, installed.report + installed.report_size, law.begin()));
   CHECK(report.servo_rate_Hz == 20'000);
   CHECK(report.processor_clock_Hz == 168'000'000);
   CHECK(report.servo_cycles_longest == 4321);
@@ -159,10 +187,8 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
   CHECK(result.transactions == 1);
   CHECK(result.applied_at_periods == 0);
 
-  const Bytes data = bench.get_report(3, 0x11, sizeof(protocol::ParametersReport)).data;
-  REQUIRE(data.size() == protocol::parameters_report_size(protocol::parameter_count));
-  protocol::ParametersReport report;
-  std::memcpy(&report, data.data(), data.size());
+  const auto report = bench.get_feature<protocol::ParametersReport>(protocol::ReportId::parameters);
+  CHECK(report.count == protocol::parameter_count);
   const auto row = static_cast<std::size_t>(protocol::Parameter::wall_stiffness_N_per_m);
   const float value = report.entries[row].value;
   CHECK(value == 321.0f);
@@ -210,6 +236,32 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
   CHECK(bench.last_command->command == protocol::Command::disable_force);
 }
 
+TEST_CASE("HID: a command with values that are not allowed is dropped, and its result is malformed") {
+  DeviceBench bench;
+  bench.configure();
+  bench.run(1);  // the reset's stop is taken
+  bench.last_command.reset();
+  const auto results = [&] {
+    return bench.get_feature<protocol::RequestResultsReport>(protocol::ReportId::request_results);
+  };
+  protocol::CommandReport wrong = command(protocol::Command::test_current, 1, 0, 50);
+  wrong.test = {.motor = 4, .amplitude = 0.1f, .duration_s = 0.01f};
+  CHECK(bench.set_report(2, wrong) == done_result);
+  CHECK(results().entries[0].ticket == 50);
+  CHECK(results().entries[0].result == protocol::RequestResult::malformed);
+  wrong = command(static_cast<protocol::Command>(11), 1, 0, 51);
+  REQUIRE(bench.port.out(1, bytes_of(wrong)) == Handshake::ack);
+  bench.device.poll();
+  CHECK(results().entries[1].ticket == 51);
+  CHECK(results().entries[1].result == protocol::RequestResult::malformed);
+  wrong.ticket = 52;
+  wrong.version = protocol::protocol_version + 1;  // of which no field is known
+  CHECK(bench.set_report(2, wrong) == done_result);
+  CHECK(results().entries[2].ticket == 0);
+  bench.run(2);
+  CHECK_FALSE(bench.last_command.has_value());
+}
+
 TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REPORT, and are signs of life") {
   DeviceBench bench;
   bench.configure();
@@ -248,23 +300,34 @@ TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REP
   CHECK(information.force_reports_refused == 1);
 }
 
-TEST_CASE("HID: shapes come whole or are refused by a stall, and go with the host") {
+TEST_CASE("HID: shapes come whole or are refused whole, their result has their ticket, and they go with the host") {
   DeviceBench bench;
   bench.configure();
   bench.link.program.take_shapes();  // none, from the reset
   protocol::ShapesReport shapes{};
   shapes.plane_count = protocol::shape_planes_maximum;
   shapes.claim = 7;
-  CHECK(bench.set_report(3, shapes) == stall_result);  // of no driver
+  shapes.ticket = 100;
+  const auto result = [&] {
+    ++shapes.ticket;
+    CHECK(bench.set_report(3, shapes) == done_result);
+    const auto report = bench.get_feature<protocol::RequestResultsReport>(protocol::ReportId::request_results);
+    const auto* entry = std::ranges::find(report.entries, shapes.ticket, &protocol::RequestResultEntry::ticket);
+    REQUIRE(entry != std::end(report.entries));
+    CHECK(entry->request == protocol::ReportId::shapes);
+    return entry->result;
+  };
+  CHECK(result() == protocol::RequestResult::not_the_driver);
   REQUIRE(bench.set_report(3, claim_report(protocol::ClaimOperation::claim, 7)) == done_result);
   bench.link.program.take_force();  // none, from the reset
   for (auto& plane : shapes.planes) plane = {{0, 0, 0}, {0, 0, 1}, {800.0f, 1.0f, 0.0f, 0.0f, 1.0f}};
-  CHECK(bench.set_report(3, shapes) == done_result);
+  CHECK(result() == protocol::RequestResult::accepted);
+  CHECK(result() == protocol::RequestResult::busy);  // the interrupt has not taken them
   const control::Shapes* taken = bench.link.program.take_shapes();
   REQUIRE(taken != nullptr);
   CHECK(taken->life_periods[8] != 0);
   shapes.planes[7].normal[2] = 0.0f;
-  CHECK(bench.set_report(3, shapes) == stall_result);
+  CHECK(result() == protocol::RequestResult::malformed);
   CHECK(bench.link.program.take_shapes() == nullptr);
   CHECK(bench.configure(0) == done_result);
   taken = bench.link.program.take_shapes();
@@ -292,6 +355,7 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
     for (int i = 0; i < 2; ++i) {
       const auto report = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);
       CHECK(report.first_row == row);
+      CHECK(static_cast<protocol::RequestResult>(report.result) == protocol::RequestResult::accepted);
       CHECK(report.row_count == std::min<std::size_t>(protocol::black_box_report_rows, 6u - row));
       const std::uint32_t period = report.rows[0].time_periods;
       CHECK(period == expected[row]);
@@ -299,9 +363,12 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
       CHECK(position_m == static_cast<float>(period));
     }
   }
-  protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
-  CHECK(bench.set_report(3, request) == stall_result);
-  CHECK(bench.set_report(3, request, 3) == stall_result);
+  // A refusal is no stall: the rows stay, and the report has the result.
+  const protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
+  CHECK(bench.set_report(3, request) == done_result);
+  const auto refused = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);
+  CHECK(static_cast<protocol::RequestResult>(refused.result) == protocol::RequestResult::malformed);
+  CHECK(refused.first_row == 5);
 
   bench.run(1, protocol::State::active);
   CHECK(head().fault == protocol::Fault::none);
@@ -359,9 +426,9 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
   // The id in the data is another one than in the request.
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, sizeof good), bytes_of(good)) == stall_result);
   // Short and long.
-  for (const std::size_t size : {1u, 44u}) CHECK(bench.set_report(2, good, size) == done_result);
-  const std::array<std::byte, 64> longer{std::byte{2}};
-  CHECK(bench.set_report(2, longer) == done_result);
+  for (const std::size_t size : {1u, 44u}) CHECK(bench.set_report(2, good, size) == stall_result);
+  const std::array<std::byte, 46> longer{std::byte{2}};
+  CHECK(bench.set_report(2, longer) == stall_result);
   for (const std::size_t size : {0u, 1u, 44u, 46u, 64u}) {
     std::array<std::byte, 64> packet{};
     std::memcpy(packet.data(), &good, sizeof good);

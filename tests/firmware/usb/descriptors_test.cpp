@@ -1,11 +1,10 @@
+// The descriptors of USB and HID.
 #include <initializer_list>
 #include <string>
-#include <string_view>
 
 #include <doctest/doctest.h>
 
-#include <protocol/driver.hpp>
-#include <protocol/store.hpp>
+#include <protocol/report_table.hpp>
 
 #include "device_bench.hpp"
 
@@ -13,7 +12,6 @@ namespace inkwell {
 
 using test::Bytes;
 using test::DeviceBench;
-using test::request;
 using test::stall_result;
 
 namespace {
@@ -54,181 +52,41 @@ TEST_CASE("device and configuration, byte for byte") {
                9, 0x21, 0x11, 0x01, 0,  1,    0x22, 79,   0,  //
                7, 5,    0x83, 3,    64, 0,    8,              //
                9, 4,    3,    0,    0,  0xFE, 1,    1,    7,  // firmware update
-               9, 0x21, 0x0B, 0xFF, 0,  0,    0x08, 0x1A, 0x01}));
+               9, 0x21, 0x0B, 0xFF, 0,  0,    0x08, 0x10, 0x01}));
   CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 159, 0}));
   CHECK(bench.get_descriptor(0x2100, 64, 1, 2).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 79, 0}));
 }
 
 TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes") {
-  DeviceBench bench;
-  const auto low = [](std::size_t size) { return static_cast<unsigned>(size - 1) & 0xFF; };
-  const auto high = [](std::size_t size) { return static_cast<unsigned>(size - 1) >> 8; };
   using namespace protocol;
-  const std::size_t pose = sizeof(PoseReport), command = sizeof(CommandReport), information = sizeof(InformationReport),
-                    parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport),
-                    frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport),
-                    law = force_law_report_maximum, box = sizeof(BlackBoxReport), rows = sizeof(BlackBoxRowsReport),
-                    self_test = sizeof(SelfTestReport), store = sizeof(StoreReport), driver = sizeof(DriverReport),
-                    results = sizeof(RequestResultsReport);
-  CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
-                                                             0x00,
-                                                             0xFF,
-                                                             0x09,
-                                                             0x01,
-                                                             0xA1,
-                                                             0x01,
-                                                             0x15,
-                                                             0x00,
-                                                             0x26,
-                                                             0xFF,
-                                                             0x00,
-                                                             0x75,
-                                                             0x08,  //
-                                                             0x85,
-                                                             0x01,
-                                                             0x09,
-                                                             2,
-                                                             0x96,
-                                                             low(pose),
-                                                             high(pose),
-                                                             0x81,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x02,
-                                                             0x09,
-                                                             3,
-                                                             0x96,
-                                                             low(command),
-                                                             high(command),
-                                                             0x91,
-                                                             0x02,
-                                                             0x85,
-                                                             0x03,
-                                                             0x09,
-                                                             8,
-                                                             0x96,
-                                                             low(force),
-                                                             high(force),
-                                                             0x91,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x10,
-                                                             0x09,
-                                                             4,
-                                                             0x96,
-                                                             low(information),
-                                                             high(information),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x11,
-                                                             0x09,
-                                                             5,
-                                                             0x96,
-                                                             low(parameters),
-                                                             high(parameters),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x12,
-                                                             0x09,
-                                                             6,
-                                                             0x96,
-                                                             low(transaction),
-                                                             high(transaction),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x13,
-                                                             0x09,
-                                                             7,
-                                                             0x96,
-                                                             low(frame),
-                                                             high(frame),
-                                                             0xB1,
-                                                             0x02,
-                                                             0x85,
-                                                             0x14,
-                                                             0x09,
-                                                             9,
-                                                             0x96,
-                                                             low(shapes),
-                                                             high(shapes),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x15,
-                                                             0x09,
-                                                             10,
-                                                             0x96,
-                                                             low(law),
-                                                             high(law),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x16,
-                                                             0x09,
-                                                             11,
-                                                             0x96,
-                                                             low(box),
-                                                             high(box),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x17,
-                                                             0x09,
-                                                             12,
-                                                             0x96,
-                                                             low(rows),
-                                                             high(rows),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x18,
-                                                             0x09,
-                                                             13,
-                                                             0x96,
-                                                             low(self_test),
-                                                             high(self_test),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x19,
-                                                             0x09,
-                                                             14,
-                                                             0x96,
-                                                             low(store),
-                                                             high(store),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x1A,
-                                                             0x09,
-                                                             15,
-                                                             0x96,
-                                                             low(parameters),
-                                                             high(parameters),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x1B,
-                                                             0x09,
-                                                             16,
-                                                             0x96,
-                                                             low(driver),
-                                                             high(driver),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0x85,
-                                                             0x1C,
-                                                             0x09,
-                                                             17,
-                                                             0x96,
-                                                             low(results),
-                                                             high(results),
-                                                             0xB1,
-                                                             0x02,  //
-                                                             0xC0}));
+  const struct {
+    unsigned id, usage, item;
+    std::size_t size;
+  } reports[] = {{0x01, 2, 0x81, sizeof(PoseReport)},
+                 {0x02, 3, 0x91, sizeof(CommandReport)},
+                 {0x03, 8, 0x91, sizeof(ForceReport)},
+                 {0x10, 4, 0xB1, sizeof(InformationReport)},
+                 {0x11, 5, 0xB1, sizeof(ParametersReport)},
+                 {0x12, 6, 0xB1, sizeof(TransactionReport)},
+                 {0x13, 7, 0xB1, sizeof(FrameReport)},
+                 {0x14, 9, 0xB1, sizeof(ShapesReport)},
+                 {0x15, 10, 0xB1, 2048},
+                 {0x16, 11, 0xB1, sizeof(BlackBoxReport)},
+                 {0x17, 12, 0xB1, sizeof(BlackBoxRowsReport)},
+                 {0x18, 13, 0xB1, sizeof(SelfTestReport)},
+                 {0x19, 14, 0xB1, sizeof(StoreReport)},
+                 {0x1A, 15, 0xB1, sizeof(ParametersReport)},
+                 {0x1B, 16, 0xB1, sizeof(DriverReport)},
+                 {0x1C, 17, 0xB1, sizeof(RequestResultsReport)}};
+  Bytes expected = bytes({0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08});
+  for (const auto& row : reports) {
+    const auto count = static_cast<unsigned>(row.size - 1);
+    const Bytes items = bytes({0x85, row.id, 0x09, row.usage, 0x96, count & 0xFF, count >> 8, row.item, 0x02});
+    expected.insert(expected.end(), items.begin(), items.end());
+  }
+  expected.push_back(std::byte{0xC0});
+  DeviceBench bench;
+  CHECK(bench.get_descriptor(0x2200, 4096, 1).data == expected);
 }
 
 TEST_CASE("the controller's report descriptor, byte for byte: a multi-axis controller with units") {
@@ -242,30 +100,6 @@ TEST_CASE("the controller's report descriptor, byte for byte: a multi-axis contr
                0x02,                                                                             // Rx, Ry, Rz
                0x65, 0,    0x55, 0,    0x35, 0,    0x45, 0,    0x05, 0x09, 0x19, 1,    0x29, 2,  //
                0x15, 0,    0x25, 1,    0x75, 1,    0x95, 2,    0x81, 0x02, 0x95, 14,   0x81, 0x03, 0xC0}));
-}
-
-TEST_CASE("the descriptors by which Windows finds WinUSB, byte for byte") {
-  DeviceBench bench;
-  CHECK(bench.get_descriptor(0x0F00, 255).data ==
-        bytes({5,    0x0F, 33,   0,    1,                       // one capability
-               28,   0x10, 5,    0,                             // of the platform
-               0xDF, 0x60, 0xDD, 0xD8, 0x89, 0x45, 0xC7, 0x4C,  // {D8DD60DF-4589-4CC7-9CD2-659D9E648A9F}
-               0x9C, 0xD2, 0x65, 0x9D, 0x9E, 0x64, 0x8A, 0x9F,  //
-               0x00, 0x00, 0x03, 0x06, 178,  0,    0x20, 0}));
-  Bytes expected = bytes({10,  0, 0, 0, 0x00, 0x00, 0x03, 0x06, 178, 0,  // set
-                          8,   0, 1, 0, 0,    0,    168,  0,             // configuration
-                          8,   0, 2, 0, 1,    0,    160,  0,             // interface 1
-                          20,  0, 3, 0, 'W',  'I',  'N',  'U',  'S', 'B', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,  //
-                          132, 0, 4, 0, 7,    0,    42,   0});
-  const auto append_utf16 = [&](std::string_view text, unsigned zeros) {
-    for (const char character : text)
-      expected.insert(expected.end(), {static_cast<std::byte>(character), std::byte{0}});
-    expected.resize(expected.size() + 2 * zeros);
-  };
-  append_utf16("DeviceInterfaceGUIDs", 1);
-  expected.insert(expected.end(), {std::byte{80}, std::byte{0}});
-  append_utf16("{5A1E7D6B-3C0F-4E59-9B7C-0D2B6C1F8A44}", 2);
-  CHECK(bench.control(request(0xC0, 0x20, 0, 7, 512)).data == expected);
 }
 
 TEST_CASE("strings: language, names and serial number; no others") {
@@ -303,13 +137,6 @@ TEST_CASE("descriptors that are not there are refused") {
   CHECK(bench.get_descriptor(0x0100, 18, 2) == stall_result);  // an endpoint has none
   // After all this the device still answers.
   CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18);
-}
-
-TEST_CASE("the descriptors for Windows are given for their own request only") {
-  DeviceBench bench;
-  CHECK(bench.control(request(0xC0, 0x20, 0, 8, 512)) == stall_result);
-  CHECK(bench.control(request(0xC0, 0x21, 0, 7, 512)) == stall_result);
-  CHECK(bench.control(request(0x40, 0x20, 0, 7, 0)) == stall_result);
 }
 
 }  // namespace inkwell

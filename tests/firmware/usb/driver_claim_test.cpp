@@ -8,9 +8,9 @@ namespace {
 
 using protocol::ClaimOperation;
 using protocol::Command;
-using protocol::RequestResult;
 using protocol::DriverReport;
 using protocol::ReportId;
+using protocol::RequestResult;
 
 constexpr std::uint32_t first = 11, second = 22;
 constexpr auto expiry_periods = static_cast<std::uint32_t>(protocol::claim_expiry_s * protocol::servo_rate_Hz);
@@ -222,7 +222,7 @@ TEST_CASE("claim: a malformed report has no effect") {
   report = claim_report(static_cast<ClaimOperation>(3), second);
   CHECK(bench.set_report(3, report) == done_result);
   report = claim_report(ClaimOperation::take_over, second);
-  CHECK(bench.set_report(3, report, sizeof report - 1) == done_result);
+  CHECK(bench.set_report(3, report, sizeof report - 1) == stall_result);
   CHECK(bench.driver().process_id == 1000 + first);
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("claim: poses show that the driver has changed, and nothing else that 
   CHECK(parity() == 0);
 }
 
-TEST_CASE("command results: waiting until the interrupt has taken the command, and forgotten with the host") {
+TEST_CASE("request results: waiting until the interrupt has taken the command, and forgotten with the host") {
   DrivenBench bench;
   REQUIRE(bench.port.out(1, bytes_of(command(Command::disable_force, 1, first, 5))) == Handshake::ack);
   bench.device.poll();

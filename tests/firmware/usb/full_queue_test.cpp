@@ -11,7 +11,6 @@ using test::command;
 using test::done_result;
 using test::Handshake;
 using test::request;
-using test::stall_result;
 
 namespace {
 
@@ -70,12 +69,25 @@ TEST_CASE("while no command can be queued the host is told to wait, and none is 
   bench.check_nothing_was_lost();
 }
 
-TEST_CASE("SET_REPORT is stalled while no command can be queued") {
+TEST_CASE("a command that comes by SET_REPORT while the queue is full is dropped, and its result is busy") {
   FullQueue bench;
-  const protocol::CommandReport by_control = command(Command::clear_fault, 99);
-  CHECK(bench.set_report(2, by_control) == stall_result);
+  const auto send = [&](std::uint32_t ticket) {
+    const protocol::CommandReport by_control = command(Command::clear_fault, 99, 0, ticket);
+    CHECK(bench.set_report(2, by_control) == done_result);
+    return bench.get_feature<protocol::RequestResultsReport>(protocol::ReportId::request_results).entries[0];
+  };
+  CHECK(send(0).ticket == 0);
+  const auto dropped = send(77);
+  CHECK(dropped.ticket == 77);
+  CHECK(dropped.request == protocol::ReportId::command);
+  CHECK(dropped.command == Command::clear_fault);
+  CHECK(dropped.result == protocol::RequestResult::busy);
   bench.check_nothing_was_lost();
-  CHECK(bench.set_report(2, by_control) == done_result);
+  bench.run(1);
+  CHECK(bench.last_command->token != 99);
+  send(0);
+  bench.run(1);
+  CHECK(bench.last_command->token == 99);
 }
 
 TEST_CASE("a held command survives that its endpoint starts again") {

@@ -142,7 +142,7 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
   DeviceBench bench;
   bench.configure();
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, 0)) == stall_result);
-  for (const unsigned length : {sizeof(protocol::ParametersReport) + 1, std::size_t{832}, std::size_t{65535}}) {
+  for (const unsigned length : {protocol::force_law_report_maximum + 1, std::size_t{2112}, std::size_t{65535}}) {
     bench.setup(request(0x21, 9, 0x0311, 0, static_cast<std::uint16_t>(length)));
     const std::array<std::byte, 64> part{std::byte{0x11}};
     CHECK(bench.port.out(0, part) == Handshake::stall);
@@ -153,7 +153,7 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
   const struct {
     std::uint16_t length;
     std::size_t sent;
-  } wrong[] = {{16, 17}, {16, 64}, {16, 15}, {16, 0}, {1, 2}, {63, 64}, {65, 63}, {128, 8}, {776, 40}};
+  } wrong[] = {{16, 17}, {16, 64}, {16, 15}, {16, 0}, {12, 13}, {63, 64}, {65, 63}, {128, 8}, {776, 40}, {2048, 63}};
   for (const auto& [length, sent] : wrong) {
     bench.setup(request(0x21, 9, 0x0311, 0, length));
     CHECK(bench.port.out(0, std::span(packet).first(sent)) == Handshake::ack);
@@ -175,17 +175,24 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
 TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
   DeviceBench bench;
   bench.configure();
-  // The length does not fit the count, so each is refused by the parameters, which saw all of it.
-  std::uint32_t count = 0;
+  std::uint32_t transactions = 0;
   for (const std::size_t size : {std::size_t{64}, std::size_t{65}, std::size_t{127}, std::size_t{128}, std::size_t{129},
                                  sizeof(protocol::ParametersReport)}) {
-    test::Transaction transaction{{9999, 0, 0.0f}};
+    CAPTURE(size);
+    // It counts as many entries as fit: less of it would be refused for its length.
+    test::Transaction transaction{};
+    auto& report = transaction.report();
+    report.count = static_cast<std::uint16_t>((size - protocol::parameters_report_size(0)) / sizeof(*report.entries));
+    for (std::size_t i = 0; i + 1u < report.count; ++i)
+      report.entries[i] = {protocol::parameter_table[i % protocol::parameter_count].id, 0,
+                           protocol::parameter_table[i % protocol::parameter_count].default_value};
+    report.entries[report.count - 1] = {9999, 0, 0.0f};
     CHECK(bench.control(request(0x21, 9, 0x0311, 0, static_cast<std::uint16_t>(size)), transaction.bytes(size)) ==
           done_result);
     const auto result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
-    CHECK(result.transactions == ++count);
-    CHECK(result.refusal == (size == sizeof(protocol::ParametersReport) ? protocol::Refusal::unknown_parameter
-                                                                        : protocol::Refusal::wrong_length));
+    CHECK(result.transactions == ++transactions);
+    const bool fits_table = report.count <= protocol::parameter_count + 1;
+    CHECK(result.refusal == (fits_table ? protocol::Refusal::unknown_parameter : protocol::Refusal::given_twice));
   }
 }
 

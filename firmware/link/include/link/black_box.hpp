@@ -61,8 +61,9 @@ class BlackBox {
   void follow();
 
   protocol::BlackBoxReport report() const;
-  /// What the next rows() begin with; false if the request (from its report id on) is not sound.
-  bool select_rows(std::span<const std::byte> request);
+  /// Chooses the first row of the next rows() by a BlackBoxRequest. A request that is not valid changes nothing but the
+  /// result in rows(); the bytes after it are ignored.
+  void select_rows(std::span<const std::byte> request);
   protocol::BlackBoxRowsReport rows() const;
 
  private:
@@ -86,7 +87,8 @@ class BlackBox {
   // While a black box is kept: how many of its rows are sound.
   std::uint32_t rows_before_ = 0;
   std::uint32_t rows_from_fault_ = 0;
-  std::uint16_t first_row_ = 0;  ///< wanted by the host
+  std::uint16_t first_row_ = 0;                                         ///< wanted by the host
+  protocol::RequestResult result_ = protocol::RequestResult::accepted;  ///< of its last request
 };
 
 }  // namespace inkwell::link

@@ -12,8 +12,13 @@
 
 namespace inkwell::link {
 
-/// The command in an output report (from its report id on), or nothing if its length, version, command,
-/// signals, motor, amplitude or duration is not one of the protocol.
+/// The command in an output report (from its report id on), valid or not; nothing if the length, id or version differs.
+std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> report);
+
+/// Whether the command, signals, motor, amplitude and duration are within the protocol.
+bool is_valid(const protocol::CommandReport& command);
+
+/// The command in an output report if it is whole and valid.
 std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
 
 /// Queue from the main loop to the control interrupt, which takes one command a period.

@@ -12,8 +12,8 @@ namespace inkwell::link {
 /// Holds the claim of one program at a time. Main loop only.
 class DriverClaim {
  public:
-  /// Carries out a ClaimReport. Returns true if it ended the claim that was held, by release or takeover. A report of
-  /// another length or version, with an unknown operation or with claim 0 has no effect.
+  /// Carries out a ClaimReport. Returns true if it ended the claim that was held, by release or takeover. A report that
+  /// is too short, of another version, with an unknown operation or with claim 0 has no effect.
   bool accept(std::span<const std::byte> report, std::uint32_t now_periods);
 
   /// Whether a request with this claim may be carried out: there is no driver, or this is the driver.

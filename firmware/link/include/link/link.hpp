@@ -24,11 +24,11 @@
 
 #include <link/black_box.hpp>
 #include <link/command_queue.hpp>
-#include <link/request_results.hpp>
 #include <link/driver_claim.hpp>
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
 #include <link/program_requests.hpp>
+#include <link/request_results.hpp>
 #include <link/sample_ring.hpp>
 #include <link/scope_recorder.hpp>
 #include <link/self_test.hpp>

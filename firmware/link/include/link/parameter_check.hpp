@@ -57,9 +57,9 @@ struct ParameterCheck {
 
 /// Applies a ParametersReport to `current` and checks the result as a whole.
 ///
-/// `report` starts at the report id. It holds exactly the entries that it counts, or is padded to the
-/// whole ParametersReport, as Windows does with feature reports. While the force is on, a transaction
-/// that changes a parameter of the group "arm" is refused. `stored` is what restore_stored gives; null is nothing.
+/// `report` starts at the report id. Bytes after the entries that it counts are ignored: Windows pads feature reports.
+/// While the force is on, a transaction that changes a parameter of the group "arm" is refused. `stored` is what
+/// restore_stored gives; null is nothing.
 ParameterCheck check_transaction(std::span<const std::byte> report, const protocol::ParameterSet& current,
                                  bool force_is_on, const protocol::ParameterSet* stored = nullptr);
 

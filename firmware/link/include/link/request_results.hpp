@@ -38,8 +38,7 @@ class RequestResults {
     std::uint32_t pushed = 0;  ///< CommandQueue::pushed() with this command as the last
   };
 
-  static protocol::RequestResultEntry entry_of(const protocol::CommandReport& command,
-                                               protocol::RequestResult result) {
+  static protocol::RequestResultEntry entry_of(const protocol::CommandReport& command, protocol::RequestResult result) {
     return {command.ticket, protocol::ReportId::command, command.command, result, 0};
   }
   void note(const protocol::RequestResultEntry& entry, std::uint32_t pushed);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include <protocol/reports.hpp>
+#include <protocol/report_table.hpp>
 #include <usb/port.hpp>
 
 namespace inkwell::usb {
@@ -30,23 +30,26 @@ struct Answer {
   enum class Kind : std::uint8_t {
     stall,    ///< the request is not supported, or wrong
     done,     ///< no data stage; carried out
-    send,     ///< IN data stage with `data`, cut to wLength
+    send,     ///< IN data stage with `data`, then zeros up to `padded_size`, cut to wLength
     receive,  ///< OUT data stage of wLength bytes, then data_received()
   };
   Kind kind = Kind::stall;
   std::span<const std::byte> data{};
+  std::size_t padded_size = 0;
 
   static constexpr Answer stall() { return {}; }
-  static constexpr Answer done() { return {Kind::done, {}}; }
-  static constexpr Answer send(std::span<const std::byte> data) { return {Kind::send, data}; }
-  static constexpr Answer receive() { return {Kind::receive, {}}; }
+  static constexpr Answer done() { return {Kind::done}; }
+  static constexpr Answer send(std::span<const std::byte> data, std::size_t padded_size = 0) {
+    return {Kind::send, data, padded_size};
+  }
+  static constexpr Answer receive() { return {Kind::receive}; }
 };
 
 /// Who carries the requests out.
 class ControlRequests {
  public:
   virtual Answer request(const SetupPacket& setup) = 0;
-  /// The whole data of an OUT data stage; false stalls the status stage.
+  /// The data of an OUT data stage, as far as ControlEndpoint::buffer_size; false stalls the status stage.
   virtual bool data_received(const SetupPacket& setup, std::span<const std::byte> data) = 0;
 
  protected:
@@ -55,8 +58,10 @@ class ControlRequests {
 
 class ControlEndpoint {
  public:
-  /// Room for the longest report that goes over endpoint 0.
+  /// Room for the longest report of which the device uses every byte.
   static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
+  /// A host may pad what it writes to the longest feature report. The bytes beyond the buffer are discarded.
+  static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);
   static constexpr std::size_t buffer_alignment = alignof(protocol::ParametersReport);
 
   ControlEndpoint(Port& port, ControlRequests& requests) : port_(port), requests_(requests) {}
@@ -72,13 +77,13 @@ class ControlEndpoint {
  private:
   enum class Stage : std::uint8_t {
     idle,        ///< waits for SETUP
-    data_in,     ///< sends `remaining_`; also takes an early status packet
+    data_in,     ///< sends `remaining_` and `zeros_`; also takes an early status packet
     data_out,    ///< collects wLength bytes in `buffer_`
     status_in,   ///< an empty packet to the host ends the request
     status_out,  ///< an empty packet from the host ends the request
   };
 
-  void begin_data_in(std::span<const std::byte> data);
+  void begin_data_in(const Answer& answer);
   void send_next_packet();
   void collect(std::span<const std::byte> packet);
   void send_status();
@@ -89,9 +94,11 @@ class ControlEndpoint {
   Stage stage_ = Stage::idle;
   SetupPacket setup_{};
   std::span<const std::byte> remaining_{};
+  std::size_t zeros_ = 0;  ///< to be sent after `remaining_`
   bool end_with_empty_packet_ = false;
   std::size_t collected_ = 0;
   alignas(buffer_alignment) std::array<std::byte, buffer_size> buffer_{};
+  std::array<std::byte, packet_size_maximum> padded_packet_{};
 };
 
 }  // namespace inkwell::usb

@@ -59,6 +59,8 @@ class Device final : private ControlRequests {
   Answer hid_request(const SetupPacket& setup);
   Answer firmware_update_request(const SetupPacket& setup);
   Answer get_report(const SetupPacket& setup);
+  /// A report that can be read, in the buffer of endpoint 0 or in flash. It may be shorter than it is declared.
+  std::span<const std::byte> compose(protocol::ReportId id);
   Answer get_controller_report(const SetupPacket& setup);
   Answer vendor_request(const SetupPacket& setup);
 
@@ -82,6 +84,9 @@ class Device final : private ControlRequests {
   /// A report on the interrupt endpoint.
   void take_report(std::span<const std::byte> report);
   void take_force(std::span<const std::byte> report);
+  void take_shapes(std::span<const std::byte> report);
+  /// The command in a report; none, with the result noted, if it is not valid.
+  std::optional<protocol::CommandReport> read_command(std::span<const std::byte> report);
   /// Ignores what is no command; false if the queue has no room for one.
   bool pass_on(const std::optional<protocol::CommandReport>& command);
   /// Passes on what came by the interrupt endpoint and only then lets the next report come: while the queue is full
@@ -92,8 +97,10 @@ class Device final : private ControlRequests {
   void offer_controller_report();
   void send_scope();
   protocol::InformationReport information() const;
-  /// None while the bus is silent.
-  std::optional<protocol::FrameReport> frame_report();
+  /// Its `is_known` is 0 while the bus is silent.
+  protocol::FrameReport frame_report();
+  /// Before the first control period: nothing but the state.
+  protocol::PoseReport newest_pose();
   /// One of the endpoints beside endpoint 0.
   struct Endpoint {
     std::uint8_t address;
@@ -125,6 +132,7 @@ class Device final : private ControlRequests {
   bool suspended_ = false;
   bool force_must_fall_ = false;  ///< the driver has gone, and the command queue was full
   bool detach_asked_ = false;
+  bool detach_was_refused_ = false;  ///< the last one, because of the force
   bool leaves_for_update_ = false;
   std::array<Endpoint, 4> endpoints_;
   std::optional<protocol::CommandReport> held_command_;  ///< found the queue full
