@@ -41,7 +41,7 @@ class Words:
     def for_positional(self, row: Row) -> list[str]:
         if row.names == ["NAME"]:
             return self.parameters
-        if row.names == ["NAME=VALUE"]:
+        if row.names == ["ASSIGNMENT"]:
             return [f"{name}=" for name in self.parameters]
         return [FILES] if row.takes_file() else row.choices()
 

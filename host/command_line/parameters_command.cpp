@@ -231,7 +231,7 @@ void add_parameters_command(const Place& place) {
              "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
              "inkwell parameters set wall_stiffness_N_per_m=600 --store",
              [&options, words, store] { return set(options, *words, *store); })
-      ->add_option("NAME=VALUE", *words, "A parameter and its new value, in the unit that its name ends in")
+      ->add_option("ASSIGNMENT", *words, "NAME=VALUE: a parameter and its new value, in the unit that its name ends in")
       ->required();
   add_change("defaults", "Give every parameter its default", "inkwell parameters defaults",
              [&options, store] { return restore_defaults(options, *store); });
