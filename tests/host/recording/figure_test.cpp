@@ -84,16 +84,16 @@ std::optional<double> line_at(const Image& image, std::size_t pane, Colour colou
   return sum / rows;
 }
 
-/// How many names stand beside a pane.
+/// Number of names beside a pane. A font may leave some empty rows between a name's letters and its underscores.
 int names_beside(const Image& image, std::size_t pane) {
-  constexpr std::size_t names_left = 1330;
+  constexpr std::size_t names_left = 1330, gap_between_names = 6;
   int names = 0;
-  bool was_empty = true;
+  std::size_t empty_rows = gap_between_names;
   for (std::size_t y = first_pane + pane * pane_step; y < first_pane + (pane + 1) * pane_step; ++y) {
     bool is_empty = true;
     for (std::size_t x = names_left; x < image.width; ++x) is_empty &= image.at(x, y).red > 128;
-    names += was_empty && !is_empty;
-    was_empty = is_empty;
+    names += !is_empty && empty_rows >= gap_between_names;
+    empty_rows = is_empty ? empty_rows + 1 : 0;
   }
   return names;
 }
