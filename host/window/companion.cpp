@@ -9,6 +9,7 @@
 
 #include <bars/connection_card.hpp>
 #include <bars/return_card.hpp>
+#include <frame/imgui_versions.hpp>
 #include <frame/keyboard.hpp>
 #include <frame/picture_digest.hpp>
 #include <frame/widgets.hpp>
@@ -76,7 +77,7 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
   // A key that is held acts once: what each step changes may move a motor, and a frame can take longer than a finger.
-  const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false); };
+  const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(key_index(key), false); };
   if (is_tapped(ImGuiKey_Z)) {
     if (io.KeyShift) {
       editor_.redo(now_s);
@@ -229,7 +230,7 @@ void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double no
 
 void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
   constexpr float step_points = 20.0f;
-  const KeySteps steps = key_steps(ImGuiKeyModFlags_Alt);
+  const KeySteps steps = key_steps(with_alt);
   drag_column_splitter(step_points * static_cast<float>(steps.right), window, style_.scale, settings_);
   if (settings_.scope_is_shown)
     drag_scope_splitter(-step_points * static_cast<float>(steps.up), layout, style_.scale, settings_);

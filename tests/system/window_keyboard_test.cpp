@@ -145,6 +145,24 @@ TEST_CASE("Escape leaves the keyboard where it is, and a button that changes its
   CHECK(rig.look().with_keyboard() == "status/Switch force on");
 }
 
+TEST_CASE("the space bar stops the force and does not press the focused control") {
+  WindowRig rig;
+  rig.switch_force_on();
+  go_to_part(rig, "scope");
+  go_to(rig, "Right", "scope/Signals", 12);
+  rig.tap_key("space");
+  rig.look_until("the force is off", [](const Sight& now) { return now.state() == "ready"; });
+  CHECK_FALSE(rig.look().has("scope/search"));
+  CHECK(rig.look().with_keyboard() == "scope/Signals");
+
+  rig.hold_key("space");
+  CHECK_FALSE(rig.look().is_active("scope/Signals"));
+  rig.release_key("space");
+  CHECK_FALSE(rig.look().has("scope/search"));
+  rig.tap_key("Return");  // the control does react to the key that presses it
+  CHECK(rig.look().has("scope/search"));
+}
+
 TEST_CASE("Enter twice does not forget a calibration") {
   WindowRig rig;
   rig.tap_key("F2");

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -109,7 +110,7 @@ void KeyHelp::draw(const Style& style) {
     draw_rows(right_rows, style);
     ImGui::SetCursorPos({left, std::max(end, ImGui::GetCursorPosY())});
     ImGui::Dummy({0, style.points(8)});
-    if (button("Close", {style.points(110), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+    if (button("Close", {style.points(110), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape)))
       ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
@@ -182,7 +183,7 @@ void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left))
     replay_->seek(duration_s * static_cast<double>((mouse - corner.x) / size.x));
   constexpr double step_part = 0.01;  // of the whole, by a key
-  if (const int steps = key_steps_in_part(ImGuiKeyModFlags_Shift).right; steps != 0)
+  if (const int steps = key_steps_in_part(with_shift).right; steps != 0)
     replay_->seek(std::clamp(replay_->position_s() + step_part * steps * duration_s, 0.0, duration_s));
 
   const auto x_of = [&](double at_s) { return corner.x + static_cast<float>(at_s / duration_s) * size.x; };

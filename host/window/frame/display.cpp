@@ -68,10 +68,10 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     auto* display = static_cast<Display*>(glfwGetWindowUserPointer(window));
     display->had_input_ = true;
-    if (display->on_key_ && action != GLFW_REPEAT) display->on_key_(key, action == GLFW_PRESS);
+    if (display->on_key_) display->on_key_({key, scancode, action, modifiers});
   });
   // ImGui's back end calls these before its own.
   static constexpr auto note_input = [](GLFWwindow* window) {

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <imgui_stdlib.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 
@@ -140,12 +141,12 @@ bool FileChooser::draw_buttons(const Style& style) {
     if (coloured_button("Replace", style.palette->danger, style.palette->on_danger, size))
       chosen_ = std::exchange(to_be_replaced_, std::nullopt);
     ImGui::SameLine();
-    if (button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) to_be_replaced_.reset();
+    if (button("Keep it", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) to_be_replaced_.reset();
     return false;
   }
   if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->pane, size)) accept();
   ImGui::SameLine();
-  return button("Cancel", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  return button("Cancel", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
 }
 
 std::optional<fs::path> FileChooser::draw(const Style& style) {

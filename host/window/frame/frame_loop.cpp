@@ -38,9 +38,9 @@ FrameLoop::FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content
       frames_report_(1.0 / display.refresh_rate_Hz()),
       started_s_(glfwGetTime()),
       shown_s_(started_s_) {
-  display_.on_key([this](int key, bool down) {
-    if (down) imgui_.note_key_down(key);
-    content_.key(key, down);
+  display_.on_key([this](const KeyEvent& event) {
+    if (event.action != GLFW_REPEAT) content_.key(event.key, event.action == GLFW_PRESS);
+    imgui_.take_key(event);
   });
 }
 

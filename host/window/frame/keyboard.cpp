@@ -1,9 +1,9 @@
+#include <frame/imgui_versions.hpp>
 #include <frame/keyboard.hpp>
 
 #include <algorithm>
 #include <vector>
 
-#include <GLFW/glfw3.h>
 #include <imgui_internal.h>
 
 namespace inkwell::window {
@@ -49,7 +49,7 @@ void KeyboardTour::begin_frame() {
     wanted_.clear();
     return;
   }
-  if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_TAB)) go_on(io.KeyShift);
+  if (io.KeyCtrl && ImGui::IsKeyPressed(tab_index)) go_on(io.KeyShift);
   ImGuiWindow* wanted = wanted_.empty() ? nullptr : ImGui::FindWindowByName(wanted_.c_str());
   if (wanted != nullptr && wanted->WasActive) {
     wanted_.clear();
@@ -86,29 +86,29 @@ bool is_pressed_by_keyboard() {
   return item != 0 && item == GImGui->NavActivatePressedId;
 }
 
-KeySteps key_steps(ImGuiKeyModFlags modifiers) {
+KeySteps key_steps(KeyModifiers modifiers) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.KeyMods != modifiers || io.WantTextInput || is_menu_open()) return {};
   const auto pressed = [&io](ImGuiKey key) {
-    return ImGui::GetKeyPressedAmount(ImGui::GetKeyIndex(key), io.KeyRepeatDelay, io.KeyRepeatRate);
+    return ImGui::GetKeyPressedAmount(key_index(key), io.KeyRepeatDelay, io.KeyRepeatRate);
   };
   return {.right = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow),
           .up = pressed(ImGuiKey_UpArrow) - pressed(ImGuiKey_DownArrow),
           .away = pressed(ImGuiKey_PageUp) - pressed(ImGuiKey_PageDown)};
 }
 
-KeySteps key_steps_in_part(ImGuiKeyModFlags modifiers) {
+KeySteps key_steps_in_part(KeyModifiers modifiers) {
   return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) ? key_steps(modifiers) : KeySteps{};
 }
 
 void keep_modified_arrows() {
   const ImGuiContext& context = *GImGui;
-  if (context.IO.KeyMods != ImGuiKeyModFlags_None && context.NavMoveDir != ImGuiDir_None) ImGui::NavMoveRequestCancel();
+  if (context.IO.KeyMods != no_modifier && context.NavMoveDir != ImGuiDir_None) ImGui::NavMoveRequestCancel();
 }
 
 void scroll_by_page_keys() {
   constexpr float page = 0.9f;  // so that a line of the last one stays in sight
-  const int pages = key_steps_in_part(ImGuiKeyModFlags_None).away;
+  const int pages = key_steps_in_part(no_modifier).away;
   if (pages != 0) ImGui::SetScrollY(ImGui::GetScrollY() - page * ImGui::GetWindowHeight() * static_cast<float>(pages));
 }
 

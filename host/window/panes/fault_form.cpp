@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 
@@ -41,8 +42,7 @@ const char* place_hint(InjectionPlace place) {
 }
 
 bool is_enter_down() {
-  return ImGui::IsKeyDown(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
-         ImGui::IsKeyDown(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter));
+  return ImGui::IsKeyDown(key_index(ImGuiKey_Enter)) || ImGui::IsKeyDown(key_index(key_keypad_enter));
 }
 
 }  // namespace

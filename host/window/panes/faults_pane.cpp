@@ -12,6 +12,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 #include <panes/board_faults.hpp>
@@ -140,7 +141,7 @@ void FaultsPane::draw(const PaneFrame& frame) {
     return;
   }
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.KeyCtrl && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete), false) && !is_dialog_open()) heal_all();
+  if (io.KeyCtrl && ImGui::IsKeyPressed(key_index(ImGuiKey_Delete), false) && !is_dialog_open()) heal_all();
   draw_heading(style);
   ImGui::BeginDisabled(!gone_.empty());
   is_low_ = ImGui::GetContentRegionAvail().y < style.points(low_points);
@@ -258,8 +259,8 @@ void FaultsPane::draw_search(const Style& style) {
   help_on_hover("Search", "In names, places and help. Up and Down choose, Enter goes to the fault's fields.", style);
   keep_vertical_arrows();
   if (ImGui::IsItemActive()) {
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) choose_neighbour(1);
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) choose_neighbour(-1);
+    if (ImGui::IsKeyPressed(key_index(ImGuiKey_DownArrow))) choose_neighbour(1);
+    if (ImGui::IsKeyPressed(key_index(ImGuiKey_UpArrow))) choose_neighbour(-1);
   }
   if (!entered) return;
   const auto all = found();

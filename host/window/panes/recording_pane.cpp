@@ -16,6 +16,7 @@
 #include <imgui_stdlib.h>
 
 #include <frame/file_chooser.hpp>
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 #include <panes/pane.hpp>
@@ -309,8 +310,7 @@ void RecordingPane::draw_question(const Style& style) {
   const bool agrees =
       coloured_button("Switch off and replay", style.palette->accent, style.palette->pane, {style.points(180), 0});
   ImGui::SameLine();
-  const bool cancels =
-      button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  const bool cancels = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (agrees) {
     desk_.session().send(protocol::Command::disable_force);
     replay_wish_->asks = false;

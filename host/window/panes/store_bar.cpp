@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <device_desk/stored_values.hpp>
+#include <frame/imgui_versions.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -60,7 +61,7 @@ Answer draw_question(const Question& question, bool has_device, const Style& sty
   ImGui::SameLine();
   const bool cancels = button("Cancel", {style.points(100), 0});
   if (question.is_grave) ImGui::SetItemDefaultFocus();  // Enter twice must not lose a calibration
-  if (cancels || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) answer = Answer::no;
+  if (cancels || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) answer = Answer::no;
   if (!has_device) answer = Answer::no;
   if (answer != Answer::none) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/keyboard.hpp>
 #include <frame/picture_changes.hpp>
@@ -154,16 +155,16 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
 void ScenePane::handle_keys(const ScenePaneInput& input) {
   constexpr float turn_rad = 0.08f, pan_pixels = 24.0f, hand_step_m = 0.002f;
   const auto number = [](int steps) { return static_cast<float>(steps); };
-  const KeySteps turn = key_steps_in_part(ImGuiKeyModFlags_Shift);
+  const KeySteps turn = key_steps_in_part(with_shift);
   if (turn.any()) {
     camera_.orbit(turn_rad * number(turn.right), turn_rad * number(turn.up));
     camera_.zoom(number(turn.away));
   }
-  const KeySteps pan = key_steps_in_part(ImGuiKeyModFlags_Shift | ImGuiKeyModFlags_Ctrl);
+  const KeySteps pan = key_steps_in_part(with_shift | with_ctrl);
   if (pan.any())
     camera_.pan({input.style.points(pan_pixels) * number(pan.right), -input.style.points(pan_pixels) * number(pan.up)},
                 size_.y);
-  const KeySteps hand = key_steps_in_part(ImGuiKeyModFlags_Ctrl);
+  const KeySteps hand = key_steps_in_part(with_ctrl);
   if (!hand.any() || input.hand == nullptr || drag_ != Drag::none) return;
   const glm::vec3 from_m = input.hand->target_m().value_or(scene_.probe_m);
   const glm::vec3 ahead = camera_.direction();

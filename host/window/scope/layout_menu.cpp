@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -66,8 +67,7 @@ void LayoutMenu::draw_name(ScopeLayout& layout, const Style& style) {
   const bool confirmed =
       coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->pane, {style.points(100), 0});
   ImGui::SameLine();
-  const bool cancelled =
-      button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  const bool cancelled = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (cancelled || ((confirmed || entered) && give_name(layout))) {
     task_ = NameTask::none;
     ImGui::CloseCurrentPopup();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
@@ -69,12 +70,12 @@ void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
 
 void ScopePane::take_keys() {
   constexpr double drag_part = 0.1;  // of the span
-  const KeySteps view = key_steps_in_part(ImGuiKeyModFlags_Shift);
+  const KeySteps view = key_steps_in_part(with_shift);
   if (view.right != 0) timeline_.drag(-drag_part * view.right);
   if (view.up != 0) timeline_.zoom(view.up, 0.0);
   if (!cursors_->are_shown()) return;
-  cursors_->step(0, key_steps_in_part(ImGuiKeyModFlags_Ctrl).right);
-  cursors_->step(1, key_steps_in_part(ImGuiKeyModFlags_Ctrl | ImGuiKeyModFlags_Shift).right);
+  cursors_->step(0, key_steps_in_part(with_ctrl).right);
+  cursors_->step(1, key_steps_in_part(with_ctrl | with_shift).right);
 }
 
 void ScopePane::draw_controls(const Style& style) {

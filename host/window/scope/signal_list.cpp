@@ -8,6 +8,7 @@
 #include <imgui_stdlib.h>
 
 #include <device/parameter_file.hpp>
+#include <frame/imgui_versions.hpp>
 #include <frame/inspection.hpp>
 #include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
@@ -166,7 +167,7 @@ void SignalList::draw_dialog(ScopeLayout& layout, const Style& style) {
     if (is_new) layout.plots.push_back({PlotKind::time, formula.name, {ScopeSignal(formula)}});
   }
   ImGui::SameLine();
-  is_over |= button("Cancel", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  is_over |= button("Cancel", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (!is_new) {
     ImGui::SameLine();
     if (button("Delete", size)) {

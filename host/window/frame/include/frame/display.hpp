@@ -9,6 +9,7 @@
 
 #include <imgui.h>
 
+#include <frame/key_filter.hpp>
 #include <frame/window_size.hpp>
 
 struct GLFWwindow;
@@ -34,7 +35,7 @@ class Display {
   float scale() const { return scale_; }  ///< pixels for one point
   double refresh_rate_Hz() const;
   bool draws_in_software() const;  ///< OpenGL has no graphics card
-  ImVec2 corner() const;           ///< top left of what is drawn, on the screen
+  ImVec2 corner() const;           ///< top left of what is drawn, on the screen; (0, 0) on Wayland, which hides it
 
   /// What is drawn, in pixels; 0 by 0 while it is shrunk to an icon.
   struct Size {
@@ -56,13 +57,13 @@ class Display {
   /// True if the screen lost the picture, so that it has to be drawn again though it stays the same.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
-  /// `pressed(key, down)` is called for every key that goes down or up, before the panes see it.
-  void on_key(std::function<void(int key, bool down)> pressed) { on_key_ = std::move(pressed); }
+  /// `take` is called with every key event of the window.
+  void on_key(std::function<void(const KeyEvent&)> take) { on_key_ = std::move(take); }
 
  private:
   GLFWwindow* window_ = nullptr;
   float scale_ = 1.0f;
-  std::function<void(int, bool)> on_key_;
+  std::function<void(const KeyEvent&)> on_key_;
   bool had_input_ = true;
   bool lost_picture_ = true;
 };

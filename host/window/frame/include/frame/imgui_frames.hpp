@@ -5,7 +5,7 @@
 
 #include <imgui.h>
 
-#include <frame/key_taps.hpp>
+#include <frame/key_feed.hpp>
 #include <frame/picture_changes.hpp>
 
 struct GLFWwindow;
@@ -19,8 +19,8 @@ class ImGuiFrames {
   ImGuiFrames(const ImGuiFrames&) = delete;
   ImGuiFrames& operator=(const ImGuiFrames&) = delete;
 
-  /// Tells of every key that goes down, so that none is missed that comes up again before the next frame.
-  void note_key_down(int key);
+  /// Passes a key event of the window on to ImGui, except for the keys that stop the force.
+  void take_key(const KeyEvent& event) { keys_.take(event); }
 
   void begin();
   ImVec2 size() const;  ///< of the window, in screen coordinates
@@ -31,7 +31,12 @@ class ImGuiFrames {
   void draw(const Box& box) const;
 
  private:
-  KeyTaps taps_;
+  struct Context {
+    Context();
+    ~Context();
+  };
+  Context context_;
+  KeyFeed keys_;
 };
 
 }  // namespace inkwell::window

@@ -7,6 +7,7 @@
 
 #include <imgui.h>
 
+#include <frame/imgui_versions.hpp>
 #include <frame/style.hpp>
 
 struct ImGuiWindow;
@@ -41,9 +42,9 @@ struct KeySteps {
   bool any() const { return right != 0 || up != 0 || away != 0; }
 };
 /// Of the keys that were pressed with exactly these modifiers while no text is typed and no dialog is open.
-KeySteps key_steps(ImGuiKeyModFlags modifiers);
+KeySteps key_steps(KeyModifiers modifiers);
 /// The same for the current part alone: zero unless it has the keyboard.
-KeySteps key_steps_in_part(ImGuiKeyModFlags modifiers);
+KeySteps key_steps_in_part(KeyModifiers modifiers);
 /// An arrow that is pressed with a modifier is no step to another thing. Between NewFrame() and the first part.
 void keep_modified_arrows();
 

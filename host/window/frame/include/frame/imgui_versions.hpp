@@ -1,0 +1,62 @@
+// One set of names for ImGui 1.86 (Debian 12) and ImGui from 1.89.8 on (Debian 13). The version is asked for here and
+// in key_feed.cpp alone.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <imgui.h>
+
+#define INKWELL_IMGUI_HAS_KEY_EVENTS (IMGUI_VERSION_NUM >= 18980)
+#if !INKWELL_IMGUI_HAS_KEY_EVENTS && IMGUI_VERSION_NUM >= 18700
+#error "ImGui 1.87 to 1.89.7 is not supported. Install ImGui 1.86, or 1.89.8 or later."
+#endif
+
+namespace inkwell::window {
+
+#if INKWELL_IMGUI_HAS_KEY_EVENTS
+
+using KeyModifiers = ImGuiKeyChord;
+inline constexpr KeyModifiers no_modifier = ImGuiMod_None, with_ctrl = ImGuiMod_Ctrl, with_shift = ImGuiMod_Shift,
+                              with_alt = ImGuiMod_Alt;
+inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeypadEnter;
+inline constexpr ImGuiKey tab_index = ImGuiKey_Tab;
+
+/// The key's index for ImGui's functions, such as IsKeyPressed.
+inline ImGuiKey key_index(ImGuiKey key) { return key; }
+
+inline void set_lists(ImDrawData& data, const std::vector<ImDrawList*>& lists) {
+  data.CmdLists.resize(static_cast<int>(lists.size()));
+  for (std::size_t i = 0; i < lists.size(); ++i) data.CmdLists[static_cast<int>(i)] = lists[i];
+  data.CmdListsCount = data.CmdLists.Size;
+}
+
+inline std::span<ImDrawList* const> lists_of(const ImDrawData& data) {
+  return {data.CmdLists.Data, static_cast<std::size_t>(data.CmdLists.Size)};
+}
+
+#else
+
+using KeyModifiers = ImGuiKeyModFlags;
+inline constexpr KeyModifiers no_modifier = ImGuiKeyModFlags_None, with_ctrl = ImGuiKeyModFlags_Ctrl,
+                              with_shift = ImGuiKeyModFlags_Shift, with_alt = ImGuiKeyModFlags_Alt;
+inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeyPadEnter;
+inline constexpr int tab_index = 258;  // GLFW_KEY_TAB; key_feed.cpp removes the key from ImGui's map while Ctrl is down
+
+/// The key's index for ImGui's functions, such as IsKeyPressed.
+inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }
+
+/// `lists` must outlive `data`.
+inline void set_lists(ImDrawData& data, std::vector<ImDrawList*>& lists) {
+  data.CmdLists = lists.data();
+  data.CmdListsCount = static_cast<int>(lists.size());
+}
+
+inline std::span<ImDrawList* const> lists_of(const ImDrawData& data) {
+  return {data.CmdLists, static_cast<std::size_t>(data.CmdListsCount)};
+}
+
+#endif
+
+}  // namespace inkwell::window

@@ -1,0 +1,96 @@
+#include <frame/key_feed.hpp>
+
+#include <cstddef>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <imgui_internal.h>
+
+#include <frame/imgui_versions.hpp>
+#include <frame/key_letters.hpp>
+
+namespace inkwell::window {
+
+static_assert(space_bar == GLFW_KEY_SPACE && escape_key == GLFW_KEY_ESCAPE && key_release == GLFW_RELEASE);
+
+namespace {
+
+bool can_cancel() {
+  return ImGui::IsAnyItemActive() || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+#if INKWELL_IMGUI_HAS_KEY_EVENTS
+
+// The back end queues key events, so that short keystrokes last for a frame, and follows the keyboard layout.
+void set_up_keys() {
+  // ImGui's own window switcher reaches only two parts unless Ctrl stays down, and shows their inner names.
+  GImGui->ConfigNavWindowingKeyNext = ImGuiKey_None;
+  GImGui->ConfigNavWindowingKeyPrev = ImGuiKey_None;
+}
+void note_tap(KeyTaps&, int) {}
+void apply_keys(KeyTaps&) {}
+
+#else
+
+// Called every frame, because the user may change the layout at any time.
+void follow_keyboard_layout(ImGuiIO& io) {
+  const KeyLetters keys = key_letters([](int key) { return glfwGetKeyName(key, 0); });
+  for (const auto& [letter, shortcut] :
+       {std::pair{'a', ImGuiKey_A}, std::pair{'c', ImGuiKey_C}, std::pair{'v', ImGuiKey_V}, std::pair{'x', ImGuiKey_X},
+        std::pair{'y', ImGuiKey_Y}, std::pair{'z', ImGuiKey_Z}})
+    io.KeyMap[shortcut] = keys[static_cast<std::size_t>(letter - 'a')];
+}
+
+void set_up_keys() {
+  // This version activates a control by Space alone.
+  ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
+}
+
+void note_tap(KeyTaps& taps, int key) {
+  taps.note(key);
+  // With the modifiers held at that moment, which may be released as well before the next frame.
+  const bool* down = ImGui::GetIO().KeysDown;
+  for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
+                             GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
+    if (down[modifier] && modifier != key) taps.note(modifier);
+}
+
+void apply_keys(KeyTaps& taps) {
+  ImGuiIO& io = ImGui::GetIO();
+  follow_keyboard_layout(io);
+  taps.apply(io.KeysDown);
+  io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
+  io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+  io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
+  // ImGui's own window switcher reaches only two parts unless Ctrl stays down, and shows their inner names.
+  io.KeyMap[ImGuiKey_Tab] = io.KeyCtrl ? -1 : GLFW_KEY_TAB;
+}
+
+#endif
+
+}  // namespace
+
+KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
+  // Without this the back end would chain itself before the window's callback and see every key.
+  const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
+  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  glfwSetKeyCallback(window_, callback);
+  set_up_keys();
+}
+
+KeyFeed::~KeyFeed() {
+  const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
+  ImGui_ImplGlfw_Shutdown();
+  glfwSetKeyCallback(window_, callback);
+}
+
+void KeyFeed::take(const KeyEvent& event) {
+  if (!is_for_imgui(event, can_cancel())) return;
+  if (event.action == GLFW_PRESS) note_tap(taps_, event.key);
+  ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.modifiers);
+}
+
+void KeyFeed::begin_frame() { apply_keys(taps_); }
+
+}  // namespace inkwell::window
