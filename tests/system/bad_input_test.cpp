@@ -283,6 +283,8 @@ TEST_CASE("the window says what a computer without a display or without OpenGL 3
   const std::string companion = build_directory() + "/inkwell";
   check_refused(run_program("/usr/bin/env", {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", companion}),
                 {"No display", "graphical session"});
+  check_refused(run_program("/usr/bin/env", {"INKWELL_WINDOW_SYSTEM=mir", companion}),
+                {"INKWELL_WINDOW_SYSTEM", "mir", "x11 or wayland"});
 
   RunningProgram display({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"});
   check_refused(run_program("/usr/bin/env", {"DISPLAY=:" + display.read_line(), "LIBGL_ALWAYS_SOFTWARE=1",

@@ -9,12 +9,15 @@
 #include <epoxy/gl.h>
 #include <png.h>
 
+#include "window_system.hpp"
+
 namespace inkwell::window {
 
 namespace {
 
 /// Of the main display: 2 for one of 192 dots per inch.
 float monitor_scale() {
+  if (!has_pixel_units()) return 1.0f;
   float x = 1.0f;
   float y = 1.0f;
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorContentScale(monitor, &x, &y);
@@ -39,7 +42,7 @@ std::string last_glfw_error() {
 }  // namespace
 
 Display::Display(ScreenSize points, float scale, const std::string& title) {
-  if (glfwInit() != GLFW_TRUE)
+  if (!start_window_system())
     throw DisplayError("No display could be opened (" + last_glfw_error() +
                        "). Run it in a graphical session, or use the commands that need none: inkwell --help.");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -49,9 +52,7 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
   glfwWindowHint(GLFW_SAMPLES, 0);
   glfwWindowHint(GLFW_DEPTH_BITS, 24);
   glfwWindowHint(GLFW_STENCIL_BITS, 8);
-  // By which a desktop finds the name and the icon (packaging/inkwell.desktop).
-  glfwWindowHintString(GLFW_X11_CLASS_NAME, "inkwell");
-  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "inkwell");
+  set_program_name("inkwell");
   const auto room = monitor_room();
   scale_ = fitting_scale(scale > 0.0f ? scale : monitor_scale(), room);
   const auto [width, height] = window_size(points, scale_, room);
