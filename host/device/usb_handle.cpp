@@ -8,11 +8,13 @@
 #include <protocol/plain_text.hpp>
 
 #include "transports.hpp"
+#include "usb_rules.hpp"
 
 namespace inkwell::device {
 namespace {
 
 constexpr char no_libusb[] = "libusb does not start. Check that /dev/bus/usb exists.";
+constexpr char open_elsewhere[] = "The device is open in another program. Close that program.";
 
 /// Opens each device with these identifiers and hands it over with its serial number; the one that is taken stays open.
 /// Returns why the last of the others could not be opened, 0 if there is no such one.
@@ -42,6 +44,11 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
   return reason;
 }
 
+/// True for a device that is there but cannot be opened. After other reasons the device has gone.
+bool shows_closed_device(int reason) {
+  return reason == LIBUSB_ERROR_ACCESS || reason == LIBUSB_ERROR_NOT_SUPPORTED || reason == LIBUSB_ERROR_NOT_FOUND;
+}
+
 std::vector<process::OwnDescriptor> descriptors_of(libusb_context* context) {
   std::vector<process::OwnDescriptor> own;
   const libusb_pollfd** const all = libusb_get_pollfds(context);
@@ -65,8 +72,7 @@ UsbHandle::UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const st
     return;
   }
   libusb_exit(context_);
-  if (reason == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
-  throw Disconnected(unplugged);
+  throw_libusb_refusal(reason, open_elsewhere);
 }
 
 UsbHandle::~UsbHandle() {
@@ -78,8 +84,7 @@ UsbHandle::~UsbHandle() {
 
 void UsbHandle::claim(int interface_number, const char* in_use) {
   const int result = libusb_claim_interface(handle_, interface_number);
-  if (result == LIBUSB_ERROR_BUSY) throw InUse(in_use);
-  if (result != 0) throw Disconnected(unplugged);
+  if (result != 0) throw_libusb_refusal(result, in_use);
   claimed_.push_back(interface_number);
 }
 
@@ -92,7 +97,7 @@ std::vector<std::string> usb_serial_numbers(std::uint16_t vendor_id, std::uint16
     return false;
   });
   libusb_exit(context);
-  if (reason == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
+  if (shows_closed_device(reason)) throw_libusb_refusal(reason, open_elsewhere);
   return numbers;
 }
 

@@ -2,22 +2,23 @@
 
 #include <hidapi/hidapi.h>
 #include <libusb-1.0/libusb.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
+#include <chrono>
+#include <mutex>
 #include <thread>
 
-#include <fmt/format.h>
-
+#include <process/fork.hpp>
 #include <protocol/plain_text.hpp>
+#include <protocol/reports.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "transfer_queue.hpp"
 #include "usb_descriptors.hpp"
 #include "usb_handle.hpp"
+#include "usb_rules.hpp"
 
 namespace inkwell::device {
 namespace {
@@ -26,6 +27,9 @@ namespace identity = protocol::usb;
 
 /// Of the interface for poses and commands; that of the controller has another.
 constexpr unsigned short vendor_usage_page = 0xFF00;
+
+/// Largest feature report that the device declares.
+constexpr std::size_t feature_report_maximum = protocol::force_law_report_maximum;
 
 std::string narrow(const wchar_t* text) {
   std::string result;
@@ -121,21 +125,81 @@ class BulkReader {
   std::thread thread_;
 };
 
+/// hidapi's functions that belong to no handle share one error text.
+std::mutex hidapi_mutex;
+const process::HeldAtFork hidapi_at_fork(hidapi_mutex);
+
+using DeviceList = std::unique_ptr<hid_device_info, decltype(&hid_free_enumeration)>;
+
+DeviceList list_devices() {
+  const std::lock_guard lock(hidapi_mutex);
+  return {hid_enumerate(identity::vendor_id, identity::product_id), &hid_free_enumeration};
+}
+
+bool is_listed(const std::string& path) {
+  const auto list = list_devices();
+  for (const hid_device_info* device = list.get(); device != nullptr; device = device->next)
+    if (path == device->path) return true;
+  return false;
+}
+
+/// One of the handles of a device. Each thread's calls have a handle of their own, as the error text belongs to it.
+class HidHandle {
+ public:
+  explicit HidHandle(const std::string& path) : device_(open(path), &hid_close) {}
+
+  struct Result {
+    int length;          ///< negative after a failure
+    std::string detail;  ///< the text of the failure
+  };
+  template <class Call>
+  Result call(Call call) {
+    const std::lock_guard lock(mutex_);
+    const int length = call(device_.get());
+    return {length, length < 0 ? narrow(hid_error(device_.get())) : std::string()};
+  }
+
+ private:
+  static hid_device* open(const std::string& path) {
+    std::string detail;
+    {
+      const std::lock_guard lock(hidapi_mutex);
+      if (hid_device* device = hid_open_path(path.c_str())) return device;
+      detail = narrow(hid_error(nullptr));
+    }
+    if (is_listed(path)) throw_hidapi_refusal(path, detail);
+    throw Disconnected(with_detail(unplugged, detail));
+  }
+
+  std::mutex mutex_;
+  std::unique_ptr<hid_device, decltype(&hid_close)> device_;
+};
+
 class UsbTransport : public Transport {
  public:
-  explicit UsbTransport(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {}
+  explicit UsbTransport(const Endpoint& endpoint)
+      : endpoint_(endpoint), inputs_(endpoint.path), outputs_(endpoint.path), features_(endpoint.path) {}
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
-    return check(hid_read_timeout(hid_.get(), data(report), report.size(), static_cast<int>(timeout.count())));
+    const auto result = inputs_.call([&](hid_device* device) {
+      return hid_read_timeout(device, data(report), report.size(), static_cast<int>(timeout.count()));
+    });
+    if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // reading is never refused
+    return static_cast<std::size_t>(result.length);
   }
   void write_report(std::span<const std::byte> report) override {
-    check(hid_write(hid_.get(), data(report), report.size()));
+    check(outputs_.call([&](hid_device* device) { return hid_write(device, data(report), report.size()); }));
   }
   std::size_t get_feature(std::span<std::byte> report) override {
-    return check(hid_get_feature_report(hid_.get(), data(report), report.size()));
+    std::array<std::byte, feature_report_maximum> buffer;
+    const auto received = check(request_feature(std::to_integer<std::uint8_t>(report[0]), buffer));
+    const std::size_t length = std::min(received, report.size());
+    std::copy_n(buffer.begin(), length, report.begin());
+    return length;
   }
   void set_feature(std::span<const std::byte> report) override {
-    check(hid_send_feature_report(hid_.get(), data(report), report.size()));
+    check(features_.call(
+        [&](hid_device* device) { return hid_send_feature_report(device, data(report), report.size()); }));
   }
   void claim_scope() override {
     if (!scope_) scope_ = std::make_unique<BulkReader>(endpoint_.serial_number, bulk_);
@@ -151,24 +215,43 @@ class UsbTransport : public Transport {
   const Endpoint& endpoint() const override { return endpoint_; }
 
  private:
-  static hid_device* open_hid(const std::string& path) {
-    if (hid_device* device = hid_open_path(path.c_str())) return device;
-    if (access(path.c_str(), R_OK | W_OK) != 0 && errno == EACCES) throw NoPermission(permission_message(path));
-    throw Disconnected(unplugged);
-  }
   static unsigned char* data(std::span<std::byte> bytes) { return reinterpret_cast<unsigned char*>(bytes.data()); }
   static const unsigned char* data(std::span<const std::byte> bytes) {
     return reinterpret_cast<const unsigned char*>(bytes.data());
   }
-  static std::size_t check(int length) {
-    if (length < 0 && errno == EPIPE)
-      throw Stalled("The device refused a USB request. Flash the firmware that belongs to this companion.");
-    if (length < 0) throw Disconnected(unplugged);
-    return static_cast<std::size_t>(length);
+
+  /// Windows requires a buffer for the largest feature report; other systems accept it.
+  HidHandle::Result request_feature(std::uint8_t id, std::span<std::byte> buffer) {
+    buffer[0] = std::byte{id};
+    return features_.call(
+        [&](hid_device* device) { return hid_get_feature_report(device, data(buffer), buffer.size()); });
   }
 
+  std::size_t check(const HidHandle::Result& result) {
+    if (result.length >= 0) return static_cast<std::size_t>(result.length);
+    if (is_present())
+      throw Stalled(with_detail("The device refused a USB request. Flash the firmware that belongs to this companion.",
+                                result.detail));
+    throw Disconnected(with_detail(unplugged, result.detail));
+  }
+
+  /// hidapi reports a refusal and an unplugged device alike. A device that refuses one request answers another one, and
+  /// a device that went away leaves the system's list soon.
+  bool is_present() {
+    constexpr int looks = 10;
+    std::array<std::byte, feature_report_maximum> buffer;
+    if (request_feature(static_cast<std::uint8_t>(protocol::ReportId::information), buffer).length >= 0) return true;
+    for (int i = 0; i < looks; ++i) {
+      if (i > 0) std::this_thread::sleep_for(look_interval);
+      if (!is_listed(endpoint_.path)) return false;
+    }
+    return true;
+  }
+
+  static constexpr std::chrono::milliseconds look_interval{20};
+
   Endpoint endpoint_;
-  std::unique_ptr<hid_device, decltype(&hid_close)> hid_;
+  HidHandle inputs_, outputs_, features_;
   TransferQueue bulk_;
   std::unique_ptr<BulkReader> scope_;  ///< while it is claimed
 };
@@ -181,8 +264,7 @@ std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint) {
 
 std::vector<Endpoint> find_usb_devices() {
   std::vector<Endpoint> endpoints;
-  const std::unique_ptr<hid_device_info, decltype(&hid_free_enumeration)> list(
-      hid_enumerate(identity::vendor_id, identity::product_id), &hid_free_enumeration);
+  const auto list = list_devices();
   for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
     // The identifiers are shared by private tests of other people, so the product's name decides.
     const std::string product = narrow(device->product_string);

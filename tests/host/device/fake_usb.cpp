@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <string_view>
 #include <thread>
 
 #include <control/installed_force_law.hpp>
@@ -16,6 +17,8 @@
 #include <protocol/parameters.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/store.hpp>
+#include <protocol/usb_identity.hpp>
+#include <usb/descriptors.hpp>
 
 #include "fake_usbip_server.hpp"
 
@@ -37,14 +40,14 @@ struct hid_device_ {
 
 namespace {
 
-FakeUsb* usb = nullptr;  // of the test that runs
+FakeUsb* current = nullptr;  // of the test that runs
 std::mutex no_usb;       // without one there is nothing to guard
 
-std::unique_lock<std::mutex> lock_usb() { return std::unique_lock(usb != nullptr ? usb->mutex : no_usb); }
+std::unique_lock<std::mutex> lock_usb() { return std::unique_lock(current != nullptr ? current->mutex : no_usb); }
 
 void count(int things) {
   const auto lock = lock_usb();
-  usb->open_things += things;
+  if (current != nullptr) current->open_things += things;
 }
 
 /// Copies as much as fits and tells how much that was.
@@ -60,8 +63,71 @@ Bytes to_bytes(const unsigned char* data, std::size_t length) {
 }
 
 int fail(int reason) {
-  errno = reason;
+  errno = current->is_windows ? 0 : reason;
   return -1;
+}
+
+enum class ReportKind : std::uint8_t { output = 0x90, feature = 0xB0 };
+
+/// Lengths of the reports of one kind by their id, as the firmware's report descriptor declares them (HID 1.11, section
+/// 6.2.2).
+std::map<std::uint8_t, std::size_t> declared_lengths(ReportKind kind) {
+  constexpr std::uint8_t report_id = 0x84, report_count = 0x94, kind_bits = 0xFC;
+  const auto descriptor = inkwell::usb::hid_report_descriptor(inkwell::protocol::usb::hid_interface);
+  std::map<std::uint8_t, std::size_t> lengths;
+  std::uint8_t id = 0;
+  std::size_t number = 0, count = 0;
+  for (std::size_t at = 0; at < descriptor.size();) {
+    const auto item = std::to_integer<std::uint8_t>(descriptor[at]);
+    const std::size_t size = (item & 3u) == 3 ? 4 : item & 3u;
+    number = 0;
+    for (std::size_t i = 0; i < size; ++i) number |= std::to_integer<std::size_t>(descriptor[at + 1 + i]) << 8 * i;
+    at += 1 + size;
+    const auto tag = static_cast<std::uint8_t>(item & kind_bits);
+    if (tag == report_id) id = static_cast<std::uint8_t>(number);
+    if (tag == report_count) count = number;
+    if (tag == static_cast<std::uint8_t>(kind)) lengths[id] = 1 + count;
+  }
+  return lengths;
+}
+
+std::size_t longest(const std::map<std::uint8_t, std::size_t>& lengths) {
+  return std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; })->second;
+}
+
+/// The report as it comes over the bus. Windows' hidapi pads an output report to the length of the longest one; a
+/// feature report comes with the length that is declared for its id.
+Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind) {
+  Bytes report = to_bytes(data, length);
+  if (!current->is_windows) return report;
+  const auto lengths = declared_lengths(kind);
+  const auto found = lengths.find(data[0]);
+  if (kind == ReportKind::output)
+    report.resize(std::max(length, longest(lengths)));
+  else if (found != lengths.end())
+    report.resize(std::max(length, found->second));
+  return report;
+}
+
+/// A call of the board that stands behind a device, with the result that hidapi would return.
+template <class Call>
+int carry_out(Call call) {
+  try {
+    return static_cast<int>(call());
+  } catch (const inkwell::device::Stalled&) {
+    return fail(EPIPE);
+  } catch (const inkwell::device::Error&) {
+    return fail(ENODEV);
+  }
+}
+
+std::shared_ptr<inkwell::device::Transport> board_of(hid_device* hid) {
+  const auto lock = lock_usb();
+  return hid->device->board;
+}
+
+std::span<std::byte> writable(unsigned char* data, std::size_t length) {
+  return {reinterpret_cast<std::byte*>(data), length};
 }
 
 /// Ends one transfer if one can end. Its callback runs without the lock, because it submits again.
@@ -69,7 +135,7 @@ bool complete_one() {
   libusb_transfer* ended = nullptr;
   {
     const auto lock = lock_usb();
-    for (FakeUsbDevice& device : usb->devices) {
+    for (FakeUsbDevice& device : current->devices) {
       for (libusb_transfer* transfer : device.under_way) {
         if (transfer->status == LIBUSB_TRANSFER_CANCELLED) {
           ended = transfer;
@@ -117,17 +183,17 @@ void LIBUSB_CALL libusb_free_pollfds(const libusb_pollfd**) {}
 
 ssize_t LIBUSB_CALL libusb_get_device_list(libusb_context*, libusb_device*** list) {
   const auto lock = lock_usb();
-  *list = new libusb_device*[usb->devices.size()];
-  for (std::size_t i = 0; i < usb->devices.size(); ++i) (*list)[i] = new libusb_device{&usb->devices[i]};
-  ++usb->open_things;
-  return static_cast<ssize_t>(usb->devices.size());
+  *list = new libusb_device*[current->devices.size()];
+  for (std::size_t i = 0; i < current->devices.size(); ++i) (*list)[i] = new libusb_device{&current->devices[i]};
+  ++current->open_things;
+  return static_cast<ssize_t>(current->devices.size());
 }
 
 void LIBUSB_CALL libusb_free_device_list(libusb_device** list, int) {
   const auto lock = lock_usb();
-  for (std::size_t i = 0; i < usb->devices.size(); ++i) delete list[i];
+  for (std::size_t i = 0; i < current->devices.size(); ++i) delete list[i];
   delete[] list;
-  --usb->open_things;
+  --current->open_things;
 }
 
 int LIBUSB_CALL libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor* descriptor) {
@@ -138,15 +204,25 @@ int LIBUSB_CALL libusb_get_device_descriptor(libusb_device* device, libusb_devic
 }
 
 int LIBUSB_CALL libusb_open(libusb_device* device, libusb_device_handle** handle) {
+  const auto lock = lock_usb();
   if (device->device->open_result != 0) return device->device->open_result;
+  if (current->is_windows && device->device->handles > 0) return LIBUSB_ERROR_ACCESS;
+  const bool is_loader = device->device->vendor_id == inkwell::protocol::usb::boot_loader_vendor_id;
+  if (is_loader && device->device->denied_opens > 0) {
+    --device->device->denied_opens;
+    return LIBUSB_ERROR_ACCESS;
+  }
   *handle = new libusb_device_handle{device->device};
-  count(+1);
+  ++device->device->handles;
+  ++current->open_things;
   return 0;
 }
 
 void LIBUSB_CALL libusb_close(libusb_device_handle* handle) {
+  const auto lock = lock_usb();
+  --handle->device->handles;
   delete handle;
-  count(-1);
+  --current->open_things;
 }
 
 int LIBUSB_CALL libusb_get_string_descriptor_ascii(libusb_device_handle* handle, std::uint8_t index,
@@ -160,9 +236,23 @@ int LIBUSB_CALL libusb_get_string_descriptor_ascii(libusb_device_handle* handle,
 int LIBUSB_CALL libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
                                         std::uint16_t value, std::uint16_t, unsigned char* data, std::uint16_t length,
                                         unsigned int) {
-  constexpr std::uint8_t get_descriptor = 6;
+  constexpr std::uint8_t get_descriptor = 6, class_out = 0x21, class_in = 0xA1, detach = 0, get_status = 3;
   const auto lock = lock_usb();
-  if (handle->device->bulk_fails) return LIBUSB_ERROR_IO;
+  FakeUsbDevice& addressed = *handle->device;
+  if (addressed.bulk_fails) return LIBUSB_ERROR_IO;
+  if (addressed.unplugged) return LIBUSB_ERROR_NO_DEVICE;
+  if (type == class_out && request == detach) {
+    if (addressed.stalls_detach) return LIBUSB_ERROR_PIPE;
+    ++addressed.detaches;
+    addressed.unplugged = addressed.leaves_at_detach;
+    if (addressed.becomes_loader_at_detach) {
+      addressed.vendor_id = inkwell::protocol::usb::boot_loader_vendor_id;
+      addressed.product_id = inkwell::protocol::usb::boot_loader_product_id;
+    }
+    return 0;
+  }
+  if (type == class_in && request == get_status && !addressed.update_status.empty())
+    return give(addressed.update_status, data, length);
   if (type != 0x80 || request != get_descriptor || value != 0x0200) return LIBUSB_ERROR_PIPE;
   return give(handle->device->configuration, data, length);
 }
@@ -172,14 +262,14 @@ int LIBUSB_CALL libusb_claim_interface(libusb_device_handle* handle, int number)
   if (handle->device->claim_result != 0) return handle->device->claim_result;
   if (handle->device->taken.contains(number) || !handle->device->claimed.insert(number).second)
     return LIBUSB_ERROR_BUSY;
-  ++usb->open_things;
+  ++current->open_things;
   return 0;
 }
 
 int LIBUSB_CALL libusb_release_interface(libusb_device_handle* handle, int number) {
   const auto lock = lock_usb();
   if (handle->device->claimed.erase(number) == 0) return LIBUSB_ERROR_NOT_FOUND;
-  --usb->open_things;
+  --current->open_things;
   return 0;
 }
 
@@ -222,9 +312,9 @@ int LIBUSB_CALL libusb_handle_events_timeout(libusb_context*, timeval*) {
 hid_device_info* hid_enumerate(unsigned short vendor_id, unsigned short product_id) {
   const auto lock = lock_usb();
   hid_device_info* list = nullptr;
-  if (usb == nullptr) return list;
-  for (FakeUsbDevice& device : usb->devices) {
-    if (device.vendor_id != vendor_id || device.product_id != product_id) continue;
+  if (current == nullptr) return list;
+  for (FakeUsbDevice& device : current->devices) {
+    if (device.unplugged || device.hides || device.vendor_id != vendor_id || device.product_id != product_id) continue;
     const std::wstring serial_number(device.serial_number.begin(), device.serial_number.end());
     for (const bool is_controller : {false, true}) {
       auto* info = new hid_device_info{};
@@ -234,7 +324,7 @@ hid_device_info* hid_enumerate(unsigned short vendor_id, unsigned short product_
       info->usage_page = is_controller ? 0x0001 : 0xFF00;
       info->next = list;
       list = info;
-      ++usb->open_things;
+      ++current->open_things;
     }
   }
   return list;
@@ -254,9 +344,9 @@ void hid_free_enumeration(hid_device_info* list) {
 
 hid_device* hid_open_path(const char* path) {
   const auto lock = lock_usb();
-  for (FakeUsbDevice& device : usb->devices) {
-    if (device.path() != path || device.unplugged) continue;
-    ++usb->open_things;
+  for (FakeUsbDevice& device : current->devices) {
+    if (device.path() != path || device.unplugged || device.denies_hid) continue;
+    ++current->open_things;
     return new hid_device_{&device};
   }
   return nullptr;
@@ -267,7 +357,11 @@ void hid_close(hid_device* hid) {
   count(-1);
 }
 
+const wchar_t* hid_error(hid_device* hid) { return hid == nullptr ? L"not opened" : L"not transferred"; }
+
 int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, int timeout_ms) {
+  if (const auto board = board_of(hid))
+    return carry_out([&] { return board->read_report(writable(data, length), std::chrono::milliseconds(timeout_ms)); });
   {
     const auto lock = lock_usb();
     FakeUsbDevice& device = *hid->device;
@@ -284,13 +378,17 @@ int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, i
 }
 
 int hid_write(hid_device* hid, const unsigned char* data, std::size_t length) {
+  const Bytes report = on_the_bus(data, length, ReportKind::output);
+  if (const auto board = board_of(hid)) return carry_out([&] { return board->write_report(report), report.size(); });
   const auto lock = lock_usb();
   if (hid->device->unplugged) return fail(ENODEV);
-  hid->device->written.push_back(to_bytes(data, length));
-  return static_cast<int>(length);
+  hid->device->written.push_back(report);
+  return static_cast<int>(report.size());
 }
 
 int hid_get_feature_report(hid_device* hid, unsigned char* data, std::size_t length) {
+  if (current->is_windows && length < longest(declared_lengths(ReportKind::feature))) return fail(EINVAL);
+  if (const auto board = board_of(hid)) return carry_out([&] { return board->get_feature(writable(data, length)); });
   const auto lock = lock_usb();
   if (hid->device->unplugged) return fail(ENODEV);
   const auto found = hid->device->features.find(data[0]);
@@ -298,10 +396,12 @@ int hid_get_feature_report(hid_device* hid, unsigned char* data, std::size_t len
 }
 
 int hid_send_feature_report(hid_device* hid, const unsigned char* data, std::size_t length) {
+  const Bytes report = on_the_bus(data, length, ReportKind::feature);
+  if (const auto board = board_of(hid)) return carry_out([&] { return board->set_feature(report), length; });
   const auto lock = lock_usb();
   if (hid->device->unplugged) return fail(ENODEV);
   if (!hid->device->features.contains(data[0])) return fail(EPIPE);
-  hid->device->features[data[0]] = to_bytes(data, length);
+  hid->device->features[data[0]] = report;
   return static_cast<int>(length);
 }
 
@@ -309,8 +409,12 @@ int hid_send_feature_report(hid_device* hid, const unsigned char* data, std::siz
 
 namespace inkwell::tests {
 
-FakeUsb::FakeUsb() { usb = this; }
-FakeUsb::~FakeUsb() { usb = nullptr; }
+FakeUsb::FakeUsb() {
+  const char* const system = std::getenv(fake_usb_system);
+  is_windows = system != nullptr && std::string_view(system) == "windows";
+  current = this;
+}
+FakeUsb::~FakeUsb() { current = nullptr; }
 
 FakeUsbDevice& FakeUsb::add_arm(std::string serial_number, std::uint8_t scope_interface, std::uint8_t scope_endpoint) {
   const unsigned hid_interface = 1u - scope_interface;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -28,16 +29,27 @@ struct FakeUsbDevice {
   Bytes configuration;      ///< descriptor
   int open_result = 0;      ///< of libusb_open
   int claim_result = 0;     ///< of libusb_claim_interface
+  bool denies_hid = false;  ///< hidapi lists the device but cannot open it
   bool bulk_fails = false;  ///< every transfer of the scope, and reading the configuration
   std::set<int> taken{};    ///< interfaces that another program has claimed
   std::set<int> claimed{};  ///< interfaces that this program has claimed
   bool unplugged = false;
+  bool hides = false;                        ///< hidapi does not list it
   std::map<std::uint8_t, Bytes> features{};  ///< reports by their id; others are stalled
   std::deque<Bytes> reports{};               ///< input reports that wait to be read
   bool repeats_reports = false;              ///< the newest is there to be read again and again
   std::vector<Bytes> written{};              ///< output reports
   std::vector<libusb_transfer*> under_way{};
   std::deque<Bytes> ready{};  ///< what the bulk transfers will bring
+  Bytes update_status{};      ///< answer to DFU_GETSTATUS; empty: stalled
+  bool stalls_detach = false;
+  bool leaves_at_detach = false;
+  bool becomes_loader_at_detach = false;
+  int detaches = 0;
+  int handles = 0;       ///< of libusb
+  int denied_opens = 0;  ///< of a boot loader, before libusb_open succeeds
+  /// If set, this device carries out the requests for reports instead.
+  std::shared_ptr<device::Transport> board{};
 
   std::string path() const { return "/fake/" + serial_number; }
   device::Endpoint endpoint() const {
@@ -48,7 +60,11 @@ struct FakeUsbDevice {
 /// What a session asks an arm first.
 void answer_as_inkwell(FakeUsbDevice& arm);
 
-/// The one USB of a test; empty again after it.
+/// Name of the environment variable that chooses the operating system of a FakeUsb: "windows", or Linux without it.
+inline constexpr char fake_usb_system[] = "INKWELL_FAKE_USB_SYSTEM";
+
+/// The one USB of a test; empty again after it. As Windows it pads reports that a program sends to their declared
+/// length, requires a buffer for the largest feature report, admits one handle of libusb, and leaves errno at 0.
 class FakeUsb {
  public:
   FakeUsb();
@@ -69,6 +85,7 @@ class FakeUsb {
   std::size_t bulk_left(const FakeUsbDevice& device);
 
   std::mutex mutex;
+  bool is_windows = false;
   std::deque<FakeUsbDevice> devices;
   /// Contexts, handles, claims, transfers and HID devices that were not given back.
   int open_things = 0;

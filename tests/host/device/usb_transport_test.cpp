@@ -11,7 +11,10 @@
 #include <device/device.hpp>
 #include <device/session.hpp>
 #include <failure.hpp>
+#include <protocol/black_box.hpp>
 #include <protocol/usb_identity.hpp>
+
+#include "device/usb_rules.hpp"
 
 #include "fake_usb.hpp"
 #include "fake_usbip_server.hpp"
@@ -270,7 +273,7 @@ TEST_CASE("a reader who stops reading the scope loses the oldest, and what is ke
   CHECK(count <= kept + 1);  // the newest may have come while the oldest was read
 }
 
-TEST_CASE("reports pass through hidapi as they are; a stall is told from an unplugged cable") {
+TEST_CASE("reports pass through hidapi as they are") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");
   const auto transport = device::open_transport(arm.endpoint());
@@ -281,12 +284,92 @@ TEST_CASE("reports pass through hidapi as they are; a stall is told from an unpl
   CHECK(transport->read_report(report, 5s) == 5);
   CHECK(report[4] == std::byte{1});
   CHECK(report[5] == std::byte{7});
-  transport->write_report(Bytes(3, std::byte{2}));
-  CHECK(arm.written == std::vector<Bytes>{Bytes(3, std::byte{2})});
-  report.assign(8, std::byte{7});
-  CHECK_THROWS_AS(transport->get_feature(report), device::Stalled);
-  CHECK_THROWS_AS(transport->set_feature(report), device::Stalled);
-  arm.features[7] = {};
-  transport->set_feature(Bytes(4, std::byte{7}));
+
+  const auto check_sent = [&](const Bytes& sent, const Bytes& received, std::size_t padded_length) {
+    CHECK(received.size() == (usb.is_windows ? padded_length : sent.size()));
+    CHECK(std::ranges::equal(sent, std::span(received).first(sent.size())));
+    CHECK(std::ranges::all_of(received.begin() + static_cast<std::ptrdiff_t>(sent.size()), received.end(),
+                              [](std::byte byte) { return byte == std::byte{0}; }));
+  };
+  const auto force = bytes_of(protocol::ForceReport{});
+  transport->write_report(force);
+  REQUIRE(arm.written.size() == 1);
+  check_sent(force, arm.written[0], sizeof(protocol::CommandReport));
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::black_box_rows)] = {};
+  const auto request = bytes_of(protocol::BlackBoxRequest{.first_row = 3});
+  transport->set_feature(request);
+  check_sent(request, arm.features[static_cast<std::uint8_t>(protocol::ReportId::black_box_rows)],
+             sizeof(protocol::BlackBoxRowsReport));
+}
+
+TEST_CASE("a feature report is read as far as it is wanted and received") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  Bytes report(8, std::byte{7});
+  arm.features[7] = Bytes(4, std::byte{7});
   CHECK(transport->get_feature(report) == 4);
+  arm.features[7] = Bytes(100, std::byte{9});
+  CHECK(transport->get_feature(report) == 8);
+  CHECK(report == Bytes(8, std::byte{9}));
+}
+
+TEST_CASE("a refused request is distinguished from an unplugged cable by the device alone, with hidapi's text") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  Bytes report(8, std::byte{7});
+  const auto check_refused = [&] {
+    for (const auto& said : {message_of<device::Stalled>([&] { transport->get_feature(report); }),
+                             message_of<device::Stalled>([&] { transport->set_feature(report); })}) {
+      CHECK(contains(said, "refused a USB request"));
+      CHECK(contains(said, "The system reports: not transferred"));
+    }
+  };
+  SUBCASE("it answers another request") {
+    arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = Bytes(4);
+    arm.hides = true;  // which the answer makes unimportant
+    check_refused();
+  }
+  SUBCASE("it answers none, and is listed") { check_refused(); }
+  SUBCASE("it is listed no more") {
+    arm.hides = true;
+    const auto said = message_of<device::Disconnected>([&] { transport->get_feature(report); });
+    CHECK(contains(said, "was unplugged"));
+    CHECK(contains(said, "The system reports: not transferred"));
+    CHECK_THROWS_AS(transport->set_feature(report), device::Disconnected);
+  }
+}
+
+TEST_CASE("an arm that is listed but that hidapi cannot open is denied, one that is not listed is gone") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  arm.denies_hid = true;
+  const auto said = message_of<device::NoPermission>([&] { device::open_transport(arm.endpoint()); });
+  CHECK(contains(said, "60-inkwell.rules"));
+  CHECK(contains(said, "The system reports: not opened"));
+  arm.hides = true;
+  CHECK_THROWS_AS(device::open_transport(arm.endpoint()), device::Disconnected);
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("a device that cannot be opened: each system has its own reason and remedy") {
+  constexpr char in_use[] = "Close the other one.";
+  const auto refuse = [&](int code, const device::UsbRules& rules) {
+    return [=, &rules] { device::throw_libusb_refusal(code, in_use, rules); };
+  };
+  for (const auto* rules : {&device::linux_usb_rules, &device::windows_usb_rules}) {
+    CHECK(message_of<device::InUse>(refuse(LIBUSB_ERROR_BUSY, *rules)) == in_use);
+    CHECK(contains(message_of<device::Disconnected>(refuse(LIBUSB_ERROR_NO_DEVICE, *rules)), "unplugged"));
+    for (const int code : {LIBUSB_ERROR_NOT_SUPPORTED, LIBUSB_ERROR_NOT_FOUND})
+      CHECK(contains(message_of<device::NoPermission>(refuse(code, *rules)), rules->driver_advice));
+  }
+  CHECK(contains(message_of<device::NoPermission>(refuse(LIBUSB_ERROR_ACCESS, device::linux_usb_rules)), "udev"));
+  CHECK(message_of<device::InUse>(refuse(LIBUSB_ERROR_ACCESS, device::windows_usb_rules)) == in_use);
+  const auto deny = [](const device::UsbRules& rules) {
+    return [&rules] { device::throw_hidapi_refusal("/path", "", rules); };
+  };
+  CHECK(contains(message_of<device::NoPermission>(deny(device::linux_usb_rules)), "udev"));
+  CHECK(contains(message_of<device::InUse>(deny(device::windows_usb_rules)), "other program"));
+  CHECK(contains(device::windows_usb_rules.driver_advice, "WinUSB"));
 }
