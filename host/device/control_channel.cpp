@@ -17,7 +17,10 @@ namespace {
 namespace identity = protocol::usb;
 
 constexpr std::uint8_t class_in = 0xA1, class_out = 0x21, interface_out = 0x01;
-constexpr std::uint8_t boot_loader_interface = 0, detach_request = 0, set_interface = 11;
+constexpr std::uint8_t boot_loader_interface = 0, set_interface = 11;
+/// DFU 1.1, sections 3 and 6.1.2.
+constexpr std::uint8_t detach_request = 0, get_status_request = 3, status_vendor_error = 0x0B;
+constexpr std::uint16_t status_length = 6;
 constexpr unsigned timeout_ms = 20'000;  // a sector's erase takes a few seconds at most
 constexpr char in_use[] = "Another program updates this board's firmware. Wait for it, or close it.";
 constexpr char refused[] = "The board refused a request for its firmware update.";
@@ -138,14 +141,35 @@ std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint) {
                                       endpoint.serial_number, boot_loader_interface);
 }
 
-void detach_firmware(const Endpoint& endpoint) {
+namespace {
+
+/// True if the firmware stays because of the force. A firmware that left, or that leaves now, may answer nothing.
+bool has_refused(ControlChannel& channel) {
+  try {
+    const auto status = channel.read({get_status_request}, status_length);
+    return !status.empty() && std::to_integer<std::uint8_t>(status[0]) == status_vendor_error;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void detach(ControlChannel& channel) {
   constexpr std::uint16_t within_ms = 1000;
-  const UpdateRequest detach{detach_request, within_ms};
-  if (endpoint.kind == Endpoint::Kind::usbip)
-    UsbipChannel(endpoint, identity::firmware_update_interface).write(detach, {});
-  else
-    UsbChannel(identity::vendor_id, identity::product_id, endpoint.serial_number, identity::firmware_update_interface)
-        .write(detach, {});
+  channel.write({detach_request, within_ms}, {});  // a firmware of protocol 15 refuses this by a stall
+  if (has_refused(channel)) throw Stalled(refused);
+}
+
+}  // namespace
+
+void detach_firmware(const Endpoint& endpoint) {
+  if (endpoint.kind == Endpoint::Kind::usbip) {
+    UsbipChannel channel(endpoint, identity::firmware_update_interface);
+    detach(channel);
+  } else {
+    UsbChannel channel(identity::vendor_id, identity::product_id, endpoint.serial_number,
+                       identity::firmware_update_interface);
+    detach(channel);
+  }
 }
 
 }  // namespace inkwell::device

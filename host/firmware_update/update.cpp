@@ -18,6 +18,8 @@ using device::Endpoint;
 /// A board needs half a second for it; a virtual one on a busy computer a few.
 constexpr auto change_patience = 20s;
 constexpr auto look_again = 50ms;
+/// Until the system has given this user the right to a new device, or has found its driver.
+constexpr auto system_patience = 5s;
 
 /// `chosen`: the image was, by what the board held, and what it held is gone.
 std::string how_to_go_on(const Image& image, bool is_chosen) {
@@ -78,6 +80,22 @@ auto if_it_answers(Look look) -> decltype(look()) {
   }
 }
 
+/// Carries out `look` for a device that has just appeared. A refusal by the system is an error only once it lasts.
+template <class Look>
+auto wait_for_admitted(Look look) -> decltype(look()) {
+  std::optional<std::chrono::steady_clock::time_point> refused_at;
+  return wait_for([&]() -> decltype(look()) {
+    try {
+      return if_it_answers(look);
+    } catch (const device::NoPermission&) {
+      const auto now = std::chrono::steady_clock::now();
+      if (!refused_at) refused_at = now;
+      if (now - *refused_at > system_patience) throw;
+      return {};
+    }
+  });
+}
+
 /// Out of the firmware into the boot loader.
 Endpoint detach(const Endpoint& arm, const Address& address) {
   std::set<std::string> known;
@@ -89,12 +107,10 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
     throw device::Error(
         "The board does not leave its firmware while the force is on. Switch it off first: inkwell force off.");
   }
-  const auto loader = wait_for([&] {
-    return if_it_answers([&]() -> std::optional<Endpoint> {
-      for (auto& each : device::find_boot_loaders(address))
-        if (!known.contains(each.serial_number)) return each;
-      return {};
-    });
+  const auto loader = wait_for_admitted([&]() -> std::optional<Endpoint> {
+    for (auto& each : device::find_boot_loaders(address))
+      if (!known.contains(each.serial_number)) return each;
+    return {};
   });
   if (loader) return *loader;
   throw device::Error(

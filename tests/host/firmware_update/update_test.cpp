@@ -243,3 +243,29 @@ TEST_CASE("of several boards one has to be named, and of none it is said what to
   loader.open_result = -3;  // LIBUSB_ERROR_ACCESS
   CHECK_THROWS_AS(update({}, good_image(), {}), device::NoPermission);
 }
+
+TEST_CASE("a board stays in its firmware while the force is on, and the error says how to go on") {
+  tests::FakeUsb usb;
+  auto& arm = usb.add_arm("111");
+  SUBCASE("by its status") { arm.update_status = Bytes{std::byte{0x0B}, {}, {}, {}, {}, {}}; }
+  SUBCASE("by a stall") { arm.stalls_detach = true; }
+  const auto said = message_of<device::Error>([] { update({}, good_image(), {}); });
+  CHECK(contains(said, "while the force is on"));
+  CHECK(contains(said, "inkwell force off"));
+}
+
+TEST_CASE("a boot loader that has just appeared may be denied until the system has set its rights") {
+  tests::FakeUsb usb;
+  auto& arm = usb.add_arm("111");
+  arm.becomes_loader_at_detach = true;
+  SUBCASE("for a moment") {
+    arm.denied_opens = 3;
+    CHECK(contains(message_of<device::Stalled>([] { update({}, good_image(), {}); }), "refused"));  // a fake loader
+    CHECK(arm.denied_opens == 0);
+  }
+  SUBCASE("for good") {
+    arm.denied_opens = 1'000'000;
+    CHECK_THROWS_AS(update({}, good_image(), {}), device::NoPermission);
+  }
+  CHECK(arm.detaches == 1);
+}
