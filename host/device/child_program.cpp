@@ -1,7 +1,6 @@
 #include <device/child_program.hpp>
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,23 +14,12 @@
 
 #include <local/descriptor.hpp>
 
+#include "spawn_actions.hpp"
+
 namespace inkwell::device {
 namespace {
 
 constexpr int killed_by = 128;  // as shells report it
-
-/// What the child does before its program starts.
-class SpawnActions {
- public:
-  SpawnActions() { posix_spawn_file_actions_init(&actions_); }
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
-  posix_spawn_file_actions_t* get() { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
 
 pid_t spawn(const ChildProgram& program, int output) {
   std::vector<std::string> words = program.words;

@@ -22,6 +22,7 @@
 #include <process/fork.hpp>
 
 #include "feature_reports.hpp"
+#include "sleep_inhibitor.hpp"
 
 namespace inkwell::device {
 namespace {
@@ -148,6 +149,7 @@ struct Device::Implementation {
   ScopeDecoder decoder;
   mutable std::mutex link_mutex;  ///< guards the next one; taken last
   std::shared_ptr<Transport> link;
+  SleepInhibitor sleep_inhibitor;  ///< wanted while this object drives a real arm whose force is on
 
   explicit Implementation(std::unique_ptr<Transport> transport)
       : Implementation(OwnNumbers(transport->endpoint().seed), std::move(transport)) {}
@@ -300,12 +302,24 @@ struct Device::Implementation {
     }
     own_claims().add(report.claim_digest, object);
     driver_changes = report.changes;
+    if (!transport()->endpoint().is_virtual) sleep_inhibitor.prepare();
     drives = true;
   }
 
   void lose_claim() {
     drives = false;
+    sleep_inhibitor.follow(false);
     own_claims().remove(protocol::digest_of(own_claim), object);
+  }
+
+  /// Waits for an input report. A device that went away needs no inhibitor.
+  std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) {
+    try {
+      return transport()->read_report(report, timeout);
+    } catch (const Disconnected&) {
+      sleep_inhibitor.follow(false);
+      throw;
+    }
   }
 
   /// By a pose: the driver's parity differs, or did when the pose was sent.
@@ -578,13 +592,14 @@ std::optional<Pose> Device::read_pose(std::chrono::milliseconds timeout) {
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = self.transport()->read_report(writable_bytes(report), std::max(left, 0ms));
+    const std::size_t length = self.read_report(writable_bytes(report), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     if (length != sizeof report || report.report_id != ReportId::pose) continue;
     const Pose pose = widened(report, self.sequence.note(report.sequence), self.time_periods.note(report.time_periods));
     self.newest_period = pose.time_periods;
     self.newest_sequence = report.sequence;
     self.check_claim(report);
+    self.sleep_inhibitor.follow(self.drives && protocol::force_is_on(report.state));
     return pose;
   }
 }
