@@ -41,7 +41,7 @@ struct hid_device_ {
 namespace {
 
 FakeUsb* current = nullptr;  // of the test that runs
-std::mutex no_usb;       // without one there is nothing to guard
+std::mutex no_usb;           // without one there is nothing to guard
 
 std::unique_lock<std::mutex> lock_usb() { return std::unique_lock(current != nullptr ? current->mutex : no_usb); }
 
