@@ -75,8 +75,6 @@ class RunningInhibitor {
     child_ = spawn(from_here.number());
   }
   ~RunningInhibitor() {
-    own_.forget();
-    to_child_ = local::Descriptor();
     // The program may have collected all its children; then the number may be another process's by now.
     if (child_ != 0 && waitpid(child_, nullptr, WNOHANG) == 0) {
       kill(child_, SIGKILL);  // it may wait for logind
@@ -98,9 +96,11 @@ void become_ordinary_thread() {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, nullptr);  // signals are the program's own business
+  const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
   const sched_param ordinary{};
-  sched_setscheduler(0, SCHED_OTHER, &ordinary);
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 0);
+  if (policy == SCHED_FIFO || policy == SCHED_RR) sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  const auto thread = static_cast<id_t>(gettid());
+  if (getpriority(PRIO_PROCESS, thread) < 0) setpriority(PRIO_PROCESS, thread, 0);
 }
 
 }  // namespace
@@ -126,9 +126,7 @@ void SleepInhibitor::prepare() {
 }
 
 void SleepInhibitor::request(Request request) {
-  if (request_.load(std::memory_order_relaxed) == request || !origin_.is_here()) return;
-  request_ = request;
-  request_.notify_one();
+  if (request_.exchange(request) != request) request_.notify_one();
 }
 
 void SleepInhibitor::serve() {

@@ -3,15 +3,20 @@
 #include <doctest/doctest.h>
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <device/device.hpp>
@@ -73,6 +78,14 @@ bool is_running(pid_t process) {
   return file.get() != std::ifstream::traits_type::eof();
 }
 
+/// Bits of a set of signals in /proc/PROCESS/status.
+std::uint64_t signals_of(pid_t process, const std::string& set) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(set + ":")) return std::stoull(line.substr(set.size() + 1), nullptr, 16);
+  throw std::runtime_error("no " + set);
+}
+
 bool has_ended(pid_t process) {
   return eventually([&] { return !is_running(process); });
 }
@@ -117,6 +130,28 @@ TEST_CASE("the inhibitor ends with its object, even if its program does not read
     CHECK(is_running(fake.runs()[0].process));
   }
   CHECK_FALSE(is_running(fake.runs()[0].process));
+}
+
+TEST_CASE("the inhibitor's program has a session of its own, no open files, no precedence, and plain signals") {
+  const FakeInhibit fake;
+  const auto handler_before = signal(SIGUSR1, SIG_IGN);
+  const int inherited = dup(STDOUT_FILENO);  // without close-on-exec
+  device::SleepInhibitor inhibitor;
+  std::thread([&] {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), -10);  // as far as this user may
+    inhibitor.prepare();
+  }).join();
+  inhibitor.follow(true);
+  REQUIRE(fake.has_begun(1));
+  const pid_t process = fake.runs()[0].process;
+  CHECK(getsid(process) == process);
+  CHECK(getpriority(PRIO_PROCESS, static_cast<id_t>(process)) >= 0);
+  CHECK_FALSE(std::filesystem::exists(
+      std::filesystem::symlink_status("/proc/" + std::to_string(process) + "/fd/" + std::to_string(inherited))));
+  CHECK(signals_of(process, "SigBlk") == 0);
+  CHECK((signals_of(process, "SigIgn") & 1u << (SIGUSR1 - 1)) == 0);
+  close(inherited);
+  signal(SIGUSR1, handler_before);
 }
 
 TEST_CASE("without systemd-inhibit, and if it refuses, nothing is wrong") {
