@@ -87,10 +87,12 @@ constexpr bool is_name(std::string_view name) {
   return true;
 }
 
-template <class Rows, class Find>
-constexpr bool have_names_of_their_own(const Rows& rows, Find find) {
+template <class Rows, class Table>
+constexpr bool have_names_of_their_own(const Rows& rows, const Table& table) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!is_name(rows[i].name) || find(rows[i].name)) return false;
+    if (!is_name(rows[i].name)) return false;
+    for (const auto& row : table)
+      if (row.name == rows[i].name) return false;
     for (std::size_t other = 0; other < i; ++other)
       if (rows[i].name == rows[other].name) return false;
   }
@@ -147,9 +149,9 @@ static_assert(signals.size() <= protocol::force_law_signals_maximum,
               "the force law has more signals than protocol::force_law_signals_maximum");
 static_assert(have_sound_ranges(parameters), "the default of a force law's parameter is outside of its range");
 static_assert(
-    have_names_of_their_own(parameters, [](auto name) { return protocol::find_parameter(name).has_value(); }),
+    have_names_of_their_own(parameters, protocol::parameter_table),
     "names of a force law's parameters are letters, digits and _, at most 40, and no other parameter has them");
-static_assert(have_names_of_their_own(signals, [](auto name) { return protocol::find_signal(name).has_value(); }),
+static_assert(have_names_of_their_own(signals, protocol::signal_table),
               "names of a force law's signals are letters, digits and _, at most 40, and no other signal has them");
 
 // ---- the report ---------------------------------------------------------------------------------------

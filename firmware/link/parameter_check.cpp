@@ -37,7 +37,7 @@ constexpr std::array<Limits, parameter_count> table_limits = []() {
   return rows;
 }();
 
-constexpr ParameterSet table_defaults = protocol::default_parameters();
+constexpr ParameterSet table_defaults = protocol::table_defaults();
 
 std::uint16_t id_of(std::size_t index) {
   return index < parameter_count ? table_limits[index].id

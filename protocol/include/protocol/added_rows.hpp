@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <iterator>
 #include <span>
-#include <type_traits>
 
 namespace inkwell::protocol {
 
@@ -21,17 +20,20 @@ inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 template <class Info>
 inline constexpr Info nameless_row{};
 
-/// A table with the rows that are added to it; `own` is the number of its own. Rows may be asked for by place.
+/// A table with the rows that are added to it at run time; `own` is the number of its own rows. Constant expressions
+/// read the table itself. The constructor must not ask std::is_constant_evaluated(): GCC 14 answers true wherever a
+/// reference is bound to the result, as in a range-based for loop, and the added rows would be missing there.
 template <class Info, std::size_t own>
 class KnownRows {
  public:
-  constexpr explicit KnownRows(const std::array<Info, own>& table) : table_(&table) {
-    if (!std::is_constant_evaluated()) added_ = known();
+  explicit KnownRows(const std::array<Info, own>& table) : table_(&table) {
+    const auto* rows = added_rows<Info>.load(std::memory_order_acquire);
+    if (rows != nullptr) added_ = *rows;
   }
 
-  constexpr std::size_t size() const { return own + added_.size(); }
+  std::size_t size() const { return own + added_.size(); }
   /// A row without a name for a place that no row has.
-  constexpr const Info& operator[](std::size_t place) const {
+  const Info& operator[](std::size_t place) const {
     return place < own ? (*table_)[place] : place < size() ? added_[place - own] : nameless_row<Info>;
   }
 
@@ -43,29 +45,24 @@ class KnownRows {
     using pointer = const Info*;
     using reference = const Info&;
 
-    constexpr Iterator(const KnownRows& rows, std::size_t place) : rows_(&rows), place_(place) {}
-    constexpr const Info& operator*() const { return (*rows_)[place_]; }
-    constexpr const Info* operator->() const { return &(*rows_)[place_]; }
-    constexpr Iterator& operator++() {
+    Iterator(const KnownRows& rows, std::size_t place) : rows_(&rows), place_(place) {}
+    const Info& operator*() const { return (*rows_)[place_]; }
+    const Info* operator->() const { return &(*rows_)[place_]; }
+    Iterator& operator++() {
       ++place_;
       return *this;
     }
-    constexpr Iterator operator++(int) { return {*rows_, place_++}; }
-    constexpr bool operator==(const Iterator&) const = default;
+    Iterator operator++(int) { return {*rows_, place_++}; }
+    bool operator==(const Iterator&) const = default;
 
    private:
     const KnownRows* rows_;
     std::size_t place_;
   };
-  constexpr Iterator begin() const { return {*this, 0}; }
-  constexpr Iterator end() const { return {*this, size()}; }
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size()}; }
 
  private:
-  static std::span<const Info> known() {
-    const auto* rows = added_rows<Info>.load(std::memory_order_acquire);
-    return rows != nullptr ? *rows : std::span<const Info>{};
-  }
-
   const std::array<Info, own>* table_;
   std::span<const Info> added_;
 };

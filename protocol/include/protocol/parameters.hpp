@@ -156,10 +156,11 @@ inline constexpr std::size_t force_law_parameters_maximum = 12;
 inline constexpr std::uint16_t force_law_first_id = 1000;
 
 /// The table, and the parameters of the force law as far as it is known.
-constexpr KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
+inline KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
 
 constexpr const ParameterInfo& info(Parameter parameter) {
-  return known_parameters()[static_cast<std::size_t>(parameter)];
+  const auto place = static_cast<std::size_t>(parameter);
+  return place < parameter_count ? parameter_table[place] : known_parameters()[place];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
 /// Says where the probe is or how a torque comes to be, so that a change under a force would be a jump: it waits until
@@ -211,21 +212,29 @@ struct ParameterSet {
   bool operator==(const ParameterSet&) const = default;
 };
 
-constexpr ParameterSet default_parameters() {
+/// The defaults of the table, without those of a force law.
+constexpr ParameterSet table_defaults() {
+  ParameterSet set{};
+  for (std::size_t i = 0; i < parameter_count; ++i) set.values[i] = parameter_table[i].default_value;
+  return set;
+}
+
+/// The defaults of the table, and of the parameters of the force law as far as it is known.
+inline ParameterSet default_parameters() {
   ParameterSet set{};
   const auto rows = known_parameters();
   for (std::size_t i = 0; i < rows.size(); ++i) set.values[i] = rows[i].default_value;
   return set;
 }
 
-constexpr std::optional<Parameter> find_parameter(std::uint16_t id) {
+inline std::optional<Parameter> find_parameter(std::uint16_t id) {
   const auto rows = known_parameters();
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].id == id) return static_cast<Parameter>(i);
   return std::nullopt;
 }
 
-constexpr std::optional<Parameter> find_parameter(std::string_view name) {
+inline std::optional<Parameter> find_parameter(std::string_view name) {
   const auto rows = known_parameters();
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].name == name) return static_cast<Parameter>(i);

@@ -111,9 +111,12 @@ inline constexpr std::size_t force_law_signals_maximum = 8;
 static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id has eight bits");
 
 /// The table, and the signals of the force law as far as it is known.
-constexpr KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
+inline KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
 
-constexpr const SignalInfo& info(Signal signal) { return known_signals()[static_cast<std::size_t>(signal)]; }
+constexpr const SignalInfo& info(Signal signal) {
+  const auto place = static_cast<std::size_t>(signal);
+  return place < signal_count ? signal_table[place] : known_signals()[place];
+}
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
 
@@ -132,7 +135,7 @@ struct SignalValues {
 
 constexpr std::size_t wire_size(SignalWire wire) { return wire == SignalWire::float32 ? 4 : 2; }
 
-constexpr std::optional<Signal> find_signal(std::string_view name) {
+inline std::optional<Signal> find_signal(std::string_view name) {
   for (const auto& row : known_signals())
     if (row.name == name) return static_cast<Signal>(row.id);
   return std::nullopt;

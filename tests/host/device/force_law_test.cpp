@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include <control/installed_force_law.hpp>
 #include <device/error.hpp>
@@ -97,6 +99,20 @@ TEST_CASE("rows join the tables, and another law's only when nobody uses them an
   law = {};
   CHECK(!device::join_tables(other));  // `same` is still there
   CHECK(device::joined_force_law() == "first");
+}
+
+TEST_CASE("a range-based for loop over a table reaches the added rows") {
+  const auto law = device::parse_force_law(report_of("first"));
+  REQUIRE(device::join_tables(law));
+  std::vector<std::string_view> signals, parameters;
+  for (const auto& row : protocol::known_signals()) signals.push_back(row.name);
+  for (const auto& row : protocol::known_parameters()) parameters.push_back(row.name);
+  REQUIRE(signals.size() == protocol::signal_count + 1);
+  CHECK(signals.back() == "test_depth_m");
+  REQUIRE(parameters.size() == protocol::parameter_count + 1);
+  CHECK(parameters.back() == "test_gain_N");
+  const auto& bound = protocol::known_signals();
+  CHECK(bound.size() == protocol::signal_count + 1);
 }
 
 TEST_CASE("a law takes the place of one that nobody uses") {
