@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include <control/installed_force_law.hpp>
@@ -32,10 +33,10 @@ bool are_equal(const ParameterSet& one, const ParameterSet& other) {
 
 bool belongs_to_a_law(std::uint32_t id) { return id >= protocol::force_law_first_id; }
 
-/// An entry of another law's is none of this image's, whatever its id.
-bool is_known(std::uint32_t id, bool same_law) {
-  return id <= 0xFFFF && (same_law || !belongs_to_a_law(id)) &&
-         image_parameter_index(static_cast<std::uint16_t>(id)).has_value();
+/// Index of a stored entry's parameter in this image. An entry of another law has none, whatever its id.
+std::optional<std::size_t> known_index(std::uint32_t id, bool same_law) {
+  if (id > 0xFFFF || (!same_law && belongs_to_a_law(id))) return std::nullopt;
+  return image_parameter_index(static_cast<std::uint16_t>(id));
 }
 
 }  // namespace
@@ -71,9 +72,8 @@ void StoredParameters::load(ParameterStore& parameters) {
   StoredSet stored;
   for (std::size_t i = 0; i < at_start_.entries; ++i) {
     const std::uint32_t id = record->payload[2 * i];
-    if (is_known(id, same_law)) {
-      stored.put(*image_parameter_index(static_cast<std::uint16_t>(id)),
-                 std::bit_cast<float>(record->payload[2 * i + 1]));
+    if (const auto index = known_index(id, same_law)) {
+      stored.put(*index, std::bit_cast<float>(record->payload[2 * i + 1]));
       continue;
     }
     if (at_start_.unknown < protocol::store_unknown_ids_maximum)
@@ -164,10 +164,11 @@ std::size_t StoredParameters::put_entries(const ParameterSet& held) {
   };
   for (std::size_t i = 0; i < image_parameter_count(); ++i)
     put(image_parameter_id(i), std::bit_cast<std::uint32_t>(held.values[i]));
+  const auto& newest = log_.newest();
   const std::span<const std::uint32_t> old =
-      has_parameters() ? log_.newest()->payload : std::span<const std::uint32_t>{};
+      newest && has_parameters() ? newest->payload : std::span<const std::uint32_t>{};
   for (std::size_t i = 0; i + 1 < old.size() && count < entries_maximum; i += 2)
-    if (!belongs_to_a_law(old[i]) && !is_known(old[i], true)) put(old[i], old[i + 1]);
+    if (!belongs_to_a_law(old[i]) && !known_index(old[i], true)) put(old[i], old[i + 1]);
   payload_.seal();
   return count;
 }
