@@ -17,8 +17,12 @@ case "$*" in
   *--fix-broken*) {fix}; exit ;;
 esac
 echo 'Reading package lists...'
-echo 'dlstatus:1:42.0:Retrieving file 1 of 2'
-echo 'pmstatus:libnowhere:85.7:Unpacking libnowhere'
+status=$(printf '%s\n' "$@" | sed -n 's/^APT::Status-Fd=//p')
+echo 'dlstatus:1:42.0:Retrieving file 1 of 2' >&"$status"
+echo 'pmstatus:libnowhere:85.7:Unpacking libnowhere' >&"$status"
+# As apt does: scripts of packages do not have the descriptor of the status lines.
+eval "exec $status>&-"
+echo 'Setting up libnowhere' || { echo 'postinst: echo: I/O error' >&2; exit 100; }
 {install}
 """,
     "dpkg": """
@@ -47,13 +51,15 @@ class Install(unittest.TestCase):
             (folder / "packages" / "libelse").write_text("installed")
             (folder / "packages" / "libgone").write_text("config-files")
             (folder / "list.txt").write_text("# what for\nlibelse\nlibnowhere\n")
-            return subprocess.run(
+            done = subprocess.run(
                 [SOURCE / "tools/install", folder / "list.txt"],
-                env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}"},
+                env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}", "TMPDIR": str(folder)},
                 capture_output=True,
                 text=True,
                 check=False,
             )
+            done.logs = {str(path): path.read_text() for path in folder.glob("*.log")}
+            return done
 
     def test_progress_is_told(self):
         done = self.run_install("exit 0")
@@ -61,6 +67,12 @@ class Install(unittest.TestCase):
         self.assertIn("Installing 1 Debian packages", done.stdout)
         self.assertIn("42 %  fetching", done.stdout)
         self.assertIn("85 %  libnowhere", done.stdout)
+        self.assertEqual(done.logs, {})
+
+    def test_scripts_of_packages_can_print(self):
+        done = self.run_install("exit 100")
+        self.assertIn("Setting up libnowhere", done.stderr)
+        self.assertNotIn("I/O error", done.stderr)
 
     def test_a_failure_is_told_in_apts_words(self):
         done = self.run_install("echo 'E: no such package' >&2; exit 100")
@@ -70,12 +82,19 @@ class Install(unittest.TestCase):
         self.assertNotIn("status:", done.stderr)
         self.assertIn("could not be installed: libnowhere", done.stderr)
         self.assertIn("network", done.stderr)
+        [(path, text)] = done.logs.items()
+        self.assertIn(path, done.stderr)
+        self.assertIn("no such package", text)
 
     def test_what_dpkg_left_is_configured_once_more(self):
         for mended in ({"configure": "echo installed >packages/libnowhere"}, {"fix": "echo installed >packages/libnowhere"}):
             done = self.run_install(UNPACKED, **mended)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("once more", done.stdout)
+            self.assertIn("at first: libnowhere\n", done.stdout)
+            self.assertIn("E: Errors were encountered", done.stdout)
+            [(path, text)] = done.logs.items()
+            self.assertIn(f"trying once more; the log is {path}", done.stdout)
+            self.assertIn("E: Errors were encountered", text)
 
     def test_what_was_not_reached_before_is_installed_then(self):
         first = "if [ -e packages/libfirst ]; then echo installed >packages/libnowhere; exit 0; fi"
