@@ -48,7 +48,7 @@ FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test
   }
   if (fault != protocol::Fault::self_test_failed || items.empty()) return text;
   text.cause =
-      fmt::format("The self-test has found something without which there is no force: {}.", fmt::join(items, ", "));
+      fmt::format("The self-test failed for items that the force needs: {}.", fmt::join(items, ", "));
   text.remedy = fmt::format("{} Then clear the fault, which tests again.", fmt::join(remedies, " "));
   return text;
 }

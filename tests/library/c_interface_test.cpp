@@ -98,7 +98,7 @@ TEST_CASE("parameters are stored, restored and forgotten, but not while the forc
   const double default_m = held_m();
   const auto default_reach_m = reach_m();
   CHECK(inkwell_restore_parameters(arm) == INKWELL_REFUSED);
-  CHECK(says("stored nothing"));
+  CHECK(says("no stored parameters"));
   CHECK(store().contents == INKWELL_STORED_NOTHING);
   set(default_m + 0.01);
   const auto longer_reach_m = reach_m();

@@ -42,7 +42,7 @@ refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', [1 2]), 'as many v
 
 % What outlives the board's power.
 assert(inkwell_store(arm, 'state').not_stored, 2);
-refused(@() inkwell_store(arm, 'restore'), 'stored nothing');
+refused(@() inkwell_store(arm, 'restore'), 'no stored parameters');
 inkwell_store(arm);
 assert(inkwell_store(arm, 'state').contents, 'parameters');
 assert(inkwell_store(arm, 'state').not_stored, 0);

@@ -57,7 +57,7 @@ class Storing(unittest.TestCase):
         self.addCleanup(arm.close)
         parameters = arm.parameters
         default_N_per_m = parameters.wall_stiffness_N_per_m
-        with self.assertRaisesRegex(inkwell.Refused, "stored nothing"):
+        with self.assertRaisesRegex(inkwell.Refused, "no stored parameters"):
             parameters.restore()
         parameters.wall_stiffness_N_per_m = 500
         self.assertEqual(parameters.not_stored(), {"wall_stiffness_N_per_m": default_N_per_m})

@@ -136,7 +136,7 @@ TEST_CASE("a factory reset wants a word of yes, forgets what is stored and gives
   CHECK(board.stiffness() == default_stiffness);
   const auto nothing = board.run({"parameters", "restore"});
   CHECK(nothing.exit_code == 1);
-  CHECK(nothing.err.find("stored nothing that could be restored") != std::string::npos);
+  CHECK(nothing.err.find("no stored parameters to restore") != std::string::npos);
 }
 
 TEST_CASE("while the force is on nothing is stored or forgotten, and the board says why") {

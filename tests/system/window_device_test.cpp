@@ -33,7 +33,7 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug one in"); });
   CHECK_FALSE(rig.look().can_click("status/Switch force on"));
   plug_in(rig, "fault");
-  CHECK(rig.look().says("USB went away while the force was on"));
+  CHECK(rig.look().says("The USB connection was lost while the force was on"));
   rig.click("banner/Clear fault");
   // The arm still knows where it is, and the force is off.
   rig.look_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });

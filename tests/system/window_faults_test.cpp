@@ -43,7 +43,7 @@ TEST_CASE("a fault is chosen in the table, put in, told with what the board noti
   CHECK(rig.look().says("SIMULATION"));
   rig.click("faults/Supply");
   rig.click("faults/supply_sag");
-  CHECK(rig.look().says("The source of the bridges falls to this."));
+  CHECK(rig.look().says("Voltage to which the bridge supply falls."));
   CHECK(rig.look().says("0 to 18"));
   rig.enter("faults/amount", "6");
   rig.click("faults/Inject");

@@ -43,7 +43,7 @@ constexpr std::span<const std::string_view> names_of_places(InjectionPlace place
 constexpr std::string_view wanted_place(InjectionPlace place) {
   switch (place) {
     case InjectionPlace::motor: return "the motor: 1, 2 or 3";
-    case InjectionPlace::leg: return "the leg: 1A, 1B, 2A, 2B, 3A or 3B";
+    case InjectionPlace::leg: return "the half bridge: 1A, 1B, 2A, 2B, 3A or 3B";
     case InjectionPlace::wire: return "the wire: a pin, such as PA0, or encoders[0].a";
     case InjectionPlace::wires: return "two wires, such as encoders[0].a+encoders[0].b";
     case InjectionPlace::exception: return "the exception: 16 is interrupt 0";

@@ -33,48 +33,48 @@ inline constexpr double wire_spike_s = 2e-6;
 // clang-format off
 /// A name in braces stands for that figure: help_of() writes it.
 #define INKWELL_INJECTIONS(X)                                                                                                      \
-  X(wire_open, wires, wire, "", 0, 0, 0, "The wire is broken: what it drives floats.")                                             \
-  X(wire_low, wires, wire, "", 0, 0, 0, "The wire touches ground.")                                                                \
-  X(wire_high, wires, wire, "", 0, 0, 0, "The wire touches 3.3 V.")                                                                \
-  X(wire_frozen, wires, wire, "", 0, 0, 0, "The wire stays as it is, whatever drives it.")                                         \
-  X(wires_shorted, wires, wires, "", 0, 0, 0, "Two wires touch: low wins, analogue ones meet half-way.")                           \
-  X(wire_spikes, wires, wire, "1/s", 1, 100000, 1000, "So many spikes of {wire_spike_us} us on a digital input, at random times.") \
-  X(encoder_stuck, encoders, motor, "", 0, 0, 0, "The encoder's disc stands while the motor turns.")                               \
-  X(encoder_lost_counts, encoders, motor, "", 0.0001, 1, 0.01, "So large a share of the encoder's counts is lost, at random.")     \
-  X(encoder_slip, encoders, motor, "counts", -20000, 20000, 400, "The encoder's disc slips on its shaft by so much.")              \
-  X(shunt_offset, shunts, motor, "A", -10, 10, 0.5, "The shunt amplifier reads so much more than flows.")                          \
-  X(shunt_gain, shunts, motor, "", 0, 10, 0.5, "The shunt amplifier reads so many times what flows.")                              \
-  X(shunt_high, shunts, motor, "", 0, 0, 0, "The shunt amplifier's output is at the upper rail.")                                  \
-  X(shunt_low, shunts, motor, "", 0, 0, 0, "The shunt amplifier's output is at the lower rail.")                                   \
-  X(shunt_frozen, shunts, motor, "", 0, 0, 0, "The shunt amplifier's output stays where it is.")                                   \
-  X(motor_open, motors, motor, "", 0, 0, 0, "No current flows: a lead or a brush is off.")                                         \
-  X(motor_shorted, motors, motor, "", 0.05, 1, 0.5, "So large a share of the motor's turns is left, the others are shorted.")      \
-  X(motor_hot, motors, motor, "K", 0, 300, 100, "The motor is so much hotter: more resistance, less torque.")                      \
-  X(leg_high, bridges, leg, "", 0, 0, 0, "The upper switch has fused; the bridge trips when the lower one joins it.")              \
-  X(leg_low, bridges, leg, "", 0, 0, 0, "The lower switch has fused; the bridge trips when the upper one joins it.")               \
-  X(leg_open, bridges, leg, "", 0, 0, 0, "Neither switch conducts; the diodes do.")                                                \
-  X(leg_slow, bridges, leg, "s", 0, 0.00005, 0.000001, "The switches conduct so much later than they should.")                     \
-  X(bridge_fault, bridges, none, "", 0, 0, 0, "A bridge pulls the fault wire.")                                                    \
-  X(supply_sag, supply, none, "V", 0, 18, 10, "The source of the bridges falls to this.")                                          \
-  X(supply_spike, supply, none, "V", 18, 36, 30, "The source of the bridges rises to this.")                                       \
-  X(supply_cut, supply, none, "", 0, 0, 0, "The source of the bridges is gone.")                                                   \
-  X(supply_ripple, supply, none, "V", 0, 6, 3, "The source of the bridges swings by so much to either side, 100 times a second.")  \
-  X(logic_sag, supply, none, "V", 0, 3.3, 2, "The chip's 3.3 V fall to this, and VDDA with them.")                                 \
-  X(analog_sag, supply, none, "V", 0, 3.6, 3, "VDDA alone is at this: reference of converters and amplifiers.")                    \
+  X(wire_open, wires, wire, "", 0, 0, 0, "The wire is broken, and its input floats.")                                             \
+  X(wire_low, wires, wire, "", 0, 0, 0, "The wire is shorted to ground.")                                                                \
+  X(wire_high, wires, wire, "", 0, 0, 0, "The wire is shorted to 3.3 V.")                                                                \
+  X(wire_frozen, wires, wire, "", 0, 0, 0, "The wire is stuck at its present level.")                                         \
+  X(wires_shorted, wires, wires, "", 0, 0, 0, "Two wires are shorted: low wins, and analog levels are averaged.")                           \
+  X(wire_spikes, wires, wire, "1/s", 1, 100000, 1000, "Number of spikes of {wire_spike_us} us per second on a digital input, at random times.") \
+  X(encoder_stuck, encoders, motor, "", 0, 0, 0, "The encoder disc does not turn with the motor.")                               \
+  X(encoder_lost_counts, encoders, motor, "", 0.0001, 1, 0.01, "Fraction of the encoder counts that is lost, at random.")     \
+  X(encoder_slip, encoders, motor, "counts", -20000, 20000, 400, "Encoder counts by which the disc slips on its shaft.")              \
+  X(shunt_offset, shunts, motor, "A", -10, 10, 0.5, "Offset of the shunt amplifier.")                          \
+  X(shunt_gain, shunts, motor, "", 0, 10, 0.5, "Gain of the shunt amplifier, relative to its nominal gain.")                              \
+  X(shunt_high, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is at the upper rail.")                                  \
+  X(shunt_low, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is at the lower rail.")                                   \
+  X(shunt_frozen, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is frozen.")                                   \
+  X(motor_open, motors, motor, "", 0, 0, 0, "No current flows: a lead or a brush is disconnected.")                                         \
+  X(motor_shorted, motors, motor, "", 0.05, 1, 0.5, "Fraction of the winding that remains; the rest is shorted.")      \
+  X(motor_hot, motors, motor, "K", 0, 300, 100, "Temperature rise of the motor: more resistance, less torque.")                      \
+  X(leg_high, bridges, leg, "", 0, 0, 0, "The upper switch is shorted. The bridge trips when the lower switch turns on.")              \
+  X(leg_low, bridges, leg, "", 0, 0, 0, "The lower switch is shorted. The bridge trips when the upper switch turns on.")               \
+  X(leg_open, bridges, leg, "", 0, 0, 0, "Both switches are open. Only the diodes conduct.")                                                \
+  X(leg_slow, bridges, leg, "s", 0, 0.00005, 0.000001, "Additional switching delay of the half bridge.")                     \
+  X(bridge_fault, bridges, none, "", 0, 0, 0, "A bridge pulls the fault wire low.")                                                    \
+  X(supply_sag, supply, none, "V", 0, 18, 10, "Voltage to which the bridge supply falls.")                                          \
+  X(supply_spike, supply, none, "V", 18, 36, 30, "Voltage to which the bridge supply rises.")                                       \
+  X(supply_cut, supply, none, "", 0, 0, 0, "The bridge supply is disconnected.")                                                   \
+  X(supply_ripple, supply, none, "V", 0, 6, 3, "Amplitude of a 100 Hz ripple on the bridge supply.")  \
+  X(logic_sag, supply, none, "V", 0, 3.3, 2, "Voltage to which the 3.3 V supply and VDDA fall.")                                 \
+  X(analog_sag, supply, none, "V", 0, 3.6, 3, "Voltage of VDDA alone, the reference of converters and amplifiers.")                    \
   X(crystal_stop, clocks, none, "", 0, 0, 0, "The crystal stops.")                                                                 \
-  X(crystal_drift, clocks, none, "ppm", -10000, 10000, 5000, "The crystal swings so much faster than its name.")                   \
-  X(usb_cut, usb, none, "", 0, 0, 0, "The cable is out.")                                                                          \
-  X(host_silent, usb, none, "", 0, 0, 0, "The host asks and sends nothing; frames go on.")                                         \
-  X(core_stalled, core, none, "s", 0, 1000, 1, "The core stands for so long; all else goes on.")                                   \
-  X(core_halted, core, none, "s", 0, 1000, 1, "A debug probe halts the core for so long.")                                         \
-  X(main_loop_stalled, core, none, "s", 0, 1000, 1, "The main loop hangs for so long; interrupts go on.")                          \
-  X(program_astray, core, address, "", 0, 0, 0, "The program counter is thrown there, into the flash unless given.")               \
-  X(exception_lost, core, exception, "", 0, 0, 0, "An interrupt never reaches the core.")                                          \
-  X(exception_late, core, exception, "cycles", 1, 1000000, 4200, "An interrupt comes so many cycles late.")                        \
-  X(adc_stopped, core, converter, "", 0, 0, 0, "A converter starts no conversion any more.")                                       \
-  X(dma_stopped, core, none, "", 0, 0, 0, "The DMA takes no request any more.")                                                    \
-  X(ram_bit, memory, address, "", -1, 7, -1, "A bit of a byte of RAM flips; -1 is one by the seed.")                               \
-  X(flash_bit, memory, address, "", -1, 7, -1, "A bit of the flash flips; healing writes it back.")
+  X(crystal_drift, clocks, none, "ppm", -10000, 10000, 5000, "Deviation of the crystal from its nominal frequency.")                   \
+  X(usb_cut, usb, none, "", 0, 0, 0, "The cable is unplugged.")                                                                          \
+  X(host_silent, usb, none, "", 0, 0, 0, "The host neither polls nor sends, but bus frames continue.")                                         \
+  X(core_stalled, core, none, "s", 0, 1000, 1, "Time for which the core is stopped while the peripherals continue.")                                   \
+  X(core_halted, core, none, "s", 0, 1000, 1, "Time for which a debug probe halts the core.")                                         \
+  X(main_loop_stalled, core, none, "s", 0, 1000, 1, "Time for which the main loop hangs while interrupts continue.")                          \
+  X(program_astray, core, address, "", 0, 0, 0, "Address to which the program counter jumps. Default: an address in flash.")               \
+  X(exception_lost, core, exception, "", 0, 0, 0, "An interrupt request is lost.")                                          \
+  X(exception_late, core, exception, "cycles", 1, 1000000, 4200, "Delay of an interrupt in cycles.")                        \
+  X(adc_stopped, core, converter, "", 0, 0, 0, "A converter does not start conversions.")                                       \
+  X(dma_stopped, core, none, "", 0, 0, 0, "The DMA controller does not serve requests.")                                                    \
+  X(ram_bit, memory, address, "", -1, 7, -1, "Bit of the RAM byte that flips; -1 chooses the bit from the seed.")                               \
+  X(flash_bit, memory, address, "", -1, 7, -1, "Bit of the flash byte that flips; -1 chooses the bit from the seed. Healing restores the bit.")
 // clang-format on
 
 /// Its value is its place in the table.

@@ -32,63 +32,63 @@ enum class ParameterKind : std::uint8_t {
 
 // clang-format off
 #define INKWELL_PARAMETERS(X)                                                                                                    \
-  X(100, box_minimum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_x_m, "box", "Lower wall of the box along x; the free space lies above it.") \
-  X(101, box_maximum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_x_m, "box", "Upper wall of the box along x; the free space lies below it.") \
+  X(100, box_minimum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_x_m, "box", "Lower wall of the box along x. The free space is above the wall.") \
+  X(101, box_maximum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_x_m, "box", "Upper wall of the box along x. The free space is below the wall.") \
   X(102, box_minimum_y_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_y_m, "box", "Lower wall of the box along y.")         \
   X(103, box_maximum_y_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_y_m, "box", "Upper wall of the box along y.")         \
   X(104, box_minimum_z_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_z_m, "box", "Lower wall of the box along z.")         \
   X(105, box_maximum_z_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_z_m, "box", "Upper wall of the box along z.")         \
-  X(200, sphere_radius_m, real, "m", 0.0f, 0.02f, 0.005f, "contact", "Radius of the sphere that touches the walls; 0 makes the probe a point.") \
+  X(200, sphere_radius_m, real, "m", 0.0f, 0.02f, 0.005f, "contact", "Radius of the sphere that touches the walls. With 0 the probe is a point.") \
   X(201, wall_stiffness_N_per_m, real, "N/m", 0.0f, 3000.0f, 800.0f, "contact", "Spring constant k of the walls (paper, section 3.3).") \
-  X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). It acts only in contact.") \
-  X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Largest magnitude of the force that is asked of the motors.")    \
-  X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
-  X(205, soft_landing_s, real, "s", 0.0f, 1.0f, 0.05f, "contact", "Time in which the force falls to nothing when it is switched off in an orderly way. A stop, a fault and a host that is gone take it away at once.") \
-  X(206, force_change_N_per_s, real, "N/s", 100.0f, 100000.0f, 5000.0f, "contact", "How fast the force may change, whatever it comes from; a faster change takes as long as it needs.") \
-  X(207, energy_reserve_J, real, "J", 0.001f, 1.0f, 0.05f, "contact", "Energy that the arm may give the hand at most beyond what the hand gave it. The reserve is full when the force comes, and filled again by a hand that presses and by power_given_W. A test's pulse ends once it moved as much.") \
-  X(208, power_given_W, real, "W", 0.0f, 20.0f, 1.0f, "contact", "Power that the arm may give the hand for ever. With an empty reserve what of the force drives the motion gives way to it; walls need none.") \
-  X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Silence of a program on the PC after which its force fades within 10 ms.") \
-  X(221, program_force_change_N_per_s, real, "N/s", 1.0f, 20000.0f, 1000.0f, "program force", "How fast the force that a program asks for may change; a faster one is stretched in time.") \
-  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
-  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
-  X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \
-  X(303, motor_resistance_1_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_1_ohm, "current loop", "Resistance of motor 1's winding. The self-test fails a motor whose resistance is far from it; until a test has measured one well the motors' watch goes by it. The tuning of the current loops measures it.") \
-  X(304, motor_resistance_2_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_2_ohm, "current loop", "Resistance of motor 2's winding.") \
-  X(305, motor_resistance_3_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_3_ohm, "current loop", "Resistance of motor 3's winding.") \
-  X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1. Where a motor reaches its limit all give way together; one with 0 takes no part.") \
-  X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
-  X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Largest current asked of motor 3.") \
-  X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Speed of the probe above which the force is switched off with a fault. From 0.8 of it on less and less of the force drives the motion, from 0.9 on none.") \
-  X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Silence of the host after which the force is switched off.")    \
-  X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Current that motor 1 bears for ever; its heat is told in parts of what this current leads to. From 85 % on its current limit falls, to this current at 100 % and further beyond. A change leaves the heat as it is told.") \
-  X(406, continuous_current_2_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Current that motor 2 bears for ever.") \
-  X(407, continuous_current_3_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_3_A, "limits", "Current that motor 3 bears for ever.") \
-  X(408, winding_time_constant_s, real, "s", 0.25f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Time in which a winding goes 63 % of the way to its new temperature over its housing.") \
-  X(409, housing_time_constant_s, real, "s", 0.25f, 2000.0f, arm_defaults::housing_time_constant_s, "limits", "Time in which a motor's housing goes 63 % of the way to its new temperature over the room.") \
-  X(410, winding_heat_part, real, "", 0.01f, 1.0f, arm_defaults::winding_heat_part, "limits", "Part of a lasting rise over the room that is the winding's over its housing: the thermal resistance from winding to housing over that from winding to room.") \
-  X(500, transmission, choice, "", 0.0f, 1.0f, arm_defaults::transmission, "arm", "How motor 3 turns link 3: 0 serial (joint 3 is relative to link 2), 1 parallelogram (joint 3 is absolute).") \
+  X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). Damping acts only in contact.") \
+  X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Upper limit of the force on the hand.")    \
+  X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from zero to its full value after it is switched on.") \
+  X(205, soft_landing_s, real, "s", 0.0f, 1.0f, 0.05f, "contact", "Time in which the force falls to zero after the command to switch it off. A stop, a fault or the loss of the host removes the force immediately.") \
+  X(206, force_change_N_per_s, real, "N/s", 100.0f, 100000.0f, 5000.0f, "contact", "Largest rate of change of the force, for all force sources. Faster changes are slowed down to this rate.") \
+  X(207, energy_reserve_J, real, "J", 0.001f, 1.0f, 0.05f, "contact", "Largest energy that the arm may deliver to the hand in addition to the energy received from the hand. The reserve is full when the force is switched on. The hand's work and power_given_W refill the reserve. A test pulse ends when it has delivered this energy.") \
+  X(208, power_given_W, real, "W", 0.0f, 20.0f, 1.0f, "contact", "Power that the arm may deliver to the hand continuously. When the energy reserve is empty, the force component along the motion is reduced to this power. Walls do not need it.") \
+  X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Time without a force report after which the force of a program fades within 10 ms.") \
+  X(221, program_force_change_N_per_s, real, "N/s", 1.0f, 20000.0f, 1000.0f, "program force", "Largest rate of change of the force that a program requests. Faster changes are slowed down to this rate.") \
+  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops: inductance times desired bandwidth in rad/s.") \
+  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops: resistance times desired bandwidth in rad/s.") \
+  X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may apply to a motor. The supply voltage is a further limit.") \
+  X(303, motor_resistance_1_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_1_ohm, "current loop", "Winding resistance of motor 1. The self-test fails if the measured resistance differs too much from this value. The motor check uses this value until a self-test has measured the resistance. `inkwell tune current-loop` measures it.") \
+  X(304, motor_resistance_2_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_2_ohm, "current loop", "Winding resistance of motor 2.") \
+  X(305, motor_resistance_3_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_3_ohm, "current loop", "Winding resistance of motor 3.") \
+  X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Current limit of motor 1. When one motor reaches its limit, all three are scaled down together. A motor with limit 0 is not used.") \
+  X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Current limit of motor 2.") \
+  X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Current limit of motor 3.") \
+  X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Probe speed above which a fault switches the force off. The force component along the motion is reduced above 80 % of this speed and is zero above 90 %.") \
+  X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Time without a report from the host after which the force is switched off.")    \
+  X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Continuous current rating of motor 1. Motor heat is reported relative to the heat at this current. Above 85 % the current limit falls, and it reaches this current at 100 %. A change of this parameter does not change the reported heat.") \
+  X(406, continuous_current_2_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Continuous current rating of motor 2.") \
+  X(407, continuous_current_3_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_3_A, "limits", "Continuous current rating of motor 3.") \
+  X(408, winding_time_constant_s, real, "s", 0.25f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Time in which the winding temperature covers 63 % of a step, relative to the housing.") \
+  X(409, housing_time_constant_s, real, "s", 0.25f, 2000.0f, arm_defaults::housing_time_constant_s, "limits", "Time in which the housing temperature covers 63 % of a step, relative to the room.") \
+  X(410, winding_heat_part, real, "", 0.01f, 1.0f, arm_defaults::winding_heat_part, "limits", "Thermal resistance from winding to housing, divided by the thermal resistance from winding to room.") \
+  X(500, transmission, choice, "", 0.0f, 1.0f, arm_defaults::transmission, "arm", "Transmission from motor 3 to link 3: 0 serial (joint 3 is relative to link 2), 1 parallelogram (joint 3 is absolute).") \
   X(501, frame, choice, "", 0.0f, 1.0f, arm_defaults::frame, "arm", "Axes of the workspace: 0 as in the paper (x forward, y left, z up), 1 as on the Omni (x right, y up, z to the user).") \
   X(502, link_2_m, real, "m", 0.02f, 1.0f, arm_defaults::link_2_m, "arm", "Length of link 2, shoulder to elbow (a2 of the paper's Table 1).") \
   X(503, link_3_m, real, "m", 0.02f, 1.0f, arm_defaults::link_3_m, "arm", "Length of link 3, elbow to probe (a3 of the paper's Table 1).") \
-  X(504, elbow_offset_rad, real, "rad", -3.2f, 3.2f, arm_defaults::elbow_offset_rad, "arm", "Added to joint 3 to give the direction of link 3 in the arm's plane.") \
-  X(505, origin_x_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_x_m, "arm", "Where the shoulder is in the workspace, x.")        \
-  X(506, origin_y_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_y_m, "arm", "Where the shoulder is in the workspace, y.")        \
-  X(507, origin_z_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_z_m, "arm", "Where the shoulder is in the workspace, z.")        \
-  X(510, encoder_1_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_1_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 1 in one turn of its motor.") \
-  X(511, encoder_2_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_2_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 2 in one turn of its motor.") \
-  X(512, encoder_3_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_3_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 3 in one turn of its motor.") \
-  X(520, gear_ratio_1, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_1, "arm", "Turns of motor 1 for one turn of joint 1.")    \
-  X(521, gear_ratio_2, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_2, "arm", "Turns of motor 2 for one turn of joint 2.")    \
-  X(522, gear_ratio_3, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_3, "arm", "Turns of motor 3 for one turn of joint 3.")    \
+  X(504, elbow_offset_rad, real, "rad", -3.2f, 3.2f, arm_defaults::elbow_offset_rad, "arm", "Offset from the angle of joint 3 to the direction of link 3 in the plane of the arm.") \
+  X(505, origin_x_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_x_m, "arm", "Shoulder position in the workspace, x.")        \
+  X(506, origin_y_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_y_m, "arm", "Shoulder position in the workspace, y.")        \
+  X(507, origin_z_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_z_m, "arm", "Shoulder position in the workspace, z.")        \
+  X(510, encoder_1_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_1_counts_per_turn, "arm", "Quadrature counts (four per line) of encoder 1 per turn of its motor.") \
+  X(511, encoder_2_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_2_counts_per_turn, "arm", "Quadrature counts (four per line) of encoder 2 per turn of its motor.") \
+  X(512, encoder_3_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_3_counts_per_turn, "arm", "Quadrature counts (four per line) of encoder 3 per turn of its motor.") \
+  X(520, gear_ratio_1, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_1, "arm", "Turns of motor 1 per turn of joint 1.")    \
+  X(521, gear_ratio_2, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_2, "arm", "Turns of motor 2 per turn of joint 2.")    \
+  X(522, gear_ratio_3, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_3, "arm", "Turns of motor 3 per turn of joint 3.")    \
   X(530, encoder_1_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_1_reversed, "arm", "1 if encoder 1 counts down when joint 1 turns forward, else 0.") \
   X(531, encoder_2_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_2_reversed, "arm", "1 if encoder 2 counts down when joint 2 turns forward, else 0.") \
   X(532, encoder_3_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_3_reversed, "arm", "1 if encoder 3 counts down when joint 3 turns forward, else 0.") \
   X(533, motor_1_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_1_reversed, "arm", "1 if a positive current turns joint 1 backward, else 0.") \
   X(534, motor_2_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_2_reversed, "arm", "1 if a positive current turns joint 2 backward, else 0.") \
   X(535, motor_3_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_3_reversed, "arm", "1 if a positive current turns joint 3 backward, else 0.") \
-  X(540, torque_constant_1_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_1_Nm_per_A, "arm", "Torque of motor 1 for one ampere, before the gear.") \
-  X(541, torque_constant_2_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_2_Nm_per_A, "arm", "Torque of motor 2 for one ampere, before the gear.") \
-  X(542, torque_constant_3_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_3_Nm_per_A, "arm", "Torque of motor 3 for one ampere, before the gear.") \
+  X(540, torque_constant_1_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_1_Nm_per_A, "arm", "Torque of motor 1 per ampere at the motor shaft.") \
+  X(541, torque_constant_2_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_2_Nm_per_A, "arm", "Torque of motor 2 per ampere at the motor shaft.") \
+  X(542, torque_constant_3_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_3_Nm_per_A, "arm", "Torque of motor 3 per ampere at the motor shaft.") \
   X(550, joint_1_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_minimum_rad, "arm", "Lower stop of joint 1.")        \
   X(551, joint_1_maximum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_maximum_rad, "arm", "Upper stop of joint 1.")        \
   X(552, joint_2_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_2_minimum_rad, "arm", "Lower stop of joint 2.")        \
@@ -98,7 +98,7 @@ enum class ParameterKind : std::uint8_t {
   X(560, inkwell_joint_1_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_1_rad, "arm", "Angle of joint 1 while the stylus is in the inkwell.") \
   X(561, inkwell_joint_2_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_2_rad, "arm", "Angle of joint 2 while the stylus is in the inkwell.") \
   X(562, inkwell_joint_3_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_3_rad, "arm", "Angle of joint 3 while the stylus is in the inkwell.") \
-  X(600, gimbal_1_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_1_square_rad, "gimbal", "Yaw = square r^2 + slope r + offset, r the potentiometer's voltage as a part of its supply.") \
+  X(600, gimbal_1_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_1_square_rad, "gimbal", "Square term of the yaw potentiometer: yaw = square r^2 + slope r + offset, where r is the wiper voltage divided by the supply voltage.") \
   X(601, gimbal_1_slope_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_1_slope_rad, "gimbal", "Slope of the yaw potentiometer.") \
   X(602, gimbal_1_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_1_offset_rad, "gimbal", "Offset of the yaw potentiometer.") \
   X(603, gimbal_2_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_2_square_rad, "gimbal", "Square term of the pitch potentiometer.") \

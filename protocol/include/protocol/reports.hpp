@@ -81,8 +81,8 @@ constexpr bool is_closed(std::uint8_t switches, Switch which) {
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_FORCE_SOURCES(X)                                   \
-  X(1, walls, "The force law of the board is felt: the walls of the box, unless it was built with another.") \
-  X(2, shapes, "Planes or a sphere that a program placed are felt.") \
+  X(1, walls, "The force law of the board acts: the walls of the box in the default image.") \
+  X(2, shapes, "Planes or a sphere placed by a program act on the probe.") \
   X(4, program, "A program on the PC sends forces.")
 // clang-format on
 
@@ -112,12 +112,12 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
-  X(1, force, "The force is held at force_limit_N, or on its way up to it.")               \
-  X(2, current, "A motor gives all the current that it may. All motors give way together, so the force is weaker but keeps its direction.") \
-  X(4, change, "The force changes as fast as force_change_N_per_s lets it.") \
-  X(8, energy, "The arm would give the hand more energy than it may: what of the force drives the motion gives way.") \
-  X(16, heat, "A motor that is hot gives all the current that it still may. All motors give way together, as for current.") \
-  X(32, speed, "The probe is nearly as fast as speed_limit_m_per_s: what of the force drives the motion gives way.")
+  X(1, force, "The force is limited by force_limit_N, or rises to it.")               \
+  X(2, current, "A motor is at its current limit. All motor currents are scaled down together, so the force is weaker but keeps its direction.") \
+  X(4, change, "The force changes at its largest rate, force_change_N_per_s.") \
+  X(8, energy, "The energy reserve is empty: the force component along the motion is reduced.") \
+  X(16, heat, "A hot motor is at its reduced current limit. All motor currents are scaled down together.") \
+  X(32, speed, "The probe speed is close to speed_limit_m_per_s: the force component along the motion is reduced.")
 // clang-format on
 
 /// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.

@@ -15,19 +15,19 @@ namespace inkwell::protocol {
 
 namespace self_test_text {
 inline constexpr std::string_view encoder = "The wire from the encoder drives its input.";
-inline constexpr std::string_view encoder_remedy = "Mend this wire, its plug or the Schmitt trigger before the chip.";
-inline constexpr std::string_view fault_wire = "The wire by which the bridges tell a fault reaches the chip.";
-inline constexpr std::string_view fault_wire_remedy = "Mend the wire between this pin, its pull-up and the bridges.";
-inline constexpr std::string_view wiper = "The wiper of the gimbal's potentiometer is off the ends of its track.";
+inline constexpr std::string_view encoder_remedy = "Repair this wire, its plug or the Schmitt trigger at the input.";
+inline constexpr std::string_view fault_wire = "The fault wire of the bridges reaches the chip.";
+inline constexpr std::string_view fault_wire_remedy = "Repair the wire between this pin, its pull-up and the bridges.";
+inline constexpr std::string_view wiper = "The wiper of the gimbal potentiometer is within its track.";
 inline constexpr std::string_view wiper_remedy =
-    "Check the potentiometer's three wires. The force does without it; this angle of the gimbal is wrong.";
+    "Check the three wires of the potentiometer. The force does not need it, but this gimbal angle is wrong.";
 inline constexpr std::string_view motor =
-    "Small pulses of voltage give the current that the motor's resistance asks for.";
+    "Short voltage pulses cause the current that the motor resistance predicts.";
 inline constexpr std::string_view motor_remedy =
-    "Too much: check the motor's wires and brushes and the legs of its bridge. Too little: its winding may be shorted. "
-    "Either: check its shunt and amplifier, and motor_resistance_n_ohm, which `inkwell tune current-loop` measures. "
-    "A motor that is not there takes no part with a current_limit_n_A of 0.";
-inline constexpr std::string_view bridge = "The legs of the bridge switch without more delay than their dead time.";
+    "Resistance too high: check the wires and brushes of the motor and its half bridges. Too low: the winding may be shorted. "
+    "In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, which `inkwell tune current-loop` measures. "
+    "If the motor is not installed, set its current_limit_n_A to 0.";
+inline constexpr std::string_view bridge = "The half bridges switch within their dead time.";
 inline constexpr std::string_view bridge_remedy =
     "Check the bridge's supply and its inputs for slow edges, or replace it.";
 }  // namespace self_test_text
@@ -35,11 +35,11 @@ inline constexpr std::string_view bridge_remedy =
 // clang-format off
 /// X(id, name, unit of its figure, whether a failure takes the force away, what it means if it passes, remedy)
 #define INKWELL_SELF_TEST_ITEMS(X)                                                                                     \
-  X(0, flash, "", true, "The firmware in the flash, its copies in the RAM and the parameters in use are undamaged.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
-  X(1, ram, "", true, "The RAM keeps each bit of a pattern. It is looked at when the power comes, not at a reset.", "Switch the power off and on. If it comes back, replace the chip.") \
-  X(2, watchdog, "ms", true, "The watchdog's oscillator runs, it has taken the time after which it bites, and when the power came it was left to bite and did so in time.", "Switch the power off and on. If it comes back, replace the chip.") \
-  X(3, current_offsets, "A", true, "With the bridges off the current sensors read zero, in the middle of the converters' range.", "Check the shunt amplifiers and their reference, then reset the board.") \
-  X(4, analog_supply, "V", true, "VDDA, the reference of converters, amplifiers and potentiometers, is right by the chip's own reference.", "Check VDDA's ferrite bead and capacitors, and the 3.3 V regulator.") \
+  X(0, flash, "", true, "The firmware in flash, its copies in RAM and the active parameters are undamaged.", "Reset the board. If the failure returns, flash the firmware again. If it still returns, replace the chip.") \
+  X(1, ram, "", true, "The RAM retains each bit of a pattern. The RAM is tested at power-on, not at a reset.", "Switch the power off and on. If the failure returns, replace the chip.") \
+  X(2, watchdog, "ms", true, "The watchdog oscillator runs, the watchdog has accepted its timeout, and it expired in time in the test at power-on.", "Switch the power off and on. If the failure returns, replace the chip.") \
+  X(3, current_offsets, "A", true, "With the bridges off, the current sensors read zero, which is the middle of the converter range.", "Check the shunt amplifiers and their reference, then reset the board.") \
+  X(4, analog_supply, "V", true, "The analog supply VDDA is correct relative to the chip's internal reference.", "Check the ferrite bead and capacitors of VDDA, and the 3.3 V regulator.") \
   X(5, encoder_1_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
   X(6, encoder_1_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
   X(7, encoder_2_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
@@ -54,19 +54,19 @@ inline constexpr std::string_view bridge_remedy =
   X(16, motor_1, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
   X(17, motor_2, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
   X(18, motor_3, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
-  X(19, current_wires, "A", true, "A motor's current is seen by its own sensor alone.", "Check the wires from the shunt amplifiers to the chip: two of them are swapped or touch.") \
+  X(19, current_wires, "A", true, "The current of each motor appears only at its own sensor.", "Check the wires from the shunt amplifiers to the chip: two of them are swapped or shorted together.") \
   X(20, bridge_1, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
   X(21, bridge_2, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
   X(22, bridge_3, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)
 
 /// X(id, name, meaning)
 #define INKWELL_SELF_TEST_RESULTS(X)                                                                                   \
-  X(0, not_done, "It has not been looked at, or could not be while something else fails.")                                                 \
-  X(1, passed, "It is as it should be.")                                                                               \
-  X(2, failed, "It is not as it should be.")                                                                           \
-  X(3, moved, "Not done: the arm moved too fast to tell. Hold it still and test again.")                               \
-  X(4, no_part, "Not done: a motor with a current limit of 0 takes no part.")                                          \
-  X(5, broken_off, "Not done: the bridges had no supply, or another fault came before it was over.")
+  X(0, not_done, "Not tested yet, or not testable because another item failed.")                                                 \
+  X(1, passed, "The item is correct.")                                                                               \
+  X(2, failed, "The item is not correct.")                                                                           \
+  X(3, moved, "Not tested: the arm moved too fast. Hold the arm still and test again.")                               \
+  X(4, no_part, "Not tested: a motor with a current limit of 0 is not used.")                                          \
+  X(5, broken_off, "Not tested: the bridges had no supply, or another fault interrupted the test.")
 // clang-format on
 
 /// Its value is its place in the table and in SelfTestReport::entries.
@@ -109,7 +109,7 @@ inline constexpr auto self_test_result_table = std::to_array<SelfTestResultInfo>
 });
 
 inline constexpr SelfTestResultInfo unknown_self_test_result{
-    "unknown", "The device gave a result that this companion does not know."};
+    "unknown", "The device reported a result that this companion does not know."};
 
 constexpr const SelfTestItemInfo& info(SelfTestItem item) {
   return self_test_item_table[static_cast<std::size_t>(item)];

@@ -29,59 +29,59 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
 
 // clang-format off
 #define INKWELL_SIGNALS(X)                                                                                     \
-  X(0, encoder_1_counts, "counts", float32, "Encoder 1 since the inkwell, wraps of the timer included.")       \
-  X(1, encoder_2_counts, "counts", float32, "Encoder 2 since the inkwell.")                                    \
-  X(2, encoder_3_counts, "counts", float32, "Encoder 3 since the inkwell.")                                    \
-  X(3, joint_1_rad, "rad", float32, "Joint 1, the waist.")                                                     \
-  X(4, joint_2_rad, "rad", float32, "Joint 2, the shoulder.")                                                  \
-  X(5, joint_3_rad, "rad", float32, "Joint 3, the elbow (absolute on a parallelogram arm).")                   \
+  X(0, encoder_1_counts, "counts", float32, "Count of encoder 1 relative to the inkwell, extended beyond the range of the timer.")       \
+  X(1, encoder_2_counts, "counts", float32, "Count of encoder 2 relative to the inkwell.")                                    \
+  X(2, encoder_3_counts, "counts", float32, "Count of encoder 3 relative to the inkwell.")                                    \
+  X(3, joint_1_rad, "rad", float32, "Angle of joint 1, the waist.")                                                     \
+  X(4, joint_2_rad, "rad", float32, "Angle of joint 2, the shoulder.")                                                  \
+  X(5, joint_3_rad, "rad", float32, "Angle of joint 3, the elbow (absolute on a parallelogram arm).")                   \
   X(6, position_x_m, "m", float32, "Probe, x.")                                                                \
   X(7, position_y_m, "m", float32, "Probe, y.")                                                                \
   X(8, position_z_m, "m", float32, "Probe, z.")                                                                \
-  X(9, velocity_x_m_s, "m/s", float32, "Velocity of the probe from the adaptive window, x.")                   \
-  X(10, velocity_y_m_s, "m/s", float32, "Velocity of the probe, y.")                                           \
-  X(11, velocity_z_m_s, "m/s", float32, "Velocity of the probe, z.")                                           \
-  X(12, penetration_x_m, "m", float32, "Proxy minus probe, x: points out of the wall.")                        \
+  X(9, velocity_x_m_s, "m/s", float32, "Probe velocity from the adaptive window, x.")                   \
+  X(10, velocity_y_m_s, "m/s", float32, "Probe velocity, y.")                                           \
+  X(11, velocity_z_m_s, "m/s", float32, "Probe velocity, z.")                                           \
+  X(12, penetration_x_m, "m", float32, "Proxy minus probe, x. The vector points out of the wall.")                        \
   X(13, penetration_y_m, "m", float32, "Proxy minus probe, y.")                                                \
   X(14, penetration_z_m, "m", float32, "Proxy minus probe, z.")                                                \
-  X(15, force_x_N, "N", float32, "Force on the hand that is asked of the motors, x; what limits it further is in limits.")                          \
-  X(16, force_y_N, "N", float32, "Force on the hand that is asked of the motors, y.")                          \
-  X(17, force_z_N, "N", float32, "Force on the hand that is asked of the motors, z.")                          \
-  X(18, force_N, "N", float32, "Magnitude of the force.")                                                      \
+  X(15, force_x_N, "N", float32, "Requested force on the hand, x. The signal limits shows further reductions.")                          \
+  X(16, force_y_N, "N", float32, "Requested force on the hand, y.")                          \
+  X(17, force_z_N, "N", float32, "Requested force on the hand, z.")                          \
+  X(18, force_N, "N", float32, "Magnitude of the requested force.")                                                      \
   X(19, torque_1_Nm, "Nm", float32, "Torque at joint 1 (the paper's T1z).")                                    \
   X(20, torque_2_Nm, "Nm", float32, "Torque at joint 2 (the paper's T2x).")                                    \
   X(21, torque_3_Nm, "Nm", float32, "Torque at joint 3 (the paper's T3x).")                                    \
-  X(22, current_reference_1_A, "A", float32, "Current asked of motor 1.")                                      \
-  X(23, current_reference_2_A, "A", float32, "Current asked of motor 2.")                                      \
-  X(24, current_reference_3_A, "A", float32, "Current asked of motor 3.")                                      \
+  X(22, current_reference_1_A, "A", float32, "Current reference of motor 1.")                                      \
+  X(23, current_reference_2_A, "A", float32, "Current reference of motor 2.")                                      \
+  X(24, current_reference_3_A, "A", float32, "Current reference of motor 3.")                                      \
   X(25, current_1_A, "A", current_int16, "Measured current of motor 1.")                                       \
   X(26, current_2_A, "A", current_int16, "Measured current of motor 2.")                                       \
   X(27, current_3_A, "A", current_int16, "Measured current of motor 3.")                                       \
-  X(28, duty_1, "", duty_int16, "Duty of bridge 1, -1 to 1 of the supply.")                                    \
-  X(29, duty_2, "", duty_int16, "Duty of bridge 2, -1 to 1 of the supply.")                                    \
-  X(30, duty_3, "", duty_int16, "Duty of bridge 3, -1 to 1 of the supply.")                                    \
-  X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal; the three take turns, one a period.")                                                    \
+  X(28, duty_1, "", duty_int16, "Duty cycle of bridge 1, -1 to 1.")                                    \
+  X(29, duty_2, "", duty_int16, "Duty cycle of bridge 2, -1 to 1.")                                    \
+  X(30, duty_3, "", duty_int16, "Duty cycle of bridge 3, -1 to 1.")                                    \
+  X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal. One of the three gimbal angles is measured in each control period.")                                                    \
   X(32, gimbal_2_rad, "rad", float32, "Pitch of the gimbal.")                                                  \
   X(33, gimbal_3_rad, "rad", float32, "Roll of the gimbal.")                                                   \
   X(34, joint_speed_1_rad_s, "rad/s", float32, "Speed of joint 1 from the adaptive window.")                   \
   X(35, joint_speed_2_rad_s, "rad/s", float32, "Speed of joint 2 from the adaptive window.")                   \
   X(36, joint_speed_3_rad_s, "rad/s", float32, "Speed of joint 3 from the adaptive window.")                   \
-  X(37, supply_V, "V", float32, "Supply of the bridges, filtered.")                                            \
-  X(38, servo_cycles, "cycles", float32, "Processor cycles of the control interrupt before this one, all stages.") \
+  X(37, supply_V, "V", float32, "Supply voltage of the bridges, filtered.")                                            \
+  X(38, servo_cycles, "cycles", float32, "CPU cycles of the previous control interrupt, all stages.") \
   X(39, stage_sample_cycles, "cycles", float32, "Cycles of stage 1: neutral duty, encoders, currents, gimbal.") \
   X(40, stage_pose_cycles, "cycles", float32, "Cycles of stage 2: joints, velocities, position, Jacobian.")    \
   X(41, stage_contact_cycles, "cycles", float32, "Cycles of stage 3: proxy, penetration, force.")              \
   X(42, stage_torque_cycles, "cycles", float32, "Cycles of stage 4: torques and current references.")          \
   X(43, stage_current_cycles, "cycles", float32, "Cycles of stage 5: current loops, duty, bridges.")           \
   X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.")       \
-  X(45, motor_heat_1, "", float32, "Heat of motor 1's winding over the room: 1 is what its continuous current leads to.") \
-  X(46, motor_heat_2, "", float32, "Heat of motor 2's winding.")                                               \
-  X(47, motor_heat_3, "", float32, "Heat of motor 3's winding.")                                               \
-  X(48, program_force_x_N, "N", float32, "Force of a program on the PC, as the board has interpolated it, x.") \
+  X(45, motor_heat_1, "", float32, "Winding heat of motor 1 above room temperature, relative to the heat at its continuous current.") \
+  X(46, motor_heat_2, "", float32, "Winding heat of motor 2.")                                               \
+  X(47, motor_heat_3, "", float32, "Winding heat of motor 3.")                                               \
+  X(48, program_force_x_N, "N", float32, "Force of a program on the PC, interpolated by the board, x.") \
   X(49, program_force_y_N, "N", float32, "Force of a program on the PC, y.")                                   \
   X(50, program_force_z_N, "N", float32, "Force of a program on the PC, z.")                                   \
-  X(51, force_sources, "", float32, "Whose force it is: 1 the walls, 2 shapes, 4 a program; their sum.")       \
-  X(52, limits, "", float32, "What holds the force back: 1 the force limit, 2 a motor's current; their sum.")
+  X(51, force_sources, "", float32, "Force sources, as a sum: 1 walls, 2 shapes, 4 program.")       \
+  X(52, limits, "", float32, "Active limits, as a sum: 1 force, 2 current, 4 change, 8 energy, 16 heat, 32 speed.")
 // clang-format on
 
 /// Index of a signal in the table, which is also its id on the wire. Values behind the last are rows of a force law.

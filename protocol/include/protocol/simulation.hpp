@@ -14,15 +14,15 @@ namespace inkwell::protocol {
 
 // clang-format off
 #define INKWELL_SIMULATED_QUANTITIES(X)                                                              \
-  X(true_position_x_m, "m", "Where the probe is in the simulation, x.")                              \
-  X(true_position_y_m, "m", "Where the probe is in the simulation, y.")                              \
-  X(true_position_z_m, "m", "Where the probe is in the simulation, z.")                              \
+  X(true_position_x_m, "m", "Position of the simulated probe, x.")                              \
+  X(true_position_y_m, "m", "Position of the simulated probe, y.")                              \
+  X(true_position_z_m, "m", "Position of the simulated probe, z.")                              \
   X(true_velocity_x_m_s, "m/s", "Velocity of the simulated probe, x.")                               \
   X(true_velocity_y_m_s, "m/s", "Velocity of the simulated probe, y.")                               \
   X(true_velocity_z_m_s, "m/s", "Velocity of the simulated probe, z.")                               \
-  X(true_joint_1_rad, "rad", "Joint 1 of the simulated arm, the waist.")                             \
-  X(true_joint_2_rad, "rad", "Joint 2 of the simulated arm, the shoulder.")                          \
-  X(true_joint_3_rad, "rad", "Joint 3 of the simulated arm, the elbow.")                             \
+  X(true_joint_1_rad, "rad", "Angle of joint 1 of the simulated arm, the waist.")                             \
+  X(true_joint_2_rad, "rad", "Angle of joint 2 of the simulated arm, the shoulder.")                          \
+  X(true_joint_3_rad, "rad", "Angle of joint 3 of the simulated arm, the elbow.")                             \
   X(true_joint_speed_1_rad_s, "rad/s", "Speed of joint 1 of the simulated arm.")                     \
   X(true_joint_speed_2_rad_s, "rad/s", "Speed of joint 2 of the simulated arm.")                     \
   X(true_joint_speed_3_rad_s, "rad/s", "Speed of joint 3 of the simulated arm.")                     \
@@ -35,10 +35,10 @@ namespace inkwell::protocol {
   X(hand_force_x_N, "N", "Force of the simulated hand on the probe, x.")                             \
   X(hand_force_y_N, "N", "Force of the simulated hand on the probe, y.")                             \
   X(hand_force_z_N, "N", "Force of the simulated hand on the probe, z.")                             \
-  X(hand_target_x_m, "m", "Where the simulated hand pulls to, x; the probe if it does not hold it.") \
-  X(hand_target_y_m, "m", "Where the simulated hand pulls to, y; the probe if it does not hold it.") \
-  X(hand_target_z_m, "m", "Where the simulated hand pulls to, z; the probe if it does not hold it.") \
-  X(true_supply_V, "V", "Supply of the simulated bridges.")
+  X(hand_target_x_m, "m", "Target position of the simulated hand, x. Equal to the probe position while the hand does not hold the stylus.") \
+  X(hand_target_y_m, "m", "Target position of the simulated hand, y. Equal to the probe position while the hand does not hold the stylus.") \
+  X(hand_target_z_m, "m", "Target position of the simulated hand, z. Equal to the probe position while the hand does not hold the stylus.") \
+  X(true_supply_V, "V", "Supply voltage of the simulated bridges.")
 // clang-format on
 
 /// Its value is its place in the table.

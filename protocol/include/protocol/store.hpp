@@ -17,20 +17,20 @@ namespace inkwell::protocol {
 // clang-format off
 /// X(id, name, meaning, remedy)
 #define INKWELL_STORE_RESULTS(X)                                                                                       \
-  X(0, none, "Nothing has been stored or forgotten since the board started.", "Nothing to do.")                        \
-  X(1, done, "It is in the flash, and outlives the power.", "Nothing to do.")                                          \
-  X(2, under_way, "It is being written. That waits while the force is on.", "Ask again in some milliseconds; if the force is on, switch it off.") \
-  X(3, force_is_on, "Refused: the force is on, or may come at once.", "Switch the force off, wait for the end of a test, then try again.") \
-  X(4, no_room, "Refused: the flash has no room before the board's next start, which makes some.", "Switch the board off and on, or reset it; then set the values again and store them.") \
-  X(5, flash_failed, "The flash did not take a word. What was stored before still holds.", "Reset the board and try again. If it comes back, replace the chip: its flash is worn.") \
-  X(6, nothing_stored, "Nothing was stored, so nothing had to be forgotten; every parameter has its default.", "Nothing to do.")
+  X(0, none, "No parameters have been stored or erased since the board started.", "Nothing to do.")                        \
+  X(1, done, "The parameters are in flash and survive a power loss.", "Nothing to do.")                                          \
+  X(2, under_way, "The parameters are being written. Writing waits while the force is on.", "Ask again after some milliseconds. If the force is on, switch it off.") \
+  X(3, force_is_on, "Refused: the force is on, or a waiting command switches it on.", "Switch the force off, wait until a running test has ended, then try again.") \
+  X(4, no_room, "Refused: the flash sector is full. The next start of the board frees space.", "Switch the board off and on, or reset it. Then set the values again and store them.") \
+  X(5, flash_failed, "A flash word could not be written. The previously stored parameters are still valid.", "Reset the board and try again. If the error returns, replace the chip: its flash is worn.") \
+  X(6, nothing_stored, "No parameters were stored, so nothing was erased. Every parameter has its default.", "Nothing to do.")
 
 /// X(id, name, meaning)
 #define INKWELL_STORE_CONTENTS(X)                                                                                      \
-  X(0, nothing, "Nothing has been stored yet, or what was cannot be read: a start gives every parameter its default.")  \
-  X(1, parameters, "A set of parameters, which a start takes.")                                                        \
-  X(2, factory_reset, "A factory reset forgot what was stored before: a start gives every parameter its default.")     \
-  X(3, other_schema, "What a firmware has stored whose records this one cannot read: a start gives every parameter its default.")
+  X(0, nothing, "No parameters are stored, or they cannot be read. The next start sets every parameter to its default.")  \
+  X(1, parameters, "Stored parameters, which the next start loads.")                                                        \
+  X(2, factory_reset, "A factory reset erased the stored parameters. The next start sets every parameter to its default.")     \
+  X(3, other_schema, "The records were written by a firmware with another schema and cannot be read. The next start sets every parameter to its default.")
 // clang-format on
 
 /// What became of the last command to store or to forget.
@@ -71,10 +71,10 @@ inline constexpr auto store_contents_table = std::to_array<StoreContentsInfo>({
 });
 
 inline constexpr StoreResultInfo unknown_store_result{"unknown",
-                                                      "The device gave a result that this companion does not know.",
-                                                      "Use the companion that belongs to this firmware."};
+                                                      "The device reported a result that this companion does not know.",
+                                                      "Use the companion of the firmware's version."};
 inline constexpr StoreContentsInfo unknown_store_contents{
-    "unknown", "The device has stored something that this companion does not know."};
+    "unknown", "The device reported stored contents that this companion does not know."};
 
 constexpr const StoreResultInfo& info(StoreResult result) {
   const auto index = static_cast<std::size_t>(result);

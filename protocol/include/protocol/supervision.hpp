@@ -16,16 +16,16 @@ namespace inkwell::protocol {
 // clang-format off
 /// X(id, name, whether the hand feels a force, meaning)
 #define INKWELL_STATES(X)                                                                                          \
-  X(0, starting, false, "The board measures its current sensors. This takes a tenth of a second.")                 \
-  X(1, unreferenced, false, "Put the stylus into the inkwell once, so that the board knows where the arm is. Take it out before if it is in.") \
+  X(0, starting, false, "The board measures the offsets of its current sensors. This takes 0.1 s.")                 \
+  X(1, unreferenced, false, "The arm position is not known. Put the stylus into the inkwell once. If the stylus is in the inkwell, take it out first.") \
   X(2, ready, false, "The pose is valid. The force is off.")                                                       \
   X(3, active, true, "The pose is valid. The force is on.")                                                        \
   X(4, fault, false, "The motors are off because of the fault shown.")                                             \
-  X(5, ramping, true, "The pose is valid. The force is on and rises to its full strength.")                        \
-  X(6, limited, true, "The pose is valid. The force is on, and a limit holds it back.")                            \
-  X(7, update, false, "The motors are off: the board is about to start its boot loader.")                          \
-  X(8, landing, true, "The pose is valid. The force falls softly to nothing.") \
-  X(9, testing, false, "The board tests itself, with small pulses on the motors. Hold the arm still.")
+  X(5, ramping, true, "The pose is valid. The force is on and rises to its full value.")                        \
+  X(6, limited, true, "The pose is valid. The force is on, and a limit reduces it.")                            \
+  X(7, update, false, "The motors are off. The board is about to start its boot loader.")                          \
+  X(8, landing, true, "The pose is valid. The force falls to zero.") \
+  X(9, testing, false, "The self-test runs, with short pulses on the motors. Hold the arm still.")
 // clang-format on
 
 /// What the device is doing.

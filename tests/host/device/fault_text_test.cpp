@@ -50,7 +50,7 @@ TEST_CASE("a self-test that failed names its items and their remedies, each once
   set(SelfTestItem::encoder_2_a, SelfTestResult::moved);
   set(SelfTestItem::gimbal_1, SelfTestResult::failed);  // which takes no force
   const auto text = device::fault_text(Fault::self_test_failed, test);
-  CHECK(text.cause == "The self-test has found something without which there is no force: motor_1, motor_3.");
+  CHECK(text.cause == "The self-test failed for items that the force needs: motor_1, motor_3.");
   CHECK(text.remedy == std::string(info(SelfTestItem::motor_1).remedy) + " Then clear the fault, which tests again.");
   CHECK(device::fault_line(Fault::self_test_failed, test) == "self_test_failed: " + text.cause + " " + text.remedy);
   CHECK(device::fault_text(Fault::over_speed, test).cause == device::fault_text(Fault::over_speed).cause);
