@@ -6,7 +6,8 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 
-import generate_completion  # noqa: E402: they lie in tools/
+import generate_command_page  # noqa: E402: in tools/
+import generate_completion  # noqa: E402
 import generate_manual  # noqa: E402
 import help_text  # noqa: E402
 
@@ -64,6 +65,15 @@ class Help(unittest.TestCase):
         self.assertIn(".SH EXAMPLES\n.EX\n  probe record a.h5\n.EE\n.SH NOTES\nIt ends with 1", page)
         self.assertIn("Where to; \\fB\\-\\fR is the terminal", page)
         self.assertNotIn("help", page)
+
+    def test_section_of_the_command_page(self):
+        page = "\n".join(generate_command_page.section(self.command))
+        self.assertTrue(page.startswith("### probe record\n\nRecords. Until it is told to end."))
+        self.assertIn("\n    probe record [OPTIONS] FILE\n", page)
+        self.assertIn("| `--mode {slow,fast} (slow)` | How; .never mind |\n", page)
+        self.assertIn("| `FILE` | Where to; `-` is the terminal |\n", page)
+        self.assertIn("Examples:\n\n      probe record a.h5\n", page)
+        self.assertNotIn("Print this help", page)
 
     def test_completion(self):
         root = help_text.Command(["probe"], "", "", {}, "", [self.command])

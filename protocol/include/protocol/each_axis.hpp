@@ -29,9 +29,9 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// Whether the row, if it is a 1, 3, x or z, has its neighbour 2 or y, alike() in all that must agree.
+/// Whether the row, if it is a 1, 3, x or z, has its neighbor 2 or y, alike() in all that must agree.
 template <class Table>
-constexpr bool neighbours_are_alike(const Table& table, std::size_t index) {
+constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   const auto& row = table[index];
   const std::size_t place = axis_place(row.name);
   if (place == std::string_view::npos || row.name[place] == '2' || row.name[place] == 'y') return true;

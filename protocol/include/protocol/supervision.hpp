@@ -93,18 +93,18 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
 #define INKWELL_EVENTS(X)                                                             \
   X(1, measured, "the offsets of the current sensors are known")                      \
   X(2, referenced, "the stylus has rested in the inkwell")                            \
-  X(4, enable, "the command enable_force came")                                       \
-  X(8, disable, "the command disable_force came")                                     \
-  X(16, clear, "the command clear_fault came")                                        \
-  X(32, cause, "the fault's cause is still there")                                    \
-  X(64, risen, "the force has risen to its full strength")                            \
-  X(128, held_back, "a limit holds the force back")                                   \
-  X(256, update, "the host has asked for the boot loader, and not reset the bus since") \
-  X(512, stop, "the command stop came, or USB went away")                          \
-  X(1024, landed, "the force has fallen to nothing") \
-  X(2048, tested, "the self-test has come to its end, and nothing that takes the force away has failed") \
-  X(4096, self_test, "the command self_test came") \
-  X(8192, told, "a fault was told before, and nobody has cleared it")
+  X(4, enable, "the command enable_force was received")                                       \
+  X(8, disable, "the command disable_force was received")                                     \
+  X(16, clear, "the command clear_fault was received")                                        \
+  X(32, cause, "the cause of the fault is still present")                                    \
+  X(64, risen, "the force has risen to its full value")                            \
+  X(128, held_back, "a limit reduces the force")                                   \
+  X(256, update, "the host has requested the boot loader and has not reset the bus since") \
+  X(512, stop, "the command stop was received, or the USB connection was lost")                          \
+  X(1024, landed, "the force has fallen to zero") \
+  X(2048, tested, "the self-test has ended, and no item failed that the force needs") \
+  X(4096, self_test, "the command self_test was received") \
+  X(8192, told, "a fault was raised before and has not been cleared")
 // clang-format on
 
 /// What the supervisor decides by.
