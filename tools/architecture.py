@@ -39,7 +39,7 @@ def read_table(document: str) -> dict[str, Row]:
     rows = re.findall(r"^\| `([^`]+)/` \| ([^|]*) \| ([^|]*) \| ([^|]*) \|$", document, re.MULTILINE)
     folders = [folder for folder, *_ in rows]
     if not folders:
-        raise Unreadable("docs/architecture.md has no table with the columns folder, what lives there, may use, libraries")
+        raise Unreadable("docs/architecture.md has no table with the columns folder, contents, may use, libraries")
 
     def named(cell: str) -> set[str]:
         return {name.strip() for name in cell.split(",")} - {"", "-"}
@@ -58,7 +58,7 @@ def read_table(document: str) -> dict[str, Row]:
 
 def read_paths(document: str) -> list[list[str]]:
     """The folders of each path of the data: in the first code block, one path a paragraph, one folder a line."""
-    block = document.split("## The path of the data")[1].split("\n## ")[0]
+    block = document.split("## Data path")[1].split("\n## ")[0]
     return [re.findall(r"  ((?:firmware|host)/\w+)(?:, [^\n]*)?$", paragraph, re.MULTILINE)
             for paragraph in block.strip("\n").split("\n\n") if paragraph.startswith("    ")]
 
