@@ -30,7 +30,7 @@ class Architecture(unittest.TestCase):
         self.assertLessEqual({folder for path in paths for folder in path}, architecture.read_table(document).keys())
 
     def test_readme_lists_the_top_folders_of_the_table(self):
-        section = (REPOSITORY / "README.md").read_text().split("## How the house is laid out")[1].split("\n## ")[0]
+        section = (REPOSITORY / "README.md").read_text().split("## Folders")[1].split("\n## ")[0]
         table = architecture.read_table((REPOSITORY / "docs/architecture.md").read_text())
         self.assertEqual(list(dict.fromkeys(folder.split("/")[0] for folder in table)),
                          re.findall(r"^    (\w+)/ ", section, re.MULTILINE))
