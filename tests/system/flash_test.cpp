@@ -138,10 +138,10 @@ TEST_CASE("an image that does not belong on the board is refused, and the old fi
   const TemporaryDirectory directory;
   const FreeBoard board;
   board.wait_until(&FreeBoard::runs);
-  auto identity = protocol::image_identity("omni_driver", 0, 1, 0);
+  auto identity = protocol::image_identity("omni_driver", 99, 0, 0);
   SUBCASE("another board's, which the board does not even leave its firmware for") {
     const auto result =
-        board.flash({write_elf(directory, made_segments(protocol::image_identity("other_board", 0, 1, 0)))});
+        board.flash({write_elf(directory, made_segments(protocol::image_identity("other_board", 99, 0, 0)))});
     CHECK(result.exit_code == 1);
     CHECK(says(result, "is for the board other_board, and this one is omni_driver"));
     CHECK(says(result, "--yes"));
@@ -168,7 +168,7 @@ TEST_CASE("a word of yes writes it all the same") {
   const TemporaryDirectory directory;
   const FreeBoard board({"--boot0"});
   board.wait_until(&FreeBoard::is_in_boot_loader);
-  auto identity = protocol::image_identity("omni_driver", 0, 1, 0);
+  auto identity = protocol::image_identity("omni_driver", 99, 0, 0);
   --identity.protocol_version;
   // What it makes of the chip is no firmware: made up here, it only has to get there.
   const auto result = board.flash({write_elf(directory, made_segments(identity)), "--yes"});

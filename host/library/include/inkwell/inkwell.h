@@ -59,7 +59,7 @@ typedef enum inkwell_result INKWELL_AS_INT {
  *   - a board that has restarted has its stored parameters.
  * A virtual board that inkwell_open() has started does not come back once it has ended. */
 
-/* "0.3.0": of the library. */
+/* Version of the library, for example "0.2.0". */
 INKWELL_API const char* inkwell_version(void);
 
 /* What went wrong last in the calling thread, with what to do: a sentence, empty after none. Valid until the thread's
