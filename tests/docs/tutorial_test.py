@@ -70,7 +70,7 @@ class Tutorial(unittest.TestCase):
         return board
 
     def test_the_experiment_finds_what_the_page_says(self):
-        text = part("Measure it")
+        text = part("Measure the wall")
         [command] = typed_lines(text)
         found = [" ".join(line.split()) for line in self.type(command).splitlines()]
         promised = [" ".join(line.split()) for line in re.findall(r"^    (?!build)(.+)$", text, re.MULTILINE)]
@@ -87,7 +87,7 @@ class Tutorial(unittest.TestCase):
 
     def test_the_board_keeps_what_is_stored(self):
         port = free_port()
-        text = part("Keep what you changed")
+        text = part("Store the parameters")
         board_line, *commands = typed_lines(text)
         board = self.start_board(board_line, port)
         for line in commands:
