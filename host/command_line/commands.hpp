@@ -1,6 +1,13 @@
 // The commands of the `inkwell` program. Each adds itself to the program's options and, if it was chosen, runs.
 #pragma once
 
+// To add a command:
+// 1. Add a line to INKWELL_COMMANDS.
+// 2. Define add_NAME_command() in NAME_command.cpp in this folder. Its help needs examples with units.
+// 3. Add the command and its subcommands to the list in tests/system/bad_input_test.cpp.
+//
+// Manual pages, completion and the page of commands are generated from the help texts.
+
 #include <functional>
 
 #include <window/window_options.hpp>
@@ -22,8 +29,7 @@ struct Place {
   OpenWindow open_window;
 };
 
-/// In the order of the program's help. A new command is a line here, and a file NAME_command.cpp that defines
-/// add_NAME_command.
+/// In the order of the program's help.
 #define INKWELL_COMMANDS(X) \
   X(info)                   \
   X(devices)                \

@@ -2,6 +2,13 @@
 // function that takes any bytes; it may throw what the parser documents, and nothing else may happen.
 #pragma once
 
+// To add a target:
+// 1. Write a function that accepts any bytes and catches only the documented error of the parser. Register it with
+//    `Registered` in a file of this folder.
+// 2. Add a row to docs/fuzzing.md.
+// 3. Store each input that broke the parser in seeds/TARGET, as raw bytes or as hexadecimal digits with the suffix
+//    .hex.
+
 #include <cstddef>
 #include <span>
 #include <string>

@@ -1,6 +1,14 @@
 // The chip as a parts list.
 #pragma once
 
+// To add a peripheral:
+// 1. Write a header like crc.hpp. It contains a map with the register and field names of RM0090, and a
+//    RegisterBlock.
+// 2. Add a line with base address, name and clock to ChipParts::put_peripherals().
+// 3. Add a firmware that uses the peripheral to tests/boards/virtual/chip/firmware and a case to
+//    peripherals_test.cpp.
+// 4. Compare the map with the manufacturer's description of the chip: INKWELL_SVD=FILE tools/test
+
 #include <deque>
 #include <memory>
 #include <string>

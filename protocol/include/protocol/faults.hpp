@@ -1,6 +1,20 @@
 // Faults and refusals: every code with its cause and its remedy, in the words a user sees.
 #pragma once
 
+// To add a fault:
+// 1. Append a row with the next code to INKWELL_FAULTS. For a new figure in braces, extend with_figures() in
+//    host/device/fault_text.cpp.
+// 2. Add the condition to one of these files:
+//    - firmware/control/controller.cpp, if the fault must be raised in the same control period;
+//    - firmware/application/background_watch.cpp, if a delay of about 0.15 ms is acceptable;
+//    - firmware/application/control_interrupt.cpp, for a late interrupt, a stalled main loop or a lost USB
+//      connection.
+// 3. Add a row to watch_table in protocol/supervision.hpp and a separate row to
+//    tests/firmware/control/supervisor_test.cpp. The row of watch_table sets the monitored states, the clearing,
+//    the motor switch-off and the loss of the reference.
+// 4. Add an enumerator to host/library/include/inkwell/inkwell.h and a line to host/library/c_codes.cpp. The
+//    library does not compile without this line.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

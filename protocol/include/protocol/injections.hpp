@@ -5,6 +5,18 @@
 // slip, a flipped bit of RAM) stays.
 #pragma once
 
+// To add an injected fault:
+// 1. Add a row after the other rows of its part.
+// 2. Implement the fault in boards/virtual/injection/injector.cpp, with a class of the plant or a function of the
+//    chip.
+// 3. Add a row to docs/virtual-board.md, in the order of this table.
+// 4. In host/campaign/reasons.cpp, state why the fault may stay undetected. The compiler reports a missing case.
+// 5. For a new kind of place, add a value to InjectionPlace, its parser to boards/virtual/injection/injection.cpp
+//    and its names to protocol/injection_request.hpp.
+//
+// A new row changes the numbers of the campaign cases after it. Help, control socket, command line, window and
+// campaign use this table.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

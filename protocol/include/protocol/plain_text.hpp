@@ -2,6 +2,9 @@
 // change its settings, or join lines of a script.
 #pragma once
 
+// Call plain_text() where a text from a file, a device or another program is read. device::Error already filters
+// its text.
+
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -4,6 +4,10 @@
 // columns of recordings, beside those of the signals.
 #pragma once
 
+// To add a quantity, add a row here and a case to value_of() in boards/virtual/plant/truth.cpp. The compiler
+// reports a missing case. A new value also needs a member of Truth (plant/truth.hpp). Recordings, plots and the
+// control socket use this table.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -5,6 +5,16 @@
 // manual) and of the STM32F405 data sheet (tables of alternate functions).
 #pragma once
 
+// To add a board:
+// 1. Copy boards/bench_modules to boards/NAME. Change the facts in include/NAME/facts.hpp and the wiring in
+//    README.md. board/checks.hpp refuses facts that cannot work.
+// 2. Add the expected scales to tests/boards/NAME. Tests compare the facts with the wiring table of README.md.
+// 3. Add the images to tests/installation/kinds.py and the folder to docs/architecture.md.
+//
+// The build then makes inkwell-NAME.elf, `virtual-board --board NAME` simulates the board, and
+// tests/system/boards_test.cpp tests it. Another chip, or another assignment of peripherals, needs changes of the
+// drivers.
+
 #include <array>
 #include <cstdint>
 #include <string_view>

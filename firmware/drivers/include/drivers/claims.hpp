@@ -8,6 +8,13 @@
 // them, and the application's PartsList does not compile with two drivers that claim the same.
 #pragma once
 
+// To add a driver:
+// 1. Write a class in firmware/drivers and list its peripherals, pins, DMA streams and interrupts in `claims`. Add
+//    the source to firmware/drivers/CMakeLists.txt.
+// 2. Access registers with RegistersOf<Driver, registers::TIM3>.
+// 3. Add the driver to Parts in firmware/application/parts.hpp.
+// 4. For a new peripheral, follow registers/peripherals.hpp.
+
 #include <array>
 #include <cstdint>
 #include <type_traits>

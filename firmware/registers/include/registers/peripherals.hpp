@@ -2,6 +2,8 @@
 // base (RM0090, "Memory map"; for the core the ARMv7-M Architecture Reference Manual).
 #pragma once
 
+// To add a peripheral, write its register map in a header in this folder and add a row to one of the tables below.
+
 #include <registers/analog_converter.hpp>
 #include <registers/checksum.hpp>
 #include <registers/clock.hpp>

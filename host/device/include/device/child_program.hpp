@@ -2,6 +2,9 @@
 // arguments.
 #pragma once
 
+// Start every child program with run_child_program(). If the program reads a script, run it in a folder from
+// make_private_folder(). Quote texts for gnuplot with recording::gnuplot_text().
+
 #include <filesystem>
 #include <functional>
 #include <string>

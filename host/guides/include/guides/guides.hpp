@@ -1,6 +1,16 @@
 // The guides that there are, and what may be chosen before they start.
 #pragma once
 
+// To add a guide:
+// 1. Add a line to INKWELL_GUIDES.
+// 2. Write host/guides/NAME_guide.cpp: the plan of the steps and an `Offer` named NAME_guide. Access the device
+//    only through DevicePort.
+// 3. Add options of the guide to Choices and to the command of its group in host/command_line.
+// 4. Add a test with a simulated arm to tests/host/guides. Add a new subcommand to the list in
+//    tests/system/bad_input_test.cpp.
+//
+// The window and the command line use this list.
+
 #include <array>
 #include <optional>
 #include <span>
@@ -51,8 +61,7 @@ struct Offer {
   Guide start(const Choices& choices = {}) const;
 };
 
-/// In the order in which a new arm needs them. A new guide is a line here, and a file beside the others that defines
-/// its `NAME_guide`.
+/// In the order in which a new arm needs them.
 #define INKWELL_GUIDES(X) \
   X(connection)           \
   X(directions)           \

@@ -4,6 +4,14 @@
 // which of them it was.
 #pragma once
 
+// To add a rule:
+// 1. Add a row to INKWELL_CHIP_RULES.
+// 2. Call violate(Rule::NAME) at the violation and emulate the effect on silicon there.
+// 3. In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp. The firmware must
+//    break only this rule.
+//
+// `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use this option.
+
 #include <array>
 #include <chip/interfaces.hpp>
 #include <cstddef>

@@ -1,6 +1,17 @@
 // A pane of the right column: what it is given, and what it can do.
 #pragma once
 
+// To add a pane:
+// 1. Write host/window/panes/NAME_pane.cpp with a class derived from Pane and the function NAME_pane() that creates
+//    it. title() is the text of the tab.
+// 2. Add the line PANE(NAME_pane) to host/window/panes/registry.cpp.
+// 3. Return the displayed signals from shown_signals(). follow() receives their samples together with other
+//    signals: find the column in ScopeSamples::signals. Override stream() only if the pane needs the stream
+//    exclusively.
+// 4. Put code that needs no display into the library inkwell_window_panes_parts, with tests in
+//    tests/host/window/panes.
+// 5. Add a system test to tests/system and a picture to tests/system/pictures.cpp.
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>

@@ -1,6 +1,14 @@
 // What the scope's plots show, and the layouts that come with the window.
 #pragma once
 
+// To add a layout, add a row to built_in_layouts() in host/window/scope/scope_layout.cpp.
+//
+// To add a kind of plot:
+// 1. Add a value to PlotKind and update plot_kind_count.
+// 2. Write a PlotView in a file like host/window/scope/time_view.cpp. Add the file to CMakeLists.txt and the view
+//    to plot_view.hpp and to view_of() in plot_view.cpp.
+// 3. Add the names to host/window/scope/plot_menu.cpp and host/window/window_settings.cpp.
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
