@@ -267,8 +267,8 @@ TEST_CASE("a table in which the rows for three axes differ, or one lacks, is ref
   const auto refused = [](auto change) {
     auto& table = fresh_table();
     change(table[static_cast<std::size_t>(Parameter::current_limit_2_A)]);
-    const bool first = detail::neighbours_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_1_A));
-    const bool third = detail::neighbours_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_3_A));
+    const bool first = detail::neighbors_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_1_A));
+    const bool third = detail::neighbors_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_3_A));
     CHECK(first == third);
     return !first;
   };
@@ -283,9 +283,9 @@ TEST_CASE("a table in which the rows for three axes differ, or one lacks, is ref
 
   static auto signals = signal_table;
   signals[static_cast<std::size_t>(Signal::duty_3)].wire = SignalWire::float32;
-  CHECK_FALSE(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::duty_3)));
-  CHECK(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::duty_1)));
-  CHECK(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::supply_V)));
+  CHECK_FALSE(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::duty_3)));
+  CHECK(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::duty_1)));
+  CHECK(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::supply_V)));
 }
 
 TEST_CASE("the numbers of the protocol, which both ends of another version count on") {

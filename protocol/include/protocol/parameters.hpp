@@ -282,7 +282,7 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
                 #name ": its group stands further up; put it there, with an id of that group");                     \
   static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
                 #name ": it takes another row's default");                                                          \
-  static_assert(detail::neighbours_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),           \
+  static_assert(detail::neighbors_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),           \
                 #name ": rows 1 to 3, or x to z, must all be there and agree in kind, unit, range and group");
 INKWELL_PARAMETERS(X)
 #undef X

@@ -158,7 +158,7 @@ constexpr bool id_is_place(std::size_t id, std::string_view name) {
 #define X(id, name, unit, wire, help)                                                                            \
   static_assert(detail::id_is_place(id, #name),                                                                  \
                 #name ": its id is not its place in the table; a new signal is the last row, with the next id"); \
-  static_assert(detail::neighbours_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),              \
+  static_assert(detail::neighbors_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),              \
                 #name ": rows 1 to 3, or x to z, must all be there and agree in unit and wire");
 INKWELL_SIGNALS(X)
 #undef X
