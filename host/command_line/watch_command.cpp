@@ -104,9 +104,12 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
     const std::int64_t passed = pose.time_periods - *first_period;
     if (watch_options.seconds > 0 && device::board_time_s(passed) >= watch_options.seconds) return 0;
     if (!clock_read_at || pose.time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
-      clock.note(connection.device->frame());
-      clock_read_at = pose.time_periods;
+      if (const auto frame = connection.device->frame()) {
+        clock.note(*frame);
+        clock_read_at = pose.time_periods;
+      }
     }
+    if (!clock_read_at) continue;
     if (passed < next_shown) continue;
     next_shown += periods_shown;
     if (options.json)

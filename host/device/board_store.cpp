@@ -17,13 +17,19 @@ constexpr std::string_view was_not_forgotten = "What is stored was not forgotten
 
 bool is_carried_out(StoreResult result) { return result == StoreResult::done || result == StoreResult::nothing_stored; }
 
+std::int64_t board_periods(Device& device) {
+  const auto frame = device.frame();
+  if (!frame) throw Error("The board counts no bus frames, so its time is not known. Connect it again.");
+  return frame->time_periods;
+}
+
 /// The count tells the result of this command from that of the one before.
 StoreReport carry_out(Device& device, Command command, std::string_view failure) {
   const std::uint32_t commands_before = device.store_report().commands;
   device.carry_out(command);
-  const std::int64_t begin_periods = device.frame().time_periods;
+  const std::int64_t begin_periods = board_periods(device);
   for (;;) {
-    const bool is_late = device.frame().time_periods - begin_periods > patience_periods;
+    const bool is_late = board_periods(device) - begin_periods > patience_periods;
     const StoreReport report = device.store_report();
     const bool is_taken = report.commands != commands_before;
     if (is_taken && is_carried_out(report.result)) return report;

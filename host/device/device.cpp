@@ -166,9 +166,12 @@ struct Device::Implementation {
   }
 
   ForceLaw read_force_law() {
-    std::vector<std::byte> report(protocol::force_law_report_maximum);
+    protocol::ForceLawReport header{};
+    get(header, "force law");
+    // The device pads what it sends to the length that is asked for, so no more than it uses is asked for.
+    std::vector<std::byte> report(std::clamp<std::size_t>(header.size, 1, protocol::force_law_report_maximum));
     report[0] = static_cast<std::byte>(ReportId::force_law);
-    report.resize(transport()->get_feature(report));
+    report.resize(std::min(report.size(), transport()->get_feature(report)));
     return parse_force_law(report);
   }
 
@@ -182,12 +185,15 @@ struct Device::Implementation {
   protocol::BlackBoxRowsReport rows_from(std::size_t first_row) {
     constexpr int tries = 100;
     const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
+    auto result = protocol::RequestResult::accepted;
     for (int i = 0; i < tries; ++i) {
       transport()->set_feature(std::as_bytes(std::span(&request, 1)));
       protocol::BlackBoxRowsReport report{};
       get(report, "black box");
-      if (report.first_row == request.first_row) return report;
+      result = static_cast<protocol::RequestResult>(report.result);
+      if (result == protocol::RequestResult::accepted && report.first_row == request.first_row) return report;
     }
+    if (result != protocol::RequestResult::accepted) throw refused("a request for rows of the black box", result);
     throw InUse("Another program reads the black box all the time. Close it and try again.");
   }
 
@@ -345,24 +351,59 @@ struct Device::Implementation {
     return report;
   }
 
-  /// Sends the command and asks for its result until it is there.
-  void carry_out(protocol::CommandReport& command) {
-    send(command, [&] {
-      ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1;
-      command.ticket = ticket;
-    });
+  /// The output_mutex is held.
+  std::uint32_t next_ticket() { return ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1; }
+
+  /// None if the board has not received the request yet, or if results of newer requests have replaced this one.
+  static std::optional<protocol::RequestResult> result_in(const protocol::RequestResultsReport& report,
+                                                          std::uint32_t of_ticket) {
+    const auto* entry = std::ranges::find(report.entries, of_ticket, &protocol::RequestResultEntry::ticket);
+    return entry == std::end(report.entries) ? std::nullopt : std::optional(entry->result);
+  }
+
+  static Error refused(const char* what, protocol::RequestResult result) {
+    const auto& row = info(result);
+    return Error(fmt::format("The board refused {}. {} {}", what, row.meaning, row.remedy));
+  }
+
+  /// Sends the command and reads the results until its own is final.
+  protocol::RequestResult result_of(protocol::CommandReport& command) {
+    send(command, [&] { command.ticket = next_ticket(); });
     std::optional<std::uint32_t> begin_periods;
     for (;;) {
       const auto report = request_results();
       if (!begin_periods) begin_periods = report.time_periods;
-      const auto* entry = std::ranges::find(report.entries, command.ticket, &protocol::RequestResultEntry::ticket);
-      if (entry != std::end(report.entries)) {
-        if (entry->result == protocol::RequestResult::carried_out) return;
-        if (entry->result == protocol::RequestResult::not_the_driver) throw driven_by_another();
-      }
+      const auto result = result_in(report, command.ticket);
+      if (result && *result != protocol::RequestResult::waiting) return *result;
       if (report.time_periods - *begin_periods > command_patience_periods)
         throw Error("The board has not carried out a command. Reset it and try again.");
     }
+  }
+
+  /// Sends the command again as long as the board is busy.
+  void carry_out(protocol::CommandReport& command) {
+    using enum protocol::RequestResult;
+    auto limit = busy_limit();
+    for (;;) {
+      const auto result = result_of(command);
+      if (result == carried_out) return;
+      if (result == not_the_driver) throw driven_by_another();
+      if (result != busy || limit.is_over(newest_period.load())) throw refused("a command", result);
+    }
+  }
+
+  protocol::RequestResult result_of(protocol::ShapesReport& shapes) {
+    {
+      const std::lock_guard lock(output_mutex);
+      shapes.ticket = next_ticket();
+    }
+    {
+      const std::lock_guard lock(feature_mutex);
+      transport()->set_feature(
+          std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
+    }
+    // The board has the shapes: where the result is not there any more, they are sent again.
+    return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
   }
 
   protocol::TransactionReport transaction_report() {
@@ -377,10 +418,10 @@ struct Device::Implementation {
     const std::lock_guard lock(feature_mutex);
     protocol::ParametersReport report{};
     report.report_id = id;
-    const std::size_t length = transport()->get_feature(writable_bytes(report));
     const std::size_t count = protocol::parameter_count + (force_law ? force_law->parameters.size() : 0);
-    const bool is_whole = length >= protocol::parameters_report_size(count) &&
-                          report.version == protocol::protocol_version && report.count == count;
+    const std::size_t size = protocol::parameters_report_size(count);
+    const std::size_t length = transport()->get_feature(writable_bytes(report).first(size));
+    const bool is_whole = length >= size && report.version == protocol::protocol_version && report.count == count;
     if (!is_whole)
       throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
     protocol::ParameterSet set = protocol::default_parameters();
@@ -408,12 +449,7 @@ struct Device::Implementation {
     auto limit = busy_limit();
     for (;;) {
       report.ticket = ++transaction_ticket;
-      std::optional<Stalled> stalled;
-      try {
-        transport()->set_feature(bytes);
-      } catch (const Stalled& error) {
-        stalled = error;  // a device may refuse by a stall; the report below says why
-      }
+      transport()->set_feature(bytes);
       const auto result = transaction_report();
       if (result.ticket != report.ticket) {
         // Another program's transaction came between. Whether this one was accepted is not known, so it is sent again.
@@ -424,10 +460,8 @@ struct Device::Implementation {
         lock.unlock();
         throw driven_by_another();
       }
-      if (result.refusal == protocol::Refusal::accepted) {
-        if (stalled) throw *stalled;
+      if (result.refusal == protocol::Refusal::accepted)
         return {result.transactions, time_periods.nearest(result.applied_at_periods)};
-      }
       if (result.refusal != protocol::Refusal::busy || limit.is_over(now_periods())) throw Refused(result);
     }
   }
@@ -456,10 +490,9 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     "arm or recording, or use a program of its own for each of them.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
-  try {
-    device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(device->frame().time_periods));
-  } catch (const Stalled&) {  // a bus without frames: nobody has read anything since the board started
-  }
+  // Without a frame no program has read anything since the board started.
+  if (const auto frame = device->frame())
+    device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(frame->time_periods));
   return device;
 }
 
@@ -562,13 +595,14 @@ void Device::take_link_of(Device& opened) {
   before = std::exchange(self.link, std::move(other.link));
 }
 
-BusFrame Device::frame() {
+std::optional<BusFrame> Device::frame() {
   const std::lock_guard lock(implementation_->feature_mutex);
   protocol::FrameReport report{};
   report.report_id = ReportId::frame;
   implementation_->get(report, "frame");
-  return {implementation_->sequence.note(report.sequence), implementation_->time_periods.note(report.time_periods),
-          report.time_cycles};
+  if (report.is_known == 0) return std::nullopt;
+  return BusFrame{implementation_->sequence.note(report.sequence),
+                  implementation_->time_periods.note(report.time_periods), report.time_cycles};
 }
 
 void Device::continue_time(std::int64_t before_periods) { implementation_->time_periods.continue_from(before_periods); }
@@ -659,24 +693,19 @@ void Device::send_force(const ForceRequest& request) {
 }
 
 void Device::place_shapes(const Shapes& shapes) {
+  using enum protocol::RequestResult;
+  auto& self = *implementation_;
   protocol::ShapesReport report = shapes_report(shapes);
-  report.claim = implementation_->claim();
-  const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
-  std::unique_lock lock(implementation_->feature_mutex);
+  report.claim = self.claim();
   auto limit = busy_limit();
   for (;;) {
-    try {
-      return implementation_->transport()->set_feature(bytes);
-    } catch (const Stalled&) {  // the interrupt has not taken the shapes before, or another program drives
-      lock.unlock();
-      const auto driver = implementation_->driver_report();
-      if (!implementation_->is_own(driver)) {
-        implementation_->lose_claim();
-        throw implementation_->driven_by_another();
-      }
-      if (limit.is_over(implementation_->time_periods.note(driver.time_periods))) throw;
-      lock.lock();
+    const auto result = self.result_of(report);
+    if (result == accepted) return;
+    if (result == not_the_driver) {
+      self.lose_claim();
+      throw self.driven_by_another();
     }
+    if (result != busy || limit.is_over(self.newest_period.load())) throw self.refused("shapes", result);
   }
 }
 

@@ -1,4 +1,4 @@
-// The board's answers to commands, for transports that tests make.
+// The board's answers to commands and shapes, for transports that tests make.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +17,12 @@ class AnsweredCommands {
   /// The same for a command of a program that does not drive the arm.
   void refuse(std::span<const std::byte> written) { put(written, protocol::RequestResult::not_the_driver); }
 
+  void note_shapes(std::span<const std::byte> written, protocol::RequestResult result) {
+    protocol::ShapesReport shapes{};
+    std::memcpy(&shapes, written.data(), std::min(written.size(), sizeof shapes));
+    add({shapes.ticket, protocol::ReportId::shapes, {}, result, 0});
+  }
+
   /// Writes the RequestResultsReport, if that is asked for.
   std::size_t answer(std::span<std::byte> asked) const {
     if (asked[0] != static_cast<std::byte>(protocol::ReportId::request_results)) return 0;
@@ -31,8 +37,9 @@ class AnsweredCommands {
     protocol::CommandReport command{};
     std::memcpy(&command, written.data(), std::min(written.size(), sizeof command));
     if (command.report_id != protocol::ReportId::command || command.ticket == 0) return;
-    report.entries[next_++ % std::size(report.entries)] = {command.ticket, command.command, result, 0};
+    add({command.ticket, command.report_id, command.command, result, 0});
   }
+  void add(const protocol::RequestResultEntry& entry) { report.entries[next_++ % std::size(report.entries)] = entry; }
 
   std::size_t next_ = 0;
 };

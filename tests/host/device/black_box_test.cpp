@@ -20,7 +20,8 @@ namespace {
 struct Kept {
   BlackBoxReport head{};
   int requests = 0;
-  int asked_between = 0;        ///< so often another program asks for its own rows before each answer
+  int asked_between = 0;  ///< so often another program asks for its own rows before each answer
+  protocol::RequestResult result = protocol::RequestResult::accepted;
   std::size_t gone_from = ~0u;  ///< the row at which another black box has taken the place of this one
 };
 
@@ -33,14 +34,17 @@ class KeepingTransport final : public device::Transport {
     REQUIRE(report[0] == static_cast<std::byte>(ReportId::black_box_rows));
     BlackBoxRowsReport rows{};
     rows.first_row = first_row_;
+    rows.result = static_cast<std::uint8_t>(kept_.result) & 0xFu;
     rows.fault_periods = kept_.head.fault_periods;
     if (others_ > 0) {
       --others_;
       rows.first_row = static_cast<std::uint16_t>(first_row_ + 1);
     }
     if (first_row_ >= kept_.gone_from) rows.fault_periods += 1;
-    for (std::size_t i = rows.first_row; i < kept_.head.row_count && rows.row_count < std::size(rows.rows); ++i)
-      rows.rows[rows.row_count++] = {.time_periods = static_cast<std::uint32_t>(1000 + 20 * i), .values = {0.5f}};
+    for (std::size_t i = rows.first_row; i < kept_.head.row_count && rows.row_count < std::size(rows.rows); ++i) {
+      rows.rows[rows.row_count] = {.time_periods = static_cast<std::uint32_t>(1000 + 20 * i), .values = {0.5f}};
+      rows.row_count = (rows.row_count + 1u) & 0xFu;
+    }
     return give(report, rows);
   }
   void set_feature(std::span<const std::byte> report) override {
@@ -108,6 +112,15 @@ TEST_CASE("a program that asks without end for other rows is told of, not waited
   auto device = device_with(kept);
   const auto head = device.black_box();
   CHECK(contains(message_of<device::InUse>([&] { device.black_box_rows(head); }), "Another program"));
+}
+
+TEST_CASE("a device that refuses to choose the rows is told of with its reason") {
+  Kept kept = full();
+  kept.result = protocol::RequestResult::malformed;
+  auto device = device_with(kept);
+  const auto head = device.black_box();
+  CHECK(contains(message_of<device::Error>([&] { device.black_box_rows(head); }),
+                 "The board refused a request for rows of the black box. The request has a wrong version"));
 }
 
 TEST_CASE("a black box that goes while it is read, or another that takes its place, is not mixed up") {

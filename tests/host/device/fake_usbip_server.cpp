@@ -90,6 +90,7 @@ FakeUsbipServer::FakeUsbipServer(const device::SocketAddress& where)
   information.servo_rate_Hz = protocol::servo_rate_Hz;
   transaction_.report_id = protocol::ReportId::transaction;
   store.report_id = protocol::ReportId::store;
+  frame.is_known = 1;
 }
 
 device::Endpoint FakeUsbipServer::endpoint() const {
@@ -280,16 +281,15 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
 std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (&setup)[8], const Bytes& data) {
   if (setup[0] == 0xA1 && setup[1] == 1 && setup[3] == 3) {
     const auto id = static_cast<protocol::ReportId>(setup[2]);
+    on_get(id, setup[6] | static_cast<std::size_t>(setup[7]) << 8);
     auto report = feature_report(id);
     if (report && spoil.contains(id)) spoil[id](*report);
     return report ? std::optional(limited(setup, *report)) : std::nullopt;
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x14) {
-    if (shapes_stalls > 0) {
-      --shapes_stalls;
-      return std::nullopt;
-    }
-    shapes_placed_.push_back(data);
+    const auto result = judge_shapes();
+    request_results.note_shapes(data, result);
+    if (result == protocol::RequestResult::accepted) shapes_placed_.push_back(data);
     return Bytes{};
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x1B) {
@@ -307,8 +307,7 @@ std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (
     ++transaction_.transactions;
     if (transaction_.refusal == protocol::Refusal::accepted)
       transaction_.applied_at_periods = 100 * transaction_.transactions;
-    if (transaction_.refusal != protocol::Refusal::accepted)
-      return stalls_refusals ? std::nullopt : std::optional(Bytes{});
+    if (transaction_.refusal != protocol::Refusal::accepted) return Bytes{};
     if (report.operation == protocol::ParameterOperation::restore_defaults) parameters = protocol::default_parameters();
     if (report.operation == protocol::ParameterOperation::restore_stored) parameters = at_next_start;
     for (std::size_t i = 0; i < report.count; ++i)

@@ -67,11 +67,10 @@ class FakeUsbipServer {
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
     return protocol::Refusal::accepted;
   };
-  bool stalls_refusals = false;
   /// A transaction that was accepted ends in a stall all the same.
   bool stalls_accepted = false;
-  /// Stalls this many reports of shapes, before it takes them in.
-  std::atomic<int> shapes_stalls = 0;
+  std::function<void(protocol::ReportId, std::size_t length)> on_get = [](auto, auto) {};
+  std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
   /// Changes what a feature report says on its way to the client.
   std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
   /// Cuts the connection at this many transactions, before it takes them in.

@@ -369,8 +369,8 @@ TEST_CASE("poses, frames, samples and transactions are on one time that does not
   CHECK(pose->time_periods == wrap + 60);
   server.frame.sequence = 4;
   server.frame.time_periods = 80;
-  CHECK(arm->frame().sequence == wrap + 4);
-  CHECK(arm->frame().time_periods == wrap + 80);
+  CHECK(arm->frame().value().sequence == wrap + 4);
+  CHECK(arm->frame().value().time_periods == wrap + 80);
   server.send(2, scope_frame(arm->select_signals(std::array{protocol::Signal::force_N}), 90, 0.5f));
   CHECK(arm->read_scope(60s)->first_period == wrap + 90);
   const device::ParameterChange change{protocol::Parameter::force_limit_N, 1.0f};
@@ -382,7 +382,7 @@ TEST_CASE("the begin of the newest frame of the bus is told as the device counts
   server.frame.sequence = 12;
   server.frame.time_cycles = 345;
   const auto arm = device::Device::open(server.endpoint());
-  CHECK(arm->frame().sequence == 12);
+  CHECK(arm->frame().value().sequence == 12);
   CHECK(arm->frame().time_cycles == 345);
 }
 

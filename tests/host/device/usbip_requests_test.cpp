@@ -2,10 +2,15 @@
 // the device may refuse.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <string>
 #include <vector>
+
+#include <control/installed_force_law.hpp>
 
 #include <device/device.hpp>
 #include <failure.hpp>
@@ -31,11 +36,9 @@ TEST_CASE("parameters are read, set as one transaction, and restored") {
   CHECK(arm->parameters() == protocol::default_parameters());
 }
 
-TEST_CASE("a refusal names the parameter, the reason and the range, whether the device stalls or not") {
+TEST_CASE("a refusal names the parameter, the reason and the range") {
   FakeUsbipServer server;
   server.judge = [](const auto&) { return protocol::Refusal::out_of_range; };
-  SUBCASE("with a stall") { server.stalls_refusals = true; }
-  SUBCASE("without") {}
   const auto arm = device::Device::open(server.endpoint());
   const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 9.0f}};
   const auto message = message_of<device::Refused>([&] { arm->set_parameters(changes); });
@@ -151,7 +154,10 @@ TEST_CASE("forces reach the device as they were asked, numbered from 0, beside t
 
 TEST_CASE("shapes reach the device as one report, as long as its planes are many") {
   FakeUsbipServer server;
-  server.shapes_stalls = 2;  // as long as the interrupt has not taken those before
+  std::atomic<int> busy = 2;  // as long as the interrupt has not taken those before
+  server.judge_shapes = [&] {
+    return busy > 0 ? (--busy, protocol::RequestResult::busy) : protocol::RequestResult::accepted;
+  };
   const auto arm = device::Device::open(server.endpoint());
   arm->claim();
   device::Shapes shapes;
@@ -163,20 +169,93 @@ TEST_CASE("shapes reach the device as one report, as long as its planes are many
   const auto placed = server.shapes_placed();
   REQUIRE(placed.size() == 2);
   std::memcpy(&report.claim, &placed[0][offsetof(protocol::ShapesReport, claim)], sizeof report.claim);
+  std::memcpy(&report.ticket, &placed[0][offsetof(protocol::ShapesReport, ticket)], sizeof report.ticket);
+  CHECK(report.ticket != 0);
   CHECK(server.driver.is_held_by(report.claim));
   auto expected = bytes_of(report);
   expected.resize(protocol::shapes_report_size(2));
   CHECK(placed[0] == expected);
   CHECK(placed[1].size() == protocol::shapes_report_size(0));
-  CHECK(server.shapes_stalls == 0);
+  CHECK(busy == 0);
 }
 
-TEST_CASE("shapes that the device goes on to stall are given up with a sentence") {
+TEST_CASE("shapes that the device refuses, or has no room for within seconds, are given up with the reason") {
   FakeUsbipServer server;
-  server.shapes_stalls = std::numeric_limits<int>::max();
+  std::string part;
+  SUBCASE("busy") {
+    server.judge_shapes = [&] {
+      server.request_results.report.time_periods += protocol::servo_rate_Hz / 10;
+      return protocol::RequestResult::busy;
+    };
+    part = "The board refused shapes. The board had no room";
+  }
+  SUBCASE("malformed") {
+    server.judge_shapes = [] { return protocol::RequestResult::malformed; };
+    part = "The board refused shapes. The request has a wrong version or length";
+  }
   const auto arm = device::Device::open(server.endpoint());
   arm->claim();
-  CHECK(contains(message_of<device::Stalled>([&] { arm->place_shapes({}); }), "refused a USB request"));
+  CHECK(contains(message_of<device::Error>([&] { arm->place_shapes({}); }), part));
   CHECK(server.shapes_placed().empty());
-  CHECK_NOTHROW(arm->information());
+  CHECK(arm->drives());
+}
+
+TEST_CASE("shapes of a program that does not drive end its claim") {
+  FakeUsbipServer server;
+  server.judge_shapes = [] { return protocol::RequestResult::not_the_driver; };
+  const auto arm = device::Device::open(server.endpoint());
+  arm->claim();
+  CHECK_THROWS_AS(arm->place_shapes({}), device::InUse);
+  CHECK_FALSE(arm->drives());
+}
+
+TEST_CASE("shapes are placed again where the results of other programs have replaced theirs") {
+  FakeUsbipServer server;
+  int asked = 0;
+  server.spoil[protocol::ReportId::request_results] = [&](Bytes& report) {
+    if (++asked == 1) report = bytes_of(protocol::RequestResultsReport{});
+  };
+  const auto arm = device::Device::open(server.endpoint());
+  arm->claim();
+  arm->place_shapes({});
+  CHECK(server.shapes_placed().size() == 2);
+}
+
+TEST_CASE("a command that finds the board busy is sent again, and given up after seconds of board time") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  int busy = 3;
+  server.spoil[protocol::ReportId::request_results] = [&](Bytes& bytes) {
+    protocol::RequestResultsReport report;
+    std::memcpy(&report, bytes.data(), sizeof report);
+    for (auto& entry : report.entries)
+      if (entry.ticket != 0 && busy > 0) entry.result = protocol::RequestResult::busy;
+    report.time_periods = server.request_results.report.time_periods += protocol::servo_rate_Hz / 10;
+    --busy;
+    bytes = bytes_of(report);
+  };
+  arm->carry_out(protocol::Command::disable_force);
+  CHECK(server.commands().size() == 4);
+  busy = std::numeric_limits<int>::max();
+  CHECK(contains(message_of<device::Error>([&] { arm->carry_out(protocol::Command::disable_force); }),
+                 "The board refused a command. The board had no room"));
+}
+
+TEST_CASE("the device is asked for no more of a report than it uses, because it pads what it sends") {
+  FakeUsbipServer server;
+  std::map<protocol::ReportId, std::vector<std::size_t>> asked;
+  server.on_get = [&](protocol::ReportId id, std::size_t length) { asked[id].push_back(length); };
+  const auto arm = device::Device::open(server.endpoint());
+  arm->parameters();
+  const std::size_t law_size = control::installed_force_law.report_size;
+  CHECK(asked[protocol::ReportId::force_law] == std::vector<std::size_t>{sizeof(protocol::ForceLawReport), law_size});
+  CHECK(asked[protocol::ReportId::parameters] ==
+        std::vector<std::size_t>{protocol::parameters_report_size(protocol::parameter_count)});
+}
+
+TEST_CASE("a device that counts no frames of the bus is opened, and its frame is not known") {
+  FakeUsbipServer server;
+  server.frame = {};
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK_FALSE(arm->frame().has_value());
 }

@@ -85,8 +85,8 @@ class Device {
 
   /// Of a device of another version only what comes before the tables' hashes; the rest is 0.
   Information information();
-  /// When the newest frame of the bus began. Throws Stalled while the bus is silent.
-  BusFrame frame();
+  /// The start of the newest bus frame; none while the bus is silent.
+  std::optional<BusFrame> frame();
 
   /// The device was connected before, when its newest pose was of `before_periods`: its time goes on from there, unless
   /// it has started again since then.
@@ -142,7 +142,8 @@ class Device {
   /// The force from now on, until the next one or its expiry. A sign of life. Throws Error for one that the board would
   /// refuse.
   void send_force(const ForceRequest& request);
-  /// Takes the place of all shapes that were there, at one control period. Throws likewise.
+  /// Replaces all shapes within one control period. Throws Error for shapes that the board would refuse, or if the
+  /// board stays busy, and InUse if this object does not drive the arm.
   void place_shapes(const Shapes& shapes);
 
   protocol::ParameterSet parameters();
