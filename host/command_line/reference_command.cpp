@@ -8,8 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <device/fault_text.hpp>
-#include <protocol/black_box.hpp>
-#include <protocol/reports.hpp>
+#include <protocol/report_table.hpp>
 #include <protocol/self_test.hpp>
 #include <protocol/store.hpp>
 #include <protocol/supervision.hpp>
@@ -21,57 +20,39 @@
 namespace inkwell::command_line {
 namespace {
 
-using protocol::ReportId;
-
-struct ReportRow {
-  ReportId id;
-  const char* name;
-  const char* way;
-  std::size_t bytes;
-  const char* what;
-};
-
-constexpr ReportRow reports[] = {
-    {ReportId::pose, "PoseReport", "input, interrupt", sizeof(protocol::PoseReport), "the pose, each millisecond"},
-    {ReportId::command, "CommandReport", "output", sizeof(protocol::CommandReport), "a command; a sign of life"},
-    {ReportId::force, "ForceReport", "output", sizeof(protocol::ForceReport), "a program's force; a sign of life"},
-    {ReportId::information, "InformationReport", "feature, get", sizeof(protocol::InformationReport),
-     "who the device is, and what it has counted"},
-    {ReportId::parameters, "ParametersReport", "feature, get and set", sizeof(protocol::ParametersReport),
-     "every parameter; set: one transaction, only its used part is sent"},
-    {ReportId::transaction, "TransactionReport", "feature, get", sizeof(protocol::TransactionReport),
-     "what became of the last transaction"},
-    {ReportId::frame, "FrameReport", "feature, get", sizeof(protocol::FrameReport),
-     "when the newest frame of the bus began, in board time"},
-    {ReportId::shapes, "ShapesReport", "feature, set", sizeof(protocol::ShapesReport),
-     "the shapes that are felt from now on; only its used part is sent"},
-    {ReportId::force_law, "ForceLawReport", "feature, get", protocol::force_law_report_maximum,
-     "the parameters and signals that the image's own force law adds to the tables; its size is in its head"},
-    {ReportId::black_box, "BlackBoxReport", "feature, get", sizeof(protocol::BlackBoxReport),
-     "whether a black box is kept, of which fault, and where the firmware crashed or hung"},
-    {ReportId::black_box_rows, "BlackBoxRowsReport", "feature, get", sizeof(protocol::BlackBoxRowsReport),
-     "some rows of the black box: every signal of a control period each"},
-    {ReportId::self_test, "SelfTestReport", "feature, get", sizeof(protocol::SelfTestReport),
-     "what the board's self-test has found"},
-    {ReportId::store, "StoreReport", "feature, get", sizeof(protocol::StoreReport),
-     "what the board has stored, and what became of the last command to store or to forget"},
-    {ReportId::stored, "ParametersReport", "feature, get", sizeof(protocol::ParametersReport),
-     "what the next start would give every parameter"},
-    {ReportId::black_box_rows, "BlackBoxRequest", "feature, set", sizeof(protocol::BlackBoxRequest),
-     "the first row that is wanted"},
-};
+std::string_view name_of(protocol::ReportKind kind) {
+  switch (kind) {
+    case protocol::ReportKind::input: return "input";
+    case protocol::ReportKind::output: return "output";
+    case protocol::ReportKind::feature: return "feature";
+  }
+  return "";
+}
 
 void print_reports() {
   fmt::print(
       "## Reports of the HID interface\n\nTheir fields, and those of the scope's frames, which go over interface {}, "
-      "endpoint 0x{:02x}, are below.\n\n| id | report | way | bytes | what it is |\n| --- | --- | --- | --- | --- |\n",
-      protocol::usb::scope_interface, protocol::usb::scope_in_endpoint);
-  for (const auto& row : reports)
-    fmt::print("| 0x{:02x} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), row.name, row.way, row.bytes,
-               row.what);
+      "endpoint 0x{:02x}, are below. The device fills a report that is read with zeros up to its declared size. It "
+      "accepts a write from its shortest length to the longest report of its kind ({} bytes for output, {} for feature "
+      "reports), and ignores the bytes after the used part. A busy board and a refusal are results in a report. Only a "
+      "request that the device does not know ends in a stall.\n\n"
+      "| id | kind | read | written | declared bytes | shortest write | meaning |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n",
+      protocol::usb::scope_interface, protocol::usb::scope_in_endpoint,
+      protocol::longest_report(protocol::ReportKind::output), protocol::longest_report(protocol::ReportKind::feature));
+  const auto structure = [](std::string_view name) { return name == "none" ? std::string_view("-") : name; };
+  for (std::size_t i = 0; i < protocol::report_table.size(); ++i) {
+    const auto& row = protocol::report_table[i];
+    const auto& text = protocol::report_texts[i];
+    fmt::print("| 0x{:02x} | {} | {} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), name_of(row.kind),
+               structure(text.get), structure(text.set), row.bytes,
+               row.can_be_set() ? fmt::format("{}", row.set_bytes_minimum) : "-", text.meaning);
+  }
   fmt::print(
       "\nInterface {}, endpoint 0x{:02x}, is a HID multi-axis controller of its own: a ControllerReport of {} bytes "
-      "every {} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates.\n",
+      "every {} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates. A DETACH "
+      "while the force is on completes without effect, and GETSTATUS then reports errVENDOR (0x0B) in the state "
+      "appIDLE until a DETACH is accepted.\n",
       protocol::usb::controller_interface, protocol::usb::controller_in_endpoint, sizeof(protocol::ControllerReport),
       protocol::usb::controller_interval_ms, protocol::usb::firmware_update_interface);
 }
@@ -165,6 +146,11 @@ void print_codes() {
   for (const auto& row : protocol::fault_table) {
     const auto text = device::fault_text(static_cast<protocol::Fault>(row.code));
     fmt::print("| {} | {} | {} | {} |\n", row.code, row.name, text.cause, text.remedy);
+  }
+  fmt::print("\n## Results of requests\n\n| code | result | meaning | remedy |\n| --- | --- | --- | --- |\n");
+  for (std::size_t code = 0; code < protocol::request_result_table.size(); ++code) {
+    const auto& row = protocol::request_result_table[code];
+    fmt::print("| {} | {} | {} | {} |\n", code, row.name, row.meaning, row.remedy);
   }
   fmt::print("\n## Refusals of a transaction\n\n| code | refusal | cause | remedy |\n| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::refusal_table)

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <protocol/black_box.hpp>
+#include <protocol/driver.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/scope.hpp>
 #include <protocol/store.hpp>
@@ -115,7 +116,8 @@ void print_wire() {
   fmt::print(
       "\n## What goes over the wire\n\nLittle-endian; `float` is IEEE 754's of 32 bits. Offsets and sizes are in "
       "bytes, "
-      "bit 0 is the lowest. The codes of State, Fault, Refusal, ForceSource and Limit are in tables below.\n");
+      "bit 0 is the lowest. The codes of State, Fault, Refusal, RequestResult, ForceSource and Limit are in tables "
+      "below.\n");
   for (const auto& intro : layouts::intros) {
     std::string text = "    ";
     for (const char letter : intro.text) text += letter == '\n' ? std::string("\n    ") : std::string(1, letter);

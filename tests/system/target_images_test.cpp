@@ -28,12 +28,12 @@ void check_images(const std::string& mode, std::initializer_list<const char*> na
 
 TEST_CASE("the target's tests pass on the virtual board in fast mode") {
   check_images("fast", {"target-tests-control", "target-tests-link", "target-tests-self-test", "target-tests-usb",
-                        "target-tests-streams", "target-tests-poses"});
+                        "target-tests-requests", "target-tests-streams", "target-tests-poses"});
 }
 
 // Without those of the control law, which run for minutes of board time: exact mode is the one that the experiment,
 // with the same law, runs in.
 TEST_CASE("the target's tests pass on the virtual board in exact mode") {
-  check_images("exact", {"target-tests-link", "target-tests-self-test", "target-tests-usb", "target-tests-streams",
-                         "target-tests-poses"});
+  check_images("exact", {"target-tests-link", "target-tests-self-test", "target-tests-usb", "target-tests-requests",
+                         "target-tests-streams", "target-tests-poses"});
 }
