@@ -74,4 +74,14 @@ std::uint32_t endless_loop_address() {
   return 0;
 }
 
+std::string firmware_compiler_version() {
+  // "GCC: (vendor's version) 12.2.1 20221205"
+  const std::string elf = read_firmware();
+  const auto start = elf.find("GCC: (");
+  REQUIRE(start != std::string::npos);
+  const std::string text(elf.c_str() + start);
+  const auto version = text.find(") ") + 2;
+  return text.substr(version, text.rfind('.') - version);
+}
+
 }  // namespace inkwell::tests

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace inkwell::tests {
@@ -18,5 +19,8 @@ inline std::uint32_t firmware_symbol(std::string_view name) { return firmware_pl
 
 /// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
 std::uint32_t endless_loop_address();
+
+/// Version of the compiler in the firmware's .comment section, without the last number, such as "12.2".
+std::string firmware_compiler_version();
 
 }  // namespace inkwell::tests

@@ -22,6 +22,7 @@
 #include <stepped_board.hpp>
 
 #include "board_rig.hpp"
+#include "cycles_page.hpp"
 #include "firmware_image.hpp"
 #include "hazards.hpp"
 #include "program.hpp"
@@ -74,6 +75,7 @@ TEST_CASE(
           " cycles");
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
   CHECK(report.servo_cycles_longest < bearable_cycles);
+  check_figure_on_cycles_page("longest control interrupt", report.servo_cycles_longest);
   CHECK(report.servo_overruns == 0);
   // The poses tell of the longest as well, in parts of 255 of a period.
   const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
@@ -189,6 +191,8 @@ TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave
   const float with = contact_cycles(rig);
   MESSAGE("simulation: contact stage ", without, " cycles without shapes, ", with, " with eight planes");
   CHECK(with > without);
+  check_figure_on_cycles_page("contact stage without shapes", without);
+  check_figure_on_cycles_page("contact stage with eight planes", with);
   CHECK(with - without <= 250.0f);
   rig.device->place_shapes(eight_planes(free_point_m, 3, 0.4f));
   rig.run(0.1);
