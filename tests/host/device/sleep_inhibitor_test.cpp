@@ -73,10 +73,13 @@ class FakeInhibit {
   std::string path_before_;
 };
 
-/// A process that ended but that nobody has waited for has no command line.
+/// False for a process that ended, also if nobody has waited for it yet.
 bool is_running(pid_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/cmdline");
-  return file.get() != std::ifstream::traits_type::eof();
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const auto name_end = line.rfind(") ");  // the state follows
+  return name_end != std::string::npos && line.substr(name_end + 2, 1) != "Z";
 }
 
 /// Bits of a set of signals in /proc/PROCESS/status.
