@@ -57,7 +57,11 @@ void Companion::stop() {
   desk_.session().send(protocol::Command::stop);
 }
 
-void Companion::key(int key, bool down) {
+void Companion::key(const KeyEvent& event) {
+  if (is_next_part(event)) keyboard_.go_on((event.modifiers & shift_modifier) != 0);
+  if (event.action == GLFW_REPEAT) return;
+  const int key = event.key;
+  const bool down = event.action == GLFW_PRESS;
   const bool types = ImGui::GetIO().WantTextInput;
   if (down && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_F12 || (key == GLFW_KEY_SPACE && !types))) stop();
   if (down && key == GLFW_KEY_F1) key_help_.open();

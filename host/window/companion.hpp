@@ -31,7 +31,7 @@ class Companion final : public FrameContent {
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
   /// Escape, F12 and the space bar stop at once; the space bar not while a text is typed.
-  void key(int key, bool down) override;
+  void key(const KeyEvent& event) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }

@@ -39,7 +39,7 @@ FrameLoop::FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content
       started_s_(glfwGetTime()),
       shown_s_(started_s_) {
   display_.on_key([this](const KeyEvent& event) {
-    if (event.action != GLFW_REPEAT) content_.key(event.key, event.action == GLFW_PRESS);
+    content_.key(event);
     imgui_.take_key(event);
   });
 }

@@ -5,14 +5,14 @@
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
-#include <imgui_internal.h>
 
 #include <frame/imgui_versions.hpp>
 #include <frame/key_letters.hpp>
 
 namespace inkwell::window {
 
-static_assert(space_bar == GLFW_KEY_SPACE && escape_key == GLFW_KEY_ESCAPE && key_release == GLFW_RELEASE);
+static_assert(space_bar == GLFW_KEY_SPACE && escape_key == GLFW_KEY_ESCAPE && tab_key == GLFW_KEY_TAB &&
+              key_release == GLFW_RELEASE && shift_modifier == GLFW_MOD_SHIFT && control_modifier == GLFW_MOD_CONTROL);
 
 namespace {
 
@@ -23,11 +23,7 @@ bool can_cancel() {
 #if INKWELL_IMGUI_HAS_KEY_EVENTS
 
 // The back end queues key events, so that short keystrokes last for a frame, and follows the keyboard layout.
-void set_up_keys() {
-  // ImGui's own window switcher reaches only two parts unless Ctrl stays down, and shows their inner names.
-  GImGui->ConfigNavWindowingKeyNext = ImGuiKey_None;
-  GImGui->ConfigNavWindowingKeyPrev = ImGuiKey_None;
-}
+void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
 void apply_keys(KeyTaps&) {}
 
@@ -63,8 +59,6 @@ void apply_keys(KeyTaps& taps) {
   io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
   io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
   io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
-  // ImGui's own window switcher reaches only two parts unless Ctrl stays down, and shows their inner names.
-  io.KeyMap[ImGuiKey_Tab] = io.KeyCtrl ? -1 : GLFW_KEY_TAB;
 }
 
 #endif

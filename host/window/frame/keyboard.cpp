@@ -2,6 +2,8 @@
 #include <frame/keyboard.hpp>
 
 #include <algorithm>
+#include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include <imgui_internal.h>
@@ -44,12 +46,12 @@ void KeyboardTour::give_to(ImGuiWindow& part) {
 }
 
 void KeyboardTour::begin_frame() {
-  const ImGuiIO& io = ImGui::GetIO();
+  const int steps = std::exchange(steps_, 0);
   if (is_menu_open()) {
     wanted_.clear();
     return;
   }
-  if (io.KeyCtrl && ImGui::IsKeyPressed(tab_index)) go_on(io.KeyShift);
+  for (int i = 0; i < std::abs(steps); ++i) go_on_now(steps < 0);
   ImGuiWindow* wanted = wanted_.empty() ? nullptr : ImGui::FindWindowByName(wanted_.c_str());
   if (wanted != nullptr && wanted->WasActive) {
     wanted_.clear();
@@ -59,7 +61,7 @@ void KeyboardTour::begin_frame() {
     ImGui::NavInitWindow(GImGui->NavWindow, true);
 }
 
-void KeyboardTour::go_on(bool backwards) {
+void KeyboardTour::go_on_now(bool backwards) {
   std::vector<ImGuiWindow*> all = parts();
   if (all.empty()) return;
   if (backwards) std::ranges::reverse(all);

@@ -24,6 +24,18 @@ TEST_CASE("Escape reaches ImGui only if it cancels something, and its release al
   CHECK(passes(escape_key, key_release, false));
 }
 
+TEST_CASE("Ctrl+Tab goes to the next part and does not reach ImGui; its release and Tab alone do") {
+  for (const int modifiers : {control_modifier, control_modifier | shift_modifier})
+    for (const int action : {press, repeat}) {
+      CHECK(is_next_part({tab_key, 0, action, modifiers}));
+      CHECK_FALSE(is_for_imgui({tab_key, 0, action, modifiers}, false));
+    }
+  CHECK(is_for_imgui({tab_key, 0, key_release, control_modifier}, false));
+  CHECK(is_for_imgui({tab_key, 0, press, shift_modifier}, false));
+  CHECK_FALSE(is_next_part({tab_key, 0, press, shift_modifier}));
+  CHECK_FALSE(is_next_part({letter_a, 0, press, control_modifier}));
+}
+
 TEST_CASE("other keys reach ImGui at any time") {
   for (const int key : {letter_a, enter})
     for (const int action : {press, key_release, repeat}) CHECK(passes(key, action, false));

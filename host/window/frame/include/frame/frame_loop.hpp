@@ -35,7 +35,7 @@ class FrameContent {
   virtual ~FrameContent() = default;
 
   /// A key went down or up, whatever has the focus.
-  virtual void key(int key, bool down) = 0;
+  virtual void key(const KeyEvent& event) = 0;
   /// Whether something has changed visibly since the last frame. Cheap: it is asked while the window rests.
   virtual bool asks_for_frame() const = 0;
 

@@ -21,7 +21,6 @@ using KeyModifiers = ImGuiKeyChord;
 inline constexpr KeyModifiers no_modifier = ImGuiMod_None, with_ctrl = ImGuiMod_Ctrl, with_shift = ImGuiMod_Shift,
                               with_alt = ImGuiMod_Alt;
 inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeypadEnter;
-inline constexpr ImGuiKey tab_index = ImGuiKey_Tab;
 
 /// The key's index for ImGui's functions, such as IsKeyPressed.
 inline ImGuiKey key_index(ImGuiKey key) { return key; }
@@ -42,7 +41,6 @@ using KeyModifiers = ImGuiKeyModFlags;
 inline constexpr KeyModifiers no_modifier = ImGuiKeyModFlags_None, with_ctrl = ImGuiKeyModFlags_Ctrl,
                               with_shift = ImGuiKeyModFlags_Shift, with_alt = ImGuiKeyModFlags_Alt;
 inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeyPadEnter;
-inline constexpr int tab_index = 258;  // GLFW_KEY_TAB; key_feed.cpp removes the key from ImGui's map while Ctrl is down
 
 /// The key's index for ImGui's functions, such as IsKeyPressed.
 inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }

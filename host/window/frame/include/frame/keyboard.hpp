@@ -20,16 +20,19 @@ class KeyboardTour {
  public:
   /// To the part of that name, once it is drawn; "" leaves it where it is.
   void go_to(std::string part) { wanted_ = std::move(part); }
+  /// To the next part in the next frame.
+  void go_on(bool backwards) { steps_ += backwards ? -1 : 1; }
   /// Between ImGui's NewFrame() and the first part.
   void begin_frame();
   /// After the last part: a frame around the one that has the keyboard, as long as it is the keyboard that is used.
   void end_frame(const Style& style);
 
  private:
-  void go_on(bool backwards);
+  void go_on_now(bool backwards);
   void give_to(ImGuiWindow& part);
 
   std::string wanted_;
+  int steps_ = 0;                    ///< parts to go on, negative for backwards
   bool last_thing_is_gone_ = false;  ///< the first one then gets the keyboard
 };
 
