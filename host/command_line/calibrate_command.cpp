@@ -14,10 +14,8 @@ guides::AngleRange parse_range(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf:%lf%c", &range.minimum_rad, &range.maximum_rad, &rest) != 2 ||
       !(range.minimum_rad < range.maximum_rad))
-    throw UsageError(
-        fmt::format("`{}` is no range. Give the angles of both stops in radians, the lower first, for example "
-                    "-2.455:2.455.",
-                    text));
+    throw UsageError(fmt::format(
+        "`{}` is not a range. Give the angles of both stops in radians, lower first, for example -2.455:2.455.", text));
   return range;
 }
 
@@ -41,23 +39,25 @@ int calibrate(const DeviceOptions& device, CalibrateOptions& options) {
 
 void add_calibrate_command(const Place& place) {
   const auto options = std::make_shared<CalibrateOptions>();
-  auto* command = place.program.add_subcommand(
-      "calibrate",
-      "Guides through the calibration: inkwell, joint stops, potentiometers of the gimbal\n"
-      "You move the arm and press button 1; with --virtual a simulated hand does.");
+  auto* command =
+      place.program.add_subcommand("calibrate",
+                                   "Guides through the calibration of inkwell, joint stops and gimbal potentiometers\n"
+                                   "You move the arm and press button 1; with --virtual a simulated hand does this.");
   std::vector<std::string> names;
   for (const auto* offer : guides_of("calibrate")) names.emplace_back(offer->name);
   names.emplace_back("all");
-  command->add_option("WHAT", options->what, "What to calibrate")->check(CLI::IsMember(names))->capture_default_str();
-  command->add_option("--trust", options->trust, "What is right when the stops lie elsewhere than described")
+  command->add_option("WHAT", options->what, "Calibration to run")->check(CLI::IsMember(names))->capture_default_str();
+  command
+      ->add_option("--trust", options->trust,
+                   "Reference if a stop is not at its described angle: joint limits or encoders")
       ->check(CLI::IsMember({"limits", "encoders"}))
       ->capture_default_str();
   const char* ranges[] = {"--yaw-range", "--pitch-range", "--roll-range"};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    command->add_option(ranges[axis], options->range[axis], "MINIMUM:MAXIMUM, the angles of its stops in radians")
+    command->add_option(ranges[axis], options->range[axis], "Angles of both stops as MINIMUM:MAXIMUM, in radians")
         ->type_name("RANGE");
   command->add_flag("--quadratic", options->choices.potentiometers.quadratic,
-                    "Fit the potentiometers' square term, with a third point in the middle");
+                    "Fit the quadratic term of the potentiometers, with a third point in the middle");
   options->consent.add_to(*command);
   add_examples(*command,
                "inkwell calibrate\n"

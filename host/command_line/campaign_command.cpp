@@ -52,8 +52,8 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (!std::filesystem::is_directory(folder))
-    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with {}.", folder.string(),
-                                    code.message(), option));
+    throw device::Error(fmt::format("The folder {} cannot be created: {}. Choose another folder with {}.",
+                                    folder.string(), code.message(), option));
 }
 
 /// Before hours of cases, not after them.
@@ -105,7 +105,8 @@ int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
   for (const unsigned number : command.numbers) {
     if (number < 1 || number > all.size())
       throw UsageError(
-          fmt::format("There is no case {}; they are 1 to {}. See `inkwell campaign list`.", number, all.size()));
+          fmt::format("There is no case {}. Give a number from 1 to {}; `inkwell campaign list` shows all cases.",
+                      number, all.size()));
     cases.push_back(all[number - 1]);
   }
   return run_cases(options, command, cases);
@@ -132,19 +133,19 @@ int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
 }
 
 void add_folder(CLI::App& command, CampaignOptions& options) {
-  command.add_option("--out", options.folder, "Folder of the results, a file for each case")
+  command.add_option("--out", options.folder, "Folder for the results, with one file per case")
       ->type_name("FOLDER")
       ->capture_default_str();
 }
 
 void add_page(CLI::App& command, CampaignOptions& options) {
-  command.add_option("--page", options.page, "Page to write; its plots go beside it")
+  command.add_option("--page", options.page, "Page to write; its plots are written to the same folder")
       ->type_name("FILE")
       ->capture_default_str();
 }
 
 void add_jobs(CLI::App& command, CampaignOptions& options) {
-  command.add_option("--jobs", options.jobs, "So many cases at once")
+  command.add_option("--jobs", options.jobs, "Number of cases to run in parallel")
       ->check(whole_number_within(1, 256))
       ->type_name("NUMBER")
       ->capture_default_str();
@@ -156,8 +157,8 @@ void add_campaign_command(const Place& place) {
   const auto options = std::make_shared<CampaignOptions>();
   auto* command = place.program.add_subcommand(
       "campaign",
-      "Every fault in every situation on virtual boards, and the page of what came of it.\n"
-      "Without a command of its own: runs the cases that have no result yet, then writes the page.");
+      "Runs every fault in every situation on virtual boards, and writes a page of the results\n"
+      "Without a subcommand it runs the cases that have no result yet, then writes the page.");
   command->require_subcommand(0, 1);
   add_folder(*command, *options);
   add_jobs(*command, *options);
@@ -171,22 +172,22 @@ void add_campaign_command(const Place& place) {
       place.action = [&device = place.device, options] { return run_missing(device, *options); };
   });
 
-  auto* listed = command->add_subcommand("list", "The cases with their numbers");
-  listed->add_flag("--numbers", options->only_numbers, "The numbers alone, for GNU parallel and batch systems");
+  auto* listed = command->add_subcommand("list", "Lists the cases with their numbers");
+  listed->add_flag("--numbers", options->only_numbers, "Print only the numbers, for GNU parallel and batch systems");
   add_examples(*listed, "inkwell campaign list\ninkwell campaign list --numbers");
   listed->callback(
       [place, options] { place.action = [&device = place.device, options] { return list_cases(device, *options); }; });
 
-  auto* runs = command->add_subcommand("run", "Runs cases by their numbers; each result is a file");
-  runs->add_option("case", options->numbers, "Numbers of cases")->required()->type_name("NUMBER");
+  auto* runs = command->add_subcommand("run", "Runs cases by number and writes one result file per case");
+  runs->add_option("case", options->numbers, "Case numbers")->required()->type_name("NUMBER");
   add_folder(*runs, *options);
   add_jobs(*runs, *options);
   add_examples(*runs, "inkwell campaign run 17 --out results\ninkwell campaign run 17 18 19 --jobs 3 --out results");
   runs->callback(
       [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
 
-  auto* merges = command->add_subcommand("merge", "Writes the page from the results that are there");
-  merges->add_option("results", options->folder, "Folder of the results")->required()->type_name("FOLDER");
+  auto* merges = command->add_subcommand("merge", "Writes the page from the existing results");
+  merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
   add_page(*merges, *options);
   add_examples(*merges, "inkwell campaign merge results --page docs/campaign.md");
   merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });

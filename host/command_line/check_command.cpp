@@ -4,8 +4,7 @@
 namespace inkwell::command_line {
 
 void add_check_command(const Place& place) {
-  auto* command =
-      place.program.add_subcommand("check", "Guides that look whether the arm is wired and described as it is");
+  auto* command = place.program.add_subcommand("check", "Guides that check the wiring and the arm description");
   command->require_subcommand(1);
   add_examples(*command, "inkwell check connection\ninkwell check directions");
   add_guides(*command, place, "check");

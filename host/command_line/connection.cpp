@@ -10,33 +10,34 @@ namespace inkwell::command_line {
 void DeviceOptions::add_to(CLI::App& app) {
   auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
-  app.add_option("--board", board,
-                 "Driver board that it is, and whose firmware it runs: " + inkwell::board::names_of_boards())
+  app.add_option("--board", board, "Driver board to simulate, with its firmware: " + inkwell::board::names_of_boards())
       ->type_name("NAME")
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--elf", elf, "Firmware that it runs; the one that belongs to this program unless given")
+  app.add_option("--elf", elf, "Firmware image (ELF). Default: the image installed with this program")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--arm", arm, "Arm description (TOML) that it simulates; the firmware gets its parameters")
+  app.add_option("--arm", arm, "Arm description (TOML) to simulate; its parameters are sent to the firmware")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--flash", flash, "File of its flash, made if missing: keeps what is stored; --arm is sent over that")
+  app.add_option("--flash", flash,
+                 "File for the flash memory, created if missing. --arm overrides its stored parameters")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of them, and quicker")
+  app.add_option("--mode", mode,
+                 "exact: interrupts at any instruction; fast: interrupts only between instruction blocks")
       ->check(CLI::IsMember({"exact", "fast"}))
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--seed", seed, "Seed of its noise and of its serial number")
+  app.add_option("--seed", seed, "Seed of the noise and of the serial number")
       ->type_name("NUMBER")
       ->capture_default_str()
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_flag("--real-time", real_time, "Pace it to the clock on the wall")->needs(is_virtual_flag)->group(group);
+  app.add_flag("--real-time", real_time, "Run in real time")->needs(is_virtual_flag)->group(group);
   auto* server =
       app.add_option("--usbip", usbip,
                      "HOST:PORT or unix:PATH of a USB/IP server, such as a running virtual board; not with\n--virtual")
@@ -48,8 +49,9 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->check(not_empty())
       ->excludes(is_virtual_flag)
       ->excludes(server);
-  app.add_flag("--take-over", take_over, "Take the arm over from the program that drives it; its force fades");
-  app.add_flag("--json", json, "Write JSON for programs instead of text for people");
+  app.add_flag("--take-over", take_over,
+               "Take the arm over from the program that drives it; that program's force fades");
+  app.add_flag("--json", json, "Print JSON for programs instead of text");
 }
 
 device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardPace pace) const {

@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 std::vector<Endpoint> found(const DeviceOptions& options) {
   if (options.is_virtual)
-    throw UsageError("--virtual starts a board for one command, so that none is there to be listed. Leave it out.");
+    throw UsageError("--virtual starts a board for one command only, so there is no board to list. Omit --virtual.");
   const device::Address address = options.address();
   if (address.kind != device::Address::Kind::usbip) return device::find_usb_devices();
   return {device::find_arm(address)};
@@ -43,7 +43,7 @@ Listed ask(const Endpoint& endpoint) {
     listed.serial_number = information.serial_number;  // which a list of USB/IP does not hold
     listed.board = information.board_name;
   } catch (const device::Error& error) {
-    fmt::print(stderr, "inkwell: Arm {} does not tell its board. {}\n", endpoint.serial_number, error.what());
+    fmt::print(stderr, "inkwell: The board of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());
   }
   return listed;
 }
@@ -72,8 +72,7 @@ int list_devices(const DeviceOptions& options) {
 }  // namespace
 
 void add_devices_command(const Place& place) {
-  auto* command =
-      place.program.add_subcommand("devices", "The arms that are there, by serial number, each with its board");
+  auto* command = place.program.add_subcommand("devices", "Lists the connected arms with serial number and board");
   add_examples(*command, "inkwell devices\ninkwell devices --usbip 127.0.0.1:3240 --json");
   command->callback([place] { place.action = [&options = place.device] { return list_devices(options); }; });
 }

@@ -49,7 +49,7 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
   constexpr auto mode = device::SimulationMode::exact;
   constexpr auto pace = BoardPace::as_asked;
   if (options.is_virtual) {
-    progress("The virtual board starts.", 0.0);
+    progress("Starting the virtual board.", 0.0);
     wall.virtual_board = options.virtual_board(mode, pace);
   }
   auto connection = connect(options, pace, mode);
@@ -72,14 +72,15 @@ void add_experiment_command(const Place& place) {
   add_examples(*command, "inkwell experiment wall --virtual --out results");
   auto* wall = command->add_subcommand(
       "wall",
-      "The experiment of Eriksson and Wikander, section 4.3: the sphere is pushed into a wall.\n"
-      "With --virtual a simulated hand does it; otherwise you are told when to push.");
+      "Repeats the wall experiment of Eriksson and Wikander, section 4.3\n"
+      "The sphere around the probe is pushed into a wall. With --virtual a simulated hand pushes; otherwise the\n"
+      "program prompts you to push.");
   const auto wall_options = std::make_shared<WallCommandOptions>();
   wall->add_option("--out", wall_options->output, "Folder for recording.csv, summary.json and the figures")
       ->type_name("FOLDER")
       ->capture_default_str();
   wall->add_option("--wall", wall_options->wall,
-                   "Wall to push into, by axis and side; the one in front of the arm unless given")
+                   "Wall to push into: axis and side. Default: the wall in front of the arm")
       ->check(CLI::IsMember({"x-", "x+", "y-", "y+", "z-", "z+"}));
   add_examples(*wall,
                "inkwell experiment wall --virtual --out results\n"

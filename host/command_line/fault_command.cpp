@@ -47,12 +47,12 @@ Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
 
 void print_crash(const BlackBoxReport& box, const Image& image) {
   if (!has_crash(box)) {
-    if (image) fmt::print("No crash of the firmware is kept, so there is nothing to name by the ELF.\n");
+    if (image) fmt::print("No firmware crash is recorded, so --elf has no effect.\n");
     return;
   }
-  if (box.later_crashes == 1) fmt::print("After that fault the board was restarted by this:\n");
+  if (box.later_crashes == 1) fmt::print("After that fault the board restarted once. The cause was:\n");
   if (box.later_crashes > 1)
-    fmt::print("After that fault the board was restarted {} times, at last by this:\n", box.later_crashes);
+    fmt::print("After that fault the board restarted {} times. The last cause was:\n", box.later_crashes);
   fmt::print("{}\n", crash::text(box.crash, image ? &*image : nullptr));
 }
 
@@ -91,10 +91,11 @@ ordered_json to_json(const BlackBoxReport& box, const Image& image) {
 void print(const BlackBoxReport& box, const Image& image) {
   if (box.fault == Fault::none) return print_crash(box, image);
   fmt::print(
-      "A black box is kept: every signal around {} at {:.3f} s, each millisecond, {} rows before it and {} from "
-      "then on{}. `inkwell fault --out FILE` saves it; it goes when the force is switched on.\n",
+      "The board has recorded a black box: every signal around {} at {:.3f} s, one row per millisecond. It has {} rows "
+      "before the fault and {} rows from the fault on{}. Save it with `inkwell fault --out FILE`. Switching the force "
+      "on deletes it.\n",
       info(box.fault).name, time_s(box), box.rows_before, box.row_count - box.rows_before,
-      box.is_restart ? ", where the board was restarted" : "");
+      box.is_restart ? ", where the board restarted" : "");
   print_crash(box, image);
 }
 
@@ -131,18 +132,17 @@ BlackBoxReport complete_black_box(device::Device& device) {
     const auto box = device.black_box();
     if (box.fault == Fault::none)
       throw device::Error(
-          "No black box is kept: there was no fault since the force was last switched on, or since the "
-          "power came.");
+          "No black box is recorded: no fault has occurred since the force was last switched on, or since power-on.");
     if (box.is_complete) return box;
     if (next_pose(device).time_periods - begin_periods > patience_periods)
-      throw device::Error("The board does not finish its black box. Report this with the firmware version.");
+      throw device::Error("The board did not complete its black box. Report this with the firmware version.");
   }
 }
 
 int save_black_box(const DeviceOptions& device_options, const FaultOptions& options) {
   if (!options.overwrite && std::filesystem::exists(options.file))
     throw UsageError(
-        fmt::format("{} exists. Give another name, or --overwrite to replace what it holds.", options.file));
+        fmt::format("{} already exists. Give another name, or add --overwrite to replace the file.", options.file));
   try {
     recording::check_can_be_created(options.file, recording::Existing::is_replaced);
   } catch (const device::Error& error) {
@@ -161,7 +161,7 @@ int save_black_box(const DeviceOptions& device_options, const FaultOptions& opti
     fmt::print("{}\n", ordered_json{{"file", options.file}, {"black_box", to_json(box, image)}}.dump());
     return 0;
   }
-  fmt::print("{}: {} at {:.3f} s, {} samples of {} signals, {} before it, {} lost\n", options.file,
+  fmt::print("{}: {} at {:.3f} s, {} samples of {} signals, {} before the fault, {} lost\n", options.file,
              info(box.fault).name, time_s(box), recording.size(), recording.columns.size(), box.rows_before,
              recording.lost());
   print_crash(box, image);
@@ -184,18 +184,18 @@ int clear_fault(const DeviceOptions& options) {
 }  // namespace
 
 void add_fault_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
-      "fault", "The fault with its cause and remedy, and the signals around it; or `clear`");
+  auto* command =
+      place.program.add_subcommand("fault", "Shows the fault with cause and remedy, and saves the signals around it");
   const auto fault_options = std::make_shared<FaultOptions>();
   command->require_subcommand(0, 1);
   auto* file = command
                    ->add_option("--out", fault_options->file,
-                                "Save the black box, every signal around the last fault, as a recording: .h5 or .csv")
+                                "Save the black box (all signals around the last fault) as a recording: .h5 or .csv")
                    ->type_name("FILE");
-  command->add_flag("--overwrite", fault_options->overwrite, "Replace a file of that name")->needs(file);
+  command->add_flag("--overwrite", fault_options->overwrite, "Replace an existing file")->needs(file);
   auto* elf = command
                   ->add_option("--elf", fault_options->elf,
-                               "Name the functions and lines of a crash or a hang with the ELF of the flashed firmware")
+                               "ELF of the flashed firmware, to show the functions and lines of a crash or hang")
                   ->type_name("FILE")
                   ->check(CLI::ExistingFile);
   add_examples(
@@ -207,7 +207,7 @@ void add_fault_command(const Place& place) {
       return file->count() == 0 ? show_fault(options, *fault_options) : save_black_box(options, *fault_options);
     };
   });
-  auto* cleared = command->add_subcommand("clear", "Clears it once its cause is gone; the force stays off");
+  auto* cleared = command->add_subcommand("clear", "Clears the fault once its cause is gone; the force stays off");
   cleared->excludes(file);
   cleared->excludes(elf);
   add_examples(*cleared, "inkwell fault clear");

@@ -40,7 +40,7 @@ struct FlashOptions {
 
 std::string before_text(const std::optional<protocol::ImageIdentity>& before) {
   return before ? firmware_update::describe(*before)
-                : std::string("nothing that says what it is, so nobody could check that the image is for this board");
+                : std::string("unidentified data, so the image could not be checked against the board");
 }
 
 ordered_json to_json(const NewImage& image, const std::optional<protocol::ImageIdentity>& before) {
@@ -72,16 +72,15 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
     json["protocol_version"] = result.protocol_version;
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("The board held {}.\n", before_text(result.before));
-    if (result.has_set_brown_out) fmt::print("Its brown-out level was another one, and is 3 now.\n");
+    fmt::print("The board contained {}.\n", before_text(result.before));
+    if (result.has_set_brown_out) fmt::print("Its brown-out level was changed to 3.\n");
   }
   if (result.firmware_version.empty())
     throw device::Error(
-        "The firmware was written and read back, but the board does not show itself. Switch its power off and on "
-        "again, "
-        "then try `inkwell info`.");
+        "The firmware was written and verified, but the board does not respond. Switch its power off and on, then run "
+        "`inkwell info`.");
   if (!options.json)
-    fmt::print("Arm {} runs firmware {} now, protocol {}.\n", result.serial_number, result.firmware_version,
+    fmt::print("Arm {} now runs firmware {}, protocol {}.\n", result.serial_number, result.firmware_version,
                result.protocol_version);
   return 0;
 }
@@ -93,7 +92,7 @@ int flash_file(const DeviceOptions& options, const FlashOptions& given, const Ne
   if (options.json)
     fmt::print("{}\n", to_json(written, before).dump(2));
   else
-    fmt::print("{} holds {} now. Before: {}.\n", given.flash_file.string(),
+    fmt::print("{} now contains {}. Before: {}.\n", given.flash_file.string(),
                written.identity ? firmware_update::describe(*written.identity) : written.file.string(),
                before_text(before));
   return 0;
@@ -105,24 +104,23 @@ int write(const DeviceOptions& options, const FlashOptions& given, const NewImag
   firmware_update::update_by_probe(image, given.interface, given.consent(),
                                    [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   fmt::print("{}\n", options.json ? to_json(image, std::nullopt).dump(2)
-                                  : std::string("The firmware was written and read back, and has been started."));
+                                  : std::string("The firmware was written, verified and started."));
   return 0;
 }
 
 int flash(const DeviceOptions& options, FlashOptions given) {
   if (options.is_virtual)
     throw UsageError(
-        "--virtual in front of `flash` would start a board that ends with this command. Write `inkwell flash --virtual "
-        "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for one that runs.");
+        "--virtual before `flash` starts a board that exits with this command. Use `inkwell flash --virtual FILE` for "
+        "the flash file of a virtual board, or --usbip HOST:PORT for a running virtual board.");
   if (!given.board.empty()) {
     given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
   } else if (given.image.empty()) {
     // Unasked it would be a guess, and another board's pins drive other things.
     if (given.by_probe && std::size(board::known_boards) > 1)
-      throw UsageError(fmt::format(
-          "A probe cannot tell which board it hangs at. Name it with --board, which is one of these: {}; or "
-          "name the image.",
-          board::names_of_boards()));
+      throw UsageError(
+          fmt::format("A debug probe cannot identify the board. Name the image, or choose the board with --board: {}.",
+                      board::names_of_boards()));
     given.image = installation::firmware();
     given.image_for = firmware_update::own_image_for;
   }
@@ -130,40 +128,39 @@ int flash(const DeviceOptions& options, FlashOptions given) {
   try {
     return write(options, given, image);
   } catch (const firmware_update::Downgrade& downgrade) {
-    throw device::Error(fmt::format("{} To write it, add --allow-downgrade.", downgrade.what()));
+    throw device::Error(fmt::format("{} To write it anyway, add --allow-downgrade.", downgrade.what()));
   } catch (const firmware_update::Objected& objection) {
-    throw device::Error(fmt::format("{} If you know better, add --yes.", objection.what()));
+    throw device::Error(fmt::format("{} To write it anyway, add --yes.", objection.what()));
   }
 }
 
 }  // namespace
 
 void add_flash_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
-      "flash",
-      "Writes a firmware into a board, reads it back and starts it\n\n"
-      "Over USB the board is asked to leave its firmware for the boot loader in its chip; one that is in it already,\n"
-      "because its button BOOT0 was held while its power came on, is found there. Stored parameters stay. If it is\n"
-      "stopped in the middle, the same command again goes on.");
+  auto* command = place.program.add_subcommand("flash",
+                                               "Writes a firmware image to a board, verifies it and starts it\n\n"
+                                               "Over USB the board restarts into the boot loader of its chip. A board "
+                                               "that was switched on with its button BOOT0\n"
+                                               "held down is already in the boot loader, and is found there. Stored "
+                                               "parameters are retained. If the command was\n"
+                                               "interrupted, run it again.");
   const auto given = std::make_shared<FlashOptions>();
-  auto* image = command->add_option(
-      "IMAGE", given->image, "ELF of a firmware; unless given, that beside this program for the board that is there");
+  auto* image = command->add_option("IMAGE", given->image,
+                                    "Firmware image (ELF). Default: the installed image for the connected board");
   std::vector<std::string> boards;
   for (const board::Facts* each : board::known_boards) boards.emplace_back(each->name);
   command
-      ->add_option("--board", given->board,
-                   "The board, for the image beside this program; --swd wants it or IMAGE: no probe can ask")
+      ->add_option("--board", given->board, "Write the installed image for this board; --swd requires --board or IMAGE")
       ->check(CLI::IsMember(boards))
       ->excludes(image);
-  auto* by_usb = command->add_flag("--dfu", given->by_usb, "Over USB, which is the choice without any");
+  auto* by_usb = command->add_flag("--dfu", given->by_usb, "Write over USB (default)");
   auto* by_probe =
-      command->add_flag("--swd", given->by_probe, "By a debug probe at the board's SWD connector, with openocd");
-  auto* file =
-      command
-          ->add_option("--virtual", given->flash_file,
-                       "Into the file that virtual-board --flash keeps its flash in, while no board runs on it")
-          ->type_name("FILE")
-          ->check(not_empty());
+      command->add_flag("--swd", given->by_probe, "Write with openocd and a debug probe at the board's SWD connector");
+  auto* file = command
+                   ->add_option("--virtual", given->flash_file,
+                                "Write to the flash file of `virtual-board --flash`, while no board uses the file")
+                   ->type_name("FILE")
+                   ->check(not_empty());
   by_usb->excludes(by_probe)->excludes(file);
   by_probe->excludes(file);
   const CLI::Validator is_interface_name(
@@ -171,15 +168,15 @@ void add_flash_command(const Place& place) {
         return firmware_update::is_interface_name(name) ? std::string() : firmware_update::no_interface_name(name);
       },
       "");
-  command->add_option("--interface", given->interface, "Of --swd: the probe, by the name of openocd's file for it")
+  command->add_option("--interface", given->interface, "Debug probe for --swd: name of its openocd interface file")
       ->type_name("NAME")
       ->check(is_interface_name)
       ->capture_default_str()
       ->needs(by_probe);
   command->add_flag("--allow-downgrade", given->allows_downgrade,
-                    "Write the image even if its firmware is older than the one that it replaces");
+                    "Write the image even if it is older than the firmware on the board");
   command->add_flag("--yes", given->says_yes,
-                    "Write it even if it is for another board, of another protocol, damaged or older");
+                    "Write the image even if it is damaged, older, or for another board or protocol");
   add_examples(
       *command,
       "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd --board omni_driver\n"

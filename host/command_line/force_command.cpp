@@ -49,7 +49,7 @@ int keep_on(const DeviceOptions& options, double seconds) {
   ForceSwitch force(device);
   Pose pose = next_pose(device);
   tell_force(options, pose);
-  if (!options.json && seconds == 0) fmt::print("Ctrl-C switches it off.\n");
+  if (!options.json && seconds == 0) fmt::print("Ctrl-C switches the force off.\n");
   std::fflush(stdout);
   const std::int64_t begin_periods = pose.time_periods;
   const auto is_over = [&] {
@@ -69,21 +69,21 @@ int keep_on(const DeviceOptions& options, double seconds) {
 }  // namespace
 
 void add_force_command(const Place& place) {
-  auto* command = place.program.add_subcommand("force", "Whether the force is on; or `on`, `off`");
+  auto* command = place.program.add_subcommand("force", "Shows whether the force is on, or switches it on or off");
   command->require_subcommand(0, 1);
   add_examples(*command, "inkwell force\ninkwell force on\ninkwell force off");
   command->callback([place, command] {
     if (command->get_subcommands().empty()) place.action = [&options = place.device] { return show_force(options); };
   });
-  auto* on = command->add_subcommand("on", "Switches it on and keeps it on until Ctrl-C: then the arm pushes back");
+  auto* on = command->add_subcommand("on", "Switches the force on until Ctrl-C; walls then push back");
   const auto seconds = std::make_shared<double>(0);
-  on->add_option("--seconds", *seconds, "Switch it off after this time of the board")
+  on->add_option("--seconds", *seconds, "Switch the force off after this board time")
       ->type_name("SECONDS")
       ->check(more_than_zero());
   add_examples(*on, "inkwell force on\ninkwell force on --seconds 10");
   on->callback(
       [place, seconds] { place.action = [&options = place.device, seconds] { return keep_on(options, *seconds); }; });
-  auto* off = command->add_subcommand("off", "Switches it off, whoever switched it on");
+  auto* off = command->add_subcommand("off", "Switches the force off, whichever program switched it on");
   add_examples(*off, "inkwell force off");
   off->callback([place] { place.action = [&options = place.device] { return switch_off(options); }; });
 }

@@ -100,7 +100,7 @@ ForceDelay::Recording record_ramp(Program& program) {
     }
   });
   program.select({});
-  if (longest == 0) throw device::Error("The board sent no samples. Reset it and try again.");
+  if (longest == 0) throw device::Error("The board sent no samples. Reset the board and try again.");
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 

@@ -92,8 +92,8 @@ std::optional<std::string> ForceSwitch::loss(const Pose& pose) const {
     if (const auto driver = device_.driver())
       return fmt::format("The arm was taken over by {}.", device::driver_text(*driver));
   if (protocol::force_is_on(pose.state)) return std::nullopt;
-  return "The force went off." +
-         (pose.state == State::ready ? " Another program or a window has switched it off." : what_keeps_it_off(pose));
+  return "The force went off." + (pose.state == State::ready ? " Another program or a window switched the force off."
+                                                             : what_keeps_it_off(pose));
 }
 
 std::string force_sentence(const Pose& pose) {

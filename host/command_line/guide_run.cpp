@@ -32,7 +32,8 @@ std::optional<std::string> typed_line() {
   std::string line;
   for (char c = 0;;) {
     if (read(STDIN_FILENO, &c, 1) != 1)
-      throw UsageError("This step needs your consent, but nothing can be typed here. Give --yes to agree beforehand.");
+      throw UsageError(
+          "This step needs your consent, but standard input cannot be read. Add --yes to agree in advance.");
     if (c == '\n') return line;
     line += c;
   }
@@ -182,10 +183,11 @@ bool wants_to_store(const DeviceOptions& options, const Consent& consent, const 
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {
     if (!options.is_virtual)  // which ends before a further command could reach it
-      fmt::print(stderr, "The changes last until the board loses its power. `inkwell parameters store` keeps them.\n");
+      fmt::print(stderr,
+                 "The changes are lost when the board loses power. Run `inkwell parameters store` to store them.\n");
     return false;
   }
-  fmt::print(stderr, "Store the changes on the board, so that they outlive its power? Type yes: ");
+  fmt::print(stderr, "Store the changes on the board, so that they survive power loss? Type yes: ");
   std::fflush(stderr);
   for (;;) {
     if (const auto line = typed_line()) return *line == "yes" || *line == "y";
@@ -201,16 +203,16 @@ void print_result(const Guide& guide) {
     fmt::print("Nothing needs to change.\n");
     return;
   }
-  fmt::print("{}\n", guide.applied() == guides::Applied::yes ? "Applied:" : "Proposed, not applied (--apply does it):");
+  fmt::print("{}\n", guide.applied() == guides::Applied::yes ? "Applied:" : "Proposed, not applied (add --apply):");
   for (const auto& proposal : guide.findings().proposals) GuideRun::print(proposal, stdout);
 }
 
 }  // namespace
 
 void Consent::add_to(CLI::App& command) {
-  command.add_flag("--yes", yes, "Agree to every step beforehand: motors get current without a question");
-  command.add_flag("--apply", apply, "Send the proposed changes to the device without a question");
-  command.add_flag("--store", store, "Store the device's parameters at the end, so that they outlive its power");
+  command.add_flag("--yes", yes, "Agree to all steps in advance: motors are energized without asking");
+  command.add_flag("--apply", apply, "Apply the proposed changes without asking");
+  command.add_flag("--store", store, "Store the parameters on the board at the end, so that they survive power loss");
 }
 
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
@@ -231,7 +233,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
     if (guide.phase() != Phase::finished) failure = guide.outcome();
     if (guide.applied() == guides::Applied::refused) failure = guide.refusal();
     if (guide.applied() == guides::Applied::sent)
-      failure = "The device did not confirm the changes. Read them back with `inkwell parameters`.";
+      failure = "The device did not confirm the changes. Check the values with `inkwell parameters`.";
     if (!failure.empty()) break;
   }
   bool is_stored = false;
@@ -239,7 +241,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
     try {
       device.store_parameters();
       is_stored = true;
-      if (!options.json) fmt::print("The parameters are stored on the board and outlive its power.\n");
+      if (!options.json) fmt::print("The parameters are stored on the board and survive power loss.\n");
     } catch (const device::Error& error) {
       failure = error.what();
     }

@@ -68,7 +68,8 @@ void GuidedDevice::give_parameters(const std::vector<device::ParameterChange>& c
   };
   while (!holds_them()) {
     if (limit.is_over(session_->newest_pose()))
-      throw device::Error(session_->refusal().value_or("The device did not take the arm's parameters."));
+      throw device::Error(
+          session_->refusal().value_or("The device did not accept the parameters of the arm description. Try again."));
     std::this_thread::sleep_for(5ms);
   }
 }

@@ -69,7 +69,7 @@ CLI::Validator number_that(Fits fits, std::string what) {
         const auto value = device::parse_number(text);
         return value && std::isfinite(*value) && fits(*value)
                    ? std::string()
-                   : fmt::format("{} does not do. Give a number that is {}.", text, what);
+                   : fmt::format("{} is not valid. Give a number that is {}.", text, what);
       },
       "");
 }
@@ -96,7 +96,7 @@ CLI::Validator whole_number_within(int low, int high) {
         int value = 0;
         return CLI::detail::lexical_cast(text, value) && value >= low && value <= high
                    ? std::string()
-                   : fmt::format("{} does not do. Give a whole number from {} to {}.", text, low, high);
+                   : fmt::format("{} is not valid. Give a whole number from {} to {}.", text, low, high);
       },
       "");
 }
@@ -104,8 +104,7 @@ CLI::Validator whole_number_within(int low, int high) {
 CLI::Validator not_empty() {
   return CLI::Validator(
       [](const std::string& text) {
-        return text.empty() ? std::string("An empty text does not do. Leave the option out, or give it its value.")
-                            : std::string();
+        return text.empty() ? std::string("The value is empty. Give a value, or omit the option.") : std::string();
       },
       "");
 }
@@ -148,14 +147,15 @@ std::optional<std::string> wrong_command(const CLI::App& program) {
   std::vector<std::string_view> names;
   names.reserve(below.size());
   for (const Below& each : below) names.push_back(each.name);
-  return fmt::format("{}Say which of these: {} {}.", unknown, words, fmt::join(names, ", "));
+  return fmt::format("{}Choose one of these: {} {}.", unknown, words, fmt::join(names, ", "));
 }
 
 void add_examples(CLI::App& command, const std::string& examples) {
   command.footer(fmt::format(
-      "Examples:\n{}\n\n"
-      "Which arm is meant: the one on USB unless told otherwise by --virtual, --usbip HOST:PORT or --serial NUMBER;\n"
-      "--json gives output for programs. `inkwell --help` explains these and the exit codes.",
+      "Examples:\n"
+      "{}\n\n"
+      "The command uses the arm on USB; choose another with --virtual, --usbip HOST:PORT or --serial NUMBER.\n"
+      "--json prints JSON for programs. `inkwell --help` describes these options and the exit codes.",
       indented(examples)));
 }
 

@@ -25,7 +25,7 @@ ordered_json law_signals(const device::ForceLaw& law) {
 }
 
 std::string board_text(const std::string& name) {
-  if (name.empty()) return "unknown: the firmware names none";
+  if (name.empty()) return "unknown: the firmware does not report it";
   return board::find_board(name) ? name : name + ", which this companion does not know";
 }
 
@@ -84,10 +84,10 @@ void print(const device::Information& information, const protocol::StoreReport& 
              report.pose_reports_dropped, report.scope_samples_dropped);
   fmt::print("forces of programs  {} received, {} lost, {} late, {} refused\n", report.force_reports,
              report.force_reports_lost, report.force_reports_late, report.force_reports_refused);
-  fmt::print("motor heat          {:.0f} %, {:.0f} %, {:.0f} % of what the continuous current leads to\n",
+  fmt::print("motor heat          {:.0f} %, {:.0f} %, {:.0f} % of the heat at continuous current\n",
              100.0 * report.motor_heat[0], 100.0 * report.motor_heat[1], 100.0 * report.motor_heat[2]);
   fmt::print("stored parameters   {}{}\n", info(store.contents).meaning,
-             store.differing == 0 ? "" : fmt::format(" {} held values are others.", store.differing));
+             store.differing == 0 ? "" : fmt::format(" {} current values differ.", store.differing));
   fmt::print("driven by           {}\n", driver ? device::driver_text(*driver) : "no program");
   if (!pose) {
     fmt::print("state               unknown: the device sends no pose\n");
@@ -96,15 +96,15 @@ void print(const device::Information& information, const protocol::StoreReport& 
   fmt::print("supply              {:.1f} V\n", pose->supply_dV / 10.0);
   fmt::print("state               {}: {}\n", info(pose->state).name, info(pose->state).meaning);
   if (pose->fault != protocol::Fault::none) fmt::print("fault               {}\n", device::fault_line(pose->fault));
-  fmt::print("place of the arm    {}\n",
+  fmt::print("position of the arm {}\n",
              pose->is_referenced ? "known" : "unknown: put the stylus into the inkwell once");
 }
 
 }  // namespace
 
 void add_info_command(const Place& place) {
-  auto* command =
-      place.program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
+  auto* command = place.program.add_subcommand(
+      "info", "Shows the connected device: versions, counters, state, and fault with remedy");
   add_examples(*command, "inkwell info\ninkwell info --virtual --json");
   command->callback([place] {
     place.action = [&options = place.device] {

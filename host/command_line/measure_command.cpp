@@ -95,7 +95,7 @@ int measure_delay(const DeviceOptions& options, const DelayOptions& wanted) {
     hold(arm);
   else if (!arm.endpoint.is_virtual && !wanted.is_held)
     throw UsageError(
-        "The arm pushes to and fro with up to 0.5 N. Hold the stylus in the middle of the box, and give --yes.");
+        "The arm pushes back and forth with up to 0.5 N. Hold the stylus in the middle of the box, and add --yes.");
   const auto delay = [&] {
     ForceSwitch force(*arm.device);
     const FastForce fast_force(*arm.device);
@@ -111,17 +111,18 @@ int measure_delay(const DeviceOptions& options, const DelayOptions& wanted) {
 }  // namespace
 
 void add_measure_command(const Place& place) {
-  auto* command = place.program.add_subcommand("measure", "Measurements of the arm's timing");
+  auto* command = place.program.add_subcommand("measure", "Measures the timing of the arm");
   command->require_subcommand(1);
   add_examples(*command, "inkwell measure delay --virtual");
   auto* delay = command->add_subcommand(
-      "delay", "Delay from a pose to the program's force that answers it, and its frequency response");
+      "delay", "Measures the delay from a pose to the force computed from it, and the frequency response");
   const auto wanted = std::make_shared<DelayOptions>();
-  delay->add_option("--recordings", wanted->recordings, "Recordings of 60 ms in which the delay is measured, 1 to 1000")
+  delay->add_option("--recordings", wanted->recordings, "Number of 60 ms recordings to measure the delay in, 1 to 1000")
       ->type_name("NUMBER")
       ->check(whole_number_within(1, 1000))
       ->capture_default_str();
-  delay->add_flag("--yes", wanted->is_held, "Somebody holds the stylus of a real arm, which pushes with up to 0.5 N");
+  delay->add_flag("--yes", wanted->is_held,
+                  "Confirm that you hold the stylus of the real arm, which pushes with up to 0.5 N");
   add_examples(*delay, "inkwell measure delay --virtual\ninkwell measure delay --recordings 20 --yes --json");
   delay->callback([place, wanted] {
     place.action = [&options = place.device, wanted] { return measure_delay(options, *wanted); };

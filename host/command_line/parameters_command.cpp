@@ -33,9 +33,9 @@ ordered_json to_json(Parameter parameter, float value, float stored) {
 void explain_marks(std::size_t not_stored) {
   fmt::print("\n* differs from the default of this companion\n");
   if (not_stored == 0)
-    fmt::print("The board's next start gives every parameter the value that it has now.\n");
+    fmt::print("After its next start the board has the same parameter values.\n");
   else
-    fmt::print("! {} {} not stored, and lost with the board's power unless `inkwell parameters store` keeps {}\n",
+    fmt::print("! {} {} not stored and lost at power loss, unless you store {} with `inkwell parameters store`\n",
                not_stored, not_stored == 1 ? "value is" : "values are", not_stored == 1 ? "it" : "them");
 }
 
@@ -104,7 +104,7 @@ void finish(const DeviceOptions& options, device::Device& device, std::size_t co
     fmt::print("{}\n", json.dump());
   } else {
     fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
-    if (store) fmt::print("The parameters are stored on the board and outlive its power.\n");
+    if (store) fmt::print("The parameters are stored on the board and survive power loss.\n");
   }
   tell_what_ends(options, store);
 }
@@ -136,10 +136,10 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
     loaded = device::load_parameters(file);
   }
   for (const auto& name : loaded.unknown)
-    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is passed over.{}\n", name,
+    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is ignored.{}\n", name,
                device::parameter_suggestion(name));
   if (loaded.changes.empty())
-    throw device::Error(fmt::format("{} holds no parameter that this version knows. Nothing was sent.", file));
+    throw device::Error(fmt::format("{} contains no parameter that this version knows. Nothing was sent.", file));
   if (!connection) connection = connect(options);
   return {std::move(loaded), std::move(connection)};
 }
@@ -150,7 +150,8 @@ void check_is_free(const std::string& file) {
   if (std::filesystem::is_directory(file, code))
     throw UsageError(fmt::format("{} is a folder. Give the name of a file in it.", file));
   if (std::filesystem::exists(file, code))
-    throw UsageError(fmt::format("{} exists. Give another name, or --overwrite to replace what it holds.", file));
+    throw UsageError(
+        fmt::format("{} already exists. Give another name, or add --overwrite to replace the file.", file));
 }
 
 int save(const DeviceOptions& options, const std::string& file, bool overwrite) {
@@ -185,7 +186,7 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
   if (options.json)
     fmt::print("{}\n", json.dump(2));
   else if (differences.empty())
-    fmt::print("The device holds what {} says.\n", file);
+    fmt::print("The device has the values of {}.\n", file);
   return 0;
 }
 
@@ -194,9 +195,10 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
 void add_parameters_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "parameters",
-      "Every parameter with value, default, range and unit; or one of the commands below\n"
-      "Values last until the board loses its power, unless `inkwell parameters store` keeps them, or --store of the\n"
-      "command that changes them.");
+      "Lists all parameters with value, default, range and unit, or runs a command from below\n"
+      "Changed values are lost when the board loses power. To store them on the board, use `inkwell parameters "
+      "store`,\n"
+      "or add --store to the command that changes them.");
   command->require_subcommand(0, 1);
   const DeviceOptions& options = place.device;
   command->callback([place, command] {
@@ -217,45 +219,46 @@ void add_parameters_command(const Place& place) {
     subcommand->callback([place, run] { place.action = run; });
     return subcommand;
   };
-  add("get", "The value of one or more parameters", "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",
+  add("get", "Prints the values of one or more parameters",
+      "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",
       [&options, words] { return get(options, *words); })
-      ->add_option("NAME", *words, "Names of parameters")
+      ->add_option("NAME", *words, "Parameter names")
       ->required();
   const auto store = std::make_shared<bool>(false);
   const auto add_change = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
     auto* subcommand = add(name, help, examples, std::move(run));
-    subcommand->add_flag("--store", *store, "Keep the parameters on the board afterwards, over its power");
+    subcommand->add_flag("--store", *store, "Also store the parameters on the board, so that they survive power loss");
     return subcommand;
   };
-  add_change("set", "Change parameters in one transaction: all of them take effect together, or none",
+  add_change("set", "Changes parameters in one transaction: all of them take effect together, or none",
              "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
              "inkwell parameters set wall_stiffness_N_per_m=600 --store",
              [&options, words, store] { return set(options, *words, *store); })
       ->add_option("ASSIGNMENT", *words, "NAME=VALUE: a parameter and its new value, in the unit that its name ends in")
       ->required();
-  add_change("defaults", "Give every parameter its default", "inkwell parameters defaults",
+  add_change("defaults", "Sets every parameter to its default", "inkwell parameters defaults",
              [&options, store] { return restore_defaults(options, *store); });
-  add_change("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
+  add_change("load", "Sends the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
              [&options, file, store] {
                const auto [loaded, connection] = load_and_complain(options, *file);
                return send(options, *connection, loaded.changes, *store);
              })
-      ->add_option("FILE", *file, "Written by `inkwell parameters save`")
+      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
       ->required();
   const auto overwrite = std::make_shared<bool>(false);
-  auto* save_command = add("save", "Write the device's parameters to a TOML file",
+  auto* save_command = add("save", "Writes the device's parameters to a TOML file",
                            "inkwell parameters save soft.toml\ninkwell parameters save soft.toml --overwrite",
                            [&options, file, overwrite] { return save(options, *file, *overwrite); });
-  save_command->add_option("FILE", *file, "It must not exist yet; - is standard output")->required();
-  save_command->add_flag("--overwrite", *overwrite, "Replace a file of that name");
-  add("diff", "Show where a TOML file and the device differ", "inkwell parameters diff soft.toml",
+  save_command->add_option("FILE", *file, "New file to write; - is standard output")->required();
+  save_command->add_flag("--overwrite", *overwrite, "Replace an existing file");
+  add("diff", "Shows the differences between a TOML file and the device", "inkwell parameters diff soft.toml",
       [&options, file] { return show_differences(options, *file); })
-      ->add_option("FILE", *file, "Written by `inkwell parameters save`")
+      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
       ->required();
-  add_change("arm", "Send the geometry, limits and box of an arm description in one transaction",
+  add_change("arm", "Sends the geometry, limits and box of an arm description in one transaction",
              "inkwell parameters arm boards/arms/paper.toml",
              [&options, file, store] { return send(options, connect(options), device::arm_parameters(*file), *store); })
-      ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
+      ->add_option("FILE", *file, "Arm description, such as boards/arms/paper.toml")
       ->required();
   add_store_commands(*command, place);
 }

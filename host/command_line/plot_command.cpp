@@ -43,7 +43,8 @@ std::vector<std::string> draw_as_in_paper(const recording::Recording& recording,
 
 std::string draw(recording::Recording recording, const PlotOptions& options) {
   if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
-    throw UsageError(fmt::format("{} does not end in .png, and a figure is a PNG.", options.place));
+    throw UsageError(
+        fmt::format("{} does not end in .png. Figures are PNG files; give a name that ends in .png.", options.place));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
   std::optional<recording::Overlay> over;
   if (!options.over.empty()) {
@@ -76,32 +77,35 @@ int plot(const DeviceOptions& device_options, const PlotOptions& options) {
 
 void add_plot_command(const Place& place) {
   auto* command = place.program.add_subcommand(
-      "plot", "Draw a recording against time, one pane for each unit, or as the paper drew it");
+      "plot", "Plots a recording over time with one pane per unit, or like the paper's figures");
   const auto plot_options = std::make_shared<PlotOptions>();
-  command->add_option("FILE", plot_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
-  auto* signals = command
-                      ->add_option("--signals", plot_options->signals,
-                                   "Names with commas between them, also of what a simulation knew; all unless given")
-                      ->type_name("NAMES");
+  command->add_option("FILE", plot_options->file, "Recording from `inkwell record` or `inkwell experiment`")
+      ->required();
+  auto* signals =
+      command
+          ->add_option("--signals", plot_options->signals,
+                       "Comma-separated signal names, also of a simulation's true values. Default: all signals")
+          ->type_name("NAMES");
   auto* paper =
       command->add_flag("--paper", plot_options->as_in_paper,
-                        "A push into a wall as figures 11 to 14 of Eriksson and Wikander; not with --signals");
+                        "Plot a wall push like figures 11 to 14 of Eriksson and Wikander; not with --signals");
   paper->excludes(signals);
-  auto* over = command->add_option("--over", plot_options->over, "Another recording, laid over with broken lines")
-                   ->type_name("FILE")
-                   ->excludes(paper);
+  auto* over =
+      command->add_option("--over", plot_options->over, "Second recording, plotted over FILE with dashed lines")
+          ->type_name("FILE")
+          ->excludes(paper);
   command
       ->add_option("--align", plot_options->align,
-                   "Text of a mark that both hold, at which they are aligned; their begins unless given")
+                   "Text of the mark that aligns both recordings. Default: their first samples")
       ->type_name("MARK")
       ->needs(over);
-  command->add_option("--from", plot_options->from_s, "Start, since the first sample")
+  command->add_option("--from", plot_options->from_s, "Start time after the first sample")
       ->type_name("SECONDS")
       ->check(zero_or_more());
-  command->add_option("--to", plot_options->to_s, "End, since the first sample")
+  command->add_option("--to", plot_options->to_s, "End time after the first sample")
       ->type_name("SECONDS")
       ->check(more_than_zero());
-  command->add_option("--out", plot_options->place, "The PNG, or the folder for --paper; beside FILE unless given")
+  command->add_option("--out", plot_options->place, "PNG file, or folder for --paper. Default: next to FILE")
       ->type_name("PLACE");
   add_examples(*command,
                "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"

@@ -27,8 +27,8 @@ int complain(const std::exception& error, int exit_code) {
 
 int run(int argument_count, char** arguments) {
   CLI::App program(
-      "Companion of an Inkwell haptic arm: a robot arm whose stylus you hold and whose motors let you feel walls.\n"
-      "Alone it opens the window; its commands do the same work for scripts and terminals.",
+      "Companion of an Inkwell haptic arm: a robot arm with a stylus that you hold and motors that let you feel walls\n"
+      "Without a command it opens the window. The commands do the same work for scripts and terminals.",
       "inkwell");
   set_help_style(program);
   program.set_version_flag("--version", INKWELL_VERSION, "Print the version");
@@ -36,16 +36,18 @@ int run(int argument_count, char** arguments) {
   program.footer(
       "Examples:\n"
       "  inkwell --virtual                            the window, on a simulated board, arm and hand\n"
-      "  inkwell info                                 is an arm there, and is it well?\n"
+      "  inkwell info                                 shows the connected arm and its state\n"
       "  inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
       "  inkwell experiment wall --virtual --out results\n\n"
-      "The window has the arm in its box, signals against time below it, and at the right the panes Tuning, Guides,\n"
-      "Recording, Faults and Log. F1 lists its keys; Escape, F12 and STOP switch the force off. Sizes, theme and\n"
-      "layouts are kept in inkwell/window.toml of $XDG_CONFIG_HOME (~/.config), unless --forget-settings is given.\n\n"
-      "`inkwell COMMAND --help` explains a command. The options above may stand before or behind it.\n"
-      "Lengths are in metres, angles in radians, forces in newtons, times in seconds of the board; names of\n"
+      "The window shows the arm in its box, and signals over time below it. The panes on the right are Tuning, "
+      "Guides,\n"
+      "Recording, Faults and Log. F1 lists the keys; Escape, F12 and STOP switch the force off. Sizes, theme and "
+      "layouts\n"
+      "are saved to inkwell/window.toml of $XDG_CONFIG_HOME (~/.config), unless --forget-settings is given.\n\n"
+      "`inkwell COMMAND --help` describes a command. The options above may precede or follow the command.\n"
+      "Lengths are in meters, angles in radians, forces in newtons, times in seconds of board time. Names of\n"
       "parameters and signals end in their unit.\n"
-      "Exit code: 0 done, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
+      "Exit code: 0 success, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
   program.require_subcommand(0, 1);
   program.fallthrough();  // the device's options may stand behind the command as well
 
@@ -62,7 +64,7 @@ int run(int argument_count, char** arguments) {
     // Behind "--" there are words only, and no command: the window would open in its place.
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
-          "\"--\" stands in front of the command. Leave it out; of `inkwell run` it may stand behind the command.");
+          "\"--\" is not allowed before the command. Omit it, or put it after the command of `inkwell run`.");
     refuse_window_options_in_vain(program);
   } catch (const UsageError& error) {
     return complain(error, wrong_usage);
@@ -81,7 +83,7 @@ int run(int argument_count, char** arguments) {
   } catch (const UsageError& error) {
     return complain(error, wrong_usage);
   } catch (const device::SeveralArms& error) {
-    return complain(device::NoDevice(fmt::format("{} Name it with --serial NUMBER.", error.what())), failure);
+    return complain(device::NoDevice(fmt::format("{} Choose one with --serial NUMBER.", error.what())), failure);
   } catch (const std::exception& error) {
     return complain(error, failure);
   }

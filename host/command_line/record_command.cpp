@@ -73,7 +73,7 @@ class RecordingThread {
         silent_reads = samples ? 0 : silent_reads + 1;
         // Twice what the poses have: a board that is silent altogether is told as one.
         if (silent_reads * read_timeout > 2 * silence_limit)
-          throw device::Error("The board tells its pose but sends no samples. Start the recording again.");
+          throw device::Error("The board sends poses but no samples. Start the recording again.");
         if (samples) take(*samples);
       }
     } catch (const device::Error& error) {
@@ -125,7 +125,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
   RecordingThread scope(device, recorder, span);
   ProgressBar progress;
   const auto show = [&](const RecorderStatus& status) {
-    if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C ends it.", std::nullopt);
+    if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C stops it.", std::nullopt);
     // The last sample is one period before the end.
     progress(progress_text(status),
              std::min(1.0, (status.duration_s + 1.0 / protocol::servo_rate_Hz) / options.seconds));
@@ -194,11 +194,12 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
     failure = error.what();
   }
   auto status = recorder.stop();
-  if (status.error.empty() && !failure.empty()) status.error = failure + " The recording holds everything up to then.";
+  if (status.error.empty() && !failure.empty())
+    status.error = failure + " The recording contains all samples up to then.";
   if (const auto missing = span.missing_at_end(status.samples, status.lost); missing > 0 && status.error.empty())
     status.error = fmt::format(
-        "The last {:.4f} s were lost on the way from the board, or the disk was too slow for them. The recording holds "
-        "everything up to then.",
+        "The last {:.4f} s were lost between board and PC, or the disk was too slow. The recording contains all "
+        "samples up to then.",
         static_cast<double>(missing) / protocol::servo_rate_Hz);
   if (device_options.json)
     fmt::print("{}\n", to_json(options, status, force_went_off).dump());
@@ -213,29 +214,28 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
 }  // namespace
 
 void add_record_command(const Place& place) {
-  auto* command =
-      place.program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
+  auto* command = place.program.add_subcommand(
+      "record", "Records signals at every control period, until Ctrl-C or for a given time");
   const auto record_options = std::make_shared<RecordOptions>();
   command
       ->add_option("FILE", record_options->file,
-                   "Its ending chooses the format: .h5 (HDF5) or .csv. It must not exist yet")
+                   "New file to write. Its extension selects the format: .h5 (HDF5) or .csv")
       ->required();
   auto* signals =
       command
           ->add_option("--signals", record_options->signals,
-                       "Names as in `inkwell signals`, with commas; what replay and plots need unless given")
+                       "Comma-separated names from `inkwell signals`. Default: the signals of replay and plots")
           ->type_name("NAMES");
   command
-      ->add_flag("--all", record_options->all,
-                 "The whole signal path, from the encoders to the duties; not with --signals")
+      ->add_flag("--all", record_options->all, "All signals from the encoders to the duty cycles; not with --signals")
       ->excludes(signals);
-  command->add_option("--seconds", record_options->seconds, "End after this time of the board")
+  command->add_option("--seconds", record_options->seconds, "Stop after this board time")
       ->type_name("SECONDS")
       ->check(more_than_zero());
   command->add_flag("--mark-key", record_options->mark_key,
-                    "The space bar sets a mark; from a pipe, each line does, with its text");
+                    "The space bar sets a mark; from a pipe, each line sets a mark with its text");
   command->add_flag("--force", record_options->force,
-                    "Switch the force on before and off after: the arm pushes back where there are walls");
+                    "Switch the force on before the recording and off after it; walls push back");
   add_examples(*command,
                "inkwell record push.h5 --mark-key --force\n"
                "inkwell record push.csv --signals force_N,position_z_m --seconds 10");

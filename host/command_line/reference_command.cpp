@@ -74,8 +74,8 @@ std::string names_of(protocol::States states) {
 std::string_view text(protocol::Clearing clearing) {
   switch (clearing) {
     case protocol::Clearing::when_gone: return "when its cause is gone";
-    case protocol::Clearing::at_once: return "at once";
-    case protocol::Clearing::by_reset: return "by a reset of the board only";
+    case protocol::Clearing::at_once: return "immediately";
+    case protocol::Clearing::by_reset: return "only by a reset of the board";
   }
   return "";
 }
@@ -96,28 +96,36 @@ void print_supervision() {
     fmt::print("| {} | {} | {} | {} |\n", i, row.name, row.force_is_on ? "on" : "off", row.meaning);
   }
   fmt::print(
-      "\nIn every control period the first way that is open is taken; a fault that is found goes before them.\n\n"
-      "| from | to | needs | unless |\n| --- | --- | --- | --- |\n");
+      "\n"
+      "In every control period the supervisor follows the first open transition. A detected fault has precedence.\n\n"
+      "| from | to | needs | unless |\n"
+      "| --- | --- | --- | --- |\n");
   for (const auto& way : protocol::way_table)
     fmt::print("| {} | {} | {} | {} |\n", info(way.from).name, info(way.to).name, names_of(way.needs),
                names_of(way.unless));
   fmt::print("\n| event | meaning |\n| --- | --- |\n");
   for (const auto& row : protocol::event_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
   fmt::print(
-      "\n## What is watched\n\nOf several faults in one period the first in this list is told. A motor that brakes is "
-      "shorted through the low sides of its bridge until the arm is slow; gently: not while it presses with more "
-      "than a part of the force limit.\n\n"
-      "| fault | watched while | can be cleared | an arm that moves |\n| --- | --- | --- | --- |\n");
+      "\n"
+      "## Monitored faults\n\n"
+      "Of several faults in one period the board reports the first in this list. A braked motor is shorted through the "
+      "low sides of its bridge until the arm is slow. Gentle braking pauses while the motor presses with more than a "
+      "share of the force limit.\n\n"
+      "| fault | watched while | can be cleared | an arm that moves |\n"
+      "| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::watch_table)
     fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
-               row.voids_reference ? ", and asks for the inkwell anew" : "", text(row.off));
+               row.voids_reference ? ", and requires the inkwell again" : "", text(row.off));
 }
 
 void print_self_test() {
   fmt::print(
-      "\n## Self-test\n\nAfter each start, and on command. An item that fails takes the force away where the table "
-      "says "
-      "so.\n\n| item | figure | takes the force | what it looks at | remedy |\n| --- | --- | --- | --- | --- |\n");
+      "\n"
+      "## Self-test\n\n"
+      "The self-test runs after each start and on command. A failed item disables the force where the table says "
+      "so.\n\n"
+      "| item | figure | takes the force | what it checks | remedy |\n"
+      "| --- | --- | --- | --- | --- |\n");
   for (const auto& row : protocol::self_test_item_table)
     fmt::print("| {} | {} | {} | {} | {} |\n", row.name, row.unit, row.takes_force ? "yes" : "no", row.meaning,
                row.remedy);
@@ -127,8 +135,11 @@ void print_self_test() {
 
 void print_store() {
   fmt::print(
-      "\n## Parameter store\n\nWhat became of the last command to store the parameters or to forget them.\n\n"
-      "| result | meaning | remedy |\n| --- | --- | --- |\n");
+      "\n"
+      "## Parameter store\n\n"
+      "Results of the last command that stored or erased the parameters.\n\n"
+      "| result | meaning | remedy |\n"
+      "| --- | --- | --- |\n");
   for (const auto& row : protocol::store_result_table)
     fmt::print("| {} | {} | {} |\n", row.name, row.meaning, row.remedy);
   fmt::print("\n| contents | meaning |\n| --- | --- |\n");
@@ -136,10 +147,18 @@ void print_store() {
 }
 
 void print_codes() {
-  fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
+  fmt::print(
+      "\n"
+      "## Force sources\n\n"
+      "| bit | source | meaning |\n"
+      "| --- | --- | --- |\n");
   for (const auto& row : protocol::force_source_table)
     fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.source), row.name, row.meaning);
-  fmt::print("\n## What holds the force back\n\n| bit | limit | meaning |\n| --- | --- | --- |\n");
+  fmt::print(
+      "\n"
+      "## Force limits\n\n"
+      "| bit | limit | meaning |\n"
+      "| --- | --- | --- |\n");
   for (const auto& row : protocol::limit_table)
     fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.limit), row.name, row.meaning);
   fmt::print("\n## Faults\n\n| code | fault | cause | remedy |\n| --- | --- | --- | --- |\n");
@@ -174,15 +193,15 @@ void print_tables() {
 }  // namespace
 
 void add_reference_command(const Place& place) {
-  auto* command = place.program.add_subcommand("reference",
-                                               "The protocol as Markdown: reports and their fields, supervision, "
-                                               "codes, parameters and signals; needs no device");
+  auto* command = place.program.add_subcommand(
+      "reference", "Prints reports, states, codes, parameters and signals as Markdown; needs no device");
   add_examples(*command, "inkwell reference > protocol.md");
   command->callback([place] {
     place.action = [] {
       fmt::print(
-          "# Protocol, version {}\n\nUSB {:04x}:{:04x}{}. Made by `inkwell reference` from the tables that firmware "
-          "and companion share.\n\n",
+          "# Protocol, version {}\n\n"
+          "USB {:04x}:{:04x}{}. Generated by `inkwell reference` from the tables that firmware and companion "
+          "share.\n\n",
           protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id,
           protocol::usb::is_test_identity ? ", a test number that other devices may have too" : "");
       print_reports();

@@ -96,18 +96,18 @@ void add_replay_command(const Place& place) {
     bool information = false;
     bool log = false;
   };
-  auto* command = place.program.add_subcommand(
-      "replay", "Open the window on a recording; or, with --info or --json, say what it holds");
+  auto* command =
+      place.program.add_subcommand("replay", "Opens a recording in the window, or describes it with --info or --json");
   const auto replay_options = std::make_shared<ReplayOptions>();
-  command->add_option("FILE", replay_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
-  command->add_option("OVER", replay_options->over, "Another recording, laid over the first in the scope");
+  command->add_option("FILE", replay_options->file, "Recording from `inkwell record` or `inkwell experiment`")
+      ->required();
+  command->add_option("OVER", replay_options->over, "Second recording, shown over FILE in the scope");
   command
       ->add_option("--align", replay_options->align,
-                   "Text of a mark that both hold, at which they are aligned; their begins unless given")
+                   "Text of the mark that aligns both recordings. Default: their first samples")
       ->type_name("MARK");
-  command->add_flag("--info", replay_options->information, "Only say what it holds");
-  command->add_flag("--log", replay_options->log,
-                    "Only print its marks and what happened to the device: clock, time, kind, text");
+  command->add_flag("--info", replay_options->information, "Only describe the recording");
+  command->add_flag("--log", replay_options->log, "Only print its marks and device events: clock, time, kind, text");
   add_examples(*command,
                "inkwell replay push.h5\ninkwell replay soft.h5 stiff.h5 --align touch\n"
                "inkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");

@@ -43,14 +43,14 @@ std::string environment(const char* name) {
 }
 
 void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
-  fmt::print(stderr, "inkwell: the program gets the arm {} ({}){}.\n", endpoint.serial_number, address,
+  fmt::print(stderr, "inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
              endpoint.is_virtual ? ", a simulation" : "");
 }
 
 int run(const DeviceOptions& options, std::vector<std::string> words) {
   if (words.empty()) throw UsageError("No program is named. Give one: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
   if (words.front().starts_with('-'))
-    throw UsageError(fmt::format("There is no option {}. inkwell run --help lists them.", words.front()));
+    throw UsageError(fmt::format("There is no option {}. `inkwell run --help` lists the options.", words.front()));
   const auto libraries = installation::dropins();
   if (!std::filesystem::exists(libraries / "libHD.so"))
     throw device::Error(fmt::format(
@@ -75,7 +75,7 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   for (const int signal : passed_on) sigaction(signal, &action, nullptr);
   pid_t process = 0;
   if (const int code = posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ); code != 0)
-    throw device::Error(fmt::format("{} can not be started: {}. Check its name and that it may be executed.", words[0],
+    throw device::Error(fmt::format("{} cannot be started: {}. Check its name and whether it is executable.", words[0],
                                     std::strerror(code)));
   program_process = process;
   if (early_signal != 0) kill(process, early_signal);
@@ -91,11 +91,11 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
 void add_run_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "run",
-      "Start a program that was made for an Omni's libraries (HDAPI, CHAI3D) with this arm\n\n"
-      "Puts libHD.so and libhdPhantom.so of this arm in the place of theirs "
-      "and sets INKWELL_DEVICE. With --virtual, a\n"
-      "virtual board lives as long as the program. Options stand before PROGRAM; what stands behind is its own.\n"
-      "Exit code: the program's, or 128 and the signal that ended it.");
+      "Starts a program written for an Omni's libraries (HDAPI, CHAI3D) with this arm\n\n"
+      "Replaces the Omni's libraries with libHD.so and libhdPhantom.so of this arm, and sets INKWELL_DEVICE. With\n"
+      "--virtual, a virtual board runs as long as the program. Options precede PROGRAM; words after it are its "
+      "arguments.\n"
+      "Exit code: that of the program, or 128 plus the number of the signal that ended it.");
   const auto own = std::make_shared<DeviceOptions>();
   command->fallthrough(false);
   own->add_to(*command);

@@ -58,8 +58,10 @@ void print(const SelfTestReport& report) {
   });
   for_each_item(report, [&](const auto& item, const auto& entry) {
     if (entry.result == SelfTestResult::failed)
-      fmt::print("\n{} has failed{}. Sound is: {} {}\n", item.name,
-                 item.takes_force ? ", and without it there is no force" : "", item.meaning, item.remedy);
+      fmt::print(
+          "\n"
+          "{} failed{}. Expected: {} {}\n",
+          item.name, item.takes_force ? ", and the force stays off" : "", item.meaning, item.remedy);
   });
   if (is_well(report)) return;
   bool is_told[protocol::self_test_result_table.size()] = {};
@@ -87,9 +89,9 @@ int test(const DeviceOptions& options, bool only_last) {
 
 void add_self_test_command(const Place& place) {
   auto* command = place.program.add_subcommand(
-      "self-test", "The board tests motors, bridges, sensors and wires; each item's result, figure and remedy");
+      "self-test", "Tests motors, bridges, sensors and wires; shows result, figure and remedy of each item");
   const auto only_last = std::make_shared<bool>(false);
-  command->add_flag("--last", *only_last, "Show what the newest test has found, without a new one");
+  command->add_flag("--last", *only_last, "Show the results of the last test, without a new test");
   add_examples(*command, "inkwell self-test\ninkwell self-test --last\ninkwell self-test --json");
   command->callback([place, only_last] {
     place.action = [&options = place.device, only_last] { return test(options, *only_last); };

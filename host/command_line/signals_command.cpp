@@ -27,7 +27,7 @@ int list_signals(const DeviceOptions& options) {
 
 void add_signals_command(const Place& place) {
   auto* command =
-      place.program.add_subcommand("signals", "Every signal that can be recorded, with its unit; needs no device");
+      place.program.add_subcommand("signals", "Lists all signals that can be recorded, with unit; needs no device");
   add_examples(*command, "inkwell signals");
   command->callback([place] { place.action = [&options = place.device] { return list_signals(options); }; });
 }

@@ -51,7 +51,7 @@ Plan plan_of(const SoakOptions& command) {
   if (!command.sitting) return plan;
   if (*command.sitting > count)
     throw UsageError(
-        fmt::format("The last sitting of a soak of --seconds {} is {}. Give that or less, or more --seconds.",
+        fmt::format("A soak of --seconds {} has {} sittings. Give a number up to that, or increase --seconds.",
                     board_time_s, count));
   plan.numbers = {*command.sitting};
   return plan;
@@ -62,7 +62,7 @@ void check_writable(const std::string& file) {
   std::error_code ignored;
   const bool was_there = std::filesystem::exists(file, ignored);
   if (!std::ofstream(file, std::ios::app))
-    throw device::Error(fmt::format("{} cannot be written. Name another file with --out.", file));
+    throw device::Error(fmt::format("{} cannot be written. Choose another file with --out.", file));
   if (!was_there) std::filesystem::remove(file, ignored);
 }
 
@@ -122,36 +122,36 @@ void add_soak_command(const Place& place) {
   const auto options = std::make_shared<SoakOptions>();
   auto* command = place.program.add_subcommand(
       "soak",
-      "Random use, faults, pulled cables and storms of parameters on virtual boards, judged all along.\n"
-      "Ctrl-C ends it and tells what is known so far. Exit code 1: something was found.");
+      "Tests virtual boards with random use, faults, unplugged cables and parameter changes\n"
+      "Ctrl-C stops the soak and prints the results so far. Exit code 1: the soak found a problem.");
   // tools/soak has options of its own; those of its user come behind them and count.
   command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
-  command->add_option("--seconds", options->board_time_s, "Board time of all boards together, shared alike")
+  command->add_option("--seconds", options->board_time_s, "Total board time, divided equally among the boards")
       ->check(positive)
       ->type_name("SECONDS")
       ->default_str(fmt::format("{:.0f}", default_board_time_s));
-  command->add_option("--jobs", options->jobs, "So many boards at once")
+  command->add_option("--jobs", options->jobs, "Number of boards to run in parallel")
       ->check(whole_number_within(1, 256))
       ->type_name("NUMBER")
       ->capture_default_str();
-  command->add_option("--seed", options->choices.seed, "Of all that is random")
+  command->add_option("--seed", options->choices.seed, "Seed of all random choices")
       ->type_name("NUMBER")
       ->capture_default_str();
   command
       ->add_option("--sitting", options->sitting,
-                   "Only this board of the seed, from its start; with --seconds as in a soak of that time")
+                   "Run only this board of the seed; with --seconds as in a soak of that time")
       ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
-  command->add_option("--sitting-seconds", options->choices.sitting_s, "Board time of one board, at most")
+  command->add_option("--sitting-seconds", options->choices.sitting_s, "Maximum board time of one board")
       ->check(positive)
       ->type_name("SECONDS")
       ->capture_default_str();
-  command->add_option("--use-seconds", options->choices.use_s, "The longest use in a phase")
+  command->add_option("--use-seconds", options->choices.use_s, "Longest use in one phase")
       ->check(positive)
       ->type_name("SECONDS")
       ->capture_default_str();
-  command->add_option("--out", options->file, "JSON file of the result")->type_name("FILE");
+  command->add_option("--out", options->file, "JSON file for the result")->type_name("FILE");
   add_examples(*command,
                "inkwell soak --seconds 3600 --jobs 8 --out soak.json\n"
                "inkwell soak --seed 1 --sitting 3");

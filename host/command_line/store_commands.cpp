@@ -63,12 +63,12 @@ ordered_json to_json(const ParameterSet& held, const BoardStore& store) {
 
 void print_start(const StoreReport& report) {
   if (report.contents_at_start != StoreContents::parameters) return;
-  fmt::print("at the start   {} parameters, which firmware {} had stored\n", report.entries, firmware_version(report));
+  fmt::print("at the start   {} parameters, stored by firmware {}\n", report.entries, firmware_version(report));
   if (report.out_of_range > 0)
-    fmt::print("               {} of them took their default: this firmware refuses their value\n",
+    fmt::print("               {} of them have their default: this firmware rejects the stored value\n",
                report.out_of_range);
   if (report.unknown > 0)
-    fmt::print("               {} of them this firmware does not know but keeps: {}{}\n", report.unknown,
+    fmt::print("               {} of them are unknown to this firmware but retained: {}{}\n", report.unknown,
                fmt::join(unknown_ids(report), ", "),
                report.unknown > protocol::store_unknown_ids_maximum ? ", ..." : "");
 }
@@ -78,14 +78,18 @@ void print(const ParameterSet& held, const BoardStore& store) {
   const auto waiting = not_stored(held, store);
   fmt::print("stored         {}\n", info(report.contents).meaning);
   print_start(report);
-  fmt::print("room           {} more before the board's next start, which makes some\n", report.stores_left);
-  fmt::print("wear           {} written, sectors erased {} times\n", report.records_written,
+  fmt::print("room           {} more stores before the board's next start, which frees space\n", report.stores_left);
+  fmt::print("wear           {} records written, sectors erased {} times\n", report.records_written,
              fmt::join(report.sector_erases, " and "));
   if (waiting.empty()) {
-    fmt::print("\nThe next start gives every parameter the value that it has now.\n");
+    fmt::print(
+        "\n"
+        "After its next start the board has the same parameter values.\n");
     return;
   }
-  fmt::print("\nLost with the board's power, unless `inkwell parameters store` keeps them:\n");
+  fmt::print(
+      "\n"
+      "Lost at power loss, unless you store them with `inkwell parameters store`:\n");
   for (const auto parameter : waiting)
     fmt::print("  {:<32} {:>12}   stored {:>12} {}\n", info(parameter).name, format_value(parameter, held[parameter]),
                format_value(parameter, store.at_next_start[parameter]), info(parameter).unit);
@@ -113,24 +117,24 @@ void tell(const DeviceOptions& options, device::Device& device, std::string_view
 int store(const DeviceOptions& options) {
   const auto connection = connect(options);
   store_parameters(*connection.device);
-  tell(options, *connection.device, "The parameters are stored on the board and outlive its power.");
+  tell(options, *connection.device, "The parameters are stored on the board and survive power loss.");
   return 0;
 }
 
 int restore(const DeviceOptions& options) {
   const auto connection = connect(options);
   connection.device->restore_stored_parameters();
-  tell(options, *connection.device, "Every parameter has the value that is stored on the board.");
+  tell(options, *connection.device, "Every parameter has its stored value.");
   return 0;
 }
 
 bool agrees() {
   fmt::print(stderr,
-             "Everything that is stored on the board is forgotten, the calibration of its arm too. `inkwell parameters "
-             "save FILE` keeps it in a file.\n");
+             "This erases all stored parameters, including the calibration of the arm. To save them to a file first, "
+             "use `inkwell parameters save FILE`.\n");
   if (isatty(STDIN_FILENO) != 1)
-    throw UsageError("A factory reset needs your consent, but nothing can be typed here. Give --yes to agree.");
-  fmt::print(stderr, "Type yes to go on: ");
+    throw UsageError("A factory reset needs your consent, but standard input is not a terminal. Add --yes to agree.");
+  fmt::print(stderr, "Type yes to continue: ");
   std::fflush(stderr);
   std::string line;
   std::getline(std::cin, line);
@@ -138,10 +142,10 @@ bool agrees() {
 }
 
 int reset(const DeviceOptions& options, bool is_agreed) {
-  if (!is_agreed && !agrees()) throw device::Error("Nothing was forgotten.");
+  if (!is_agreed && !agrees()) throw device::Error("Nothing was erased.");
   const auto connection = connect(options);
   factory_reset(*connection.device);
-  tell(options, *connection.device, "What was stored is forgotten, and every parameter has its default.");
+  tell(options, *connection.device, "The stored parameters are erased, and every parameter has its default.");
   return 0;
 }
 
@@ -150,14 +154,14 @@ int reset(const DeviceOptions& options, bool is_agreed) {
 void tell_what_ends(const DeviceOptions& options, bool is_stored) {
   if (!options.is_virtual || (is_stored && !options.flash.empty())) return;
   if (is_stored)
-    fmt::print(stderr, "inkwell: This virtual board ends now, with its flash. With --flash FILE it keeps it.\n");
+    fmt::print(stderr, "inkwell: This virtual board exits now, and its flash is lost. Use --flash FILE to keep it.\n");
   else if (options.flash.empty())
-    fmt::print(
-        stderr,
-        "inkwell: This virtual board ends now, with these values. With --flash FILE and --store they are kept.\n");
+    fmt::print(stderr,
+               "inkwell: This virtual board exits now, and these values are lost. Use --flash FILE and --store to keep "
+               "them.\n");
   else
     fmt::print(stderr,
-               "inkwell: This virtual board ends now, and {} keeps only what is stored. Add --store to keep these "
+               "inkwell: This virtual board exits now, and {} contains only stored values. Add --store to keep these "
                "values.\n",
                options.flash.string());
 }
@@ -169,19 +173,18 @@ void add_store_commands(CLI::App& parameters, const Place& place) {
     return command;
   };
   const DeviceOptions& options = place.device;
-  add_examples(*add("store", "Keep the parameters on the board as they are now, over its power",
+  add_examples(*add("store", "Stores the current parameters on the board, so that they survive power loss",
                     [&options] { return store(options); }),
                "inkwell parameters store\ninkwell parameters store --json");
-  add_examples(*add("restore", "Give every parameter the value that is stored on the board",
-                    [&options] { return restore(options); }),
+  add_examples(*add("restore", "Sets every parameter to its stored value", [&options] { return restore(options); }),
                "inkwell parameters restore");
-  add_examples(*add("stored", "What the board has stored, what would be lost with its power, and the flash's wear",
+  add_examples(*add("stored", "Shows the stored parameters, the values that are not stored, and the flash wear",
                     [&options] { return show(options); }),
                "inkwell parameters stored\ninkwell parameters stored --json");
   const auto yes = std::make_shared<bool>(false);
-  auto* factory = add("factory", "Forget what is stored, the calibration too; every parameter gets its default",
+  auto* factory = add("factory", "Erases the stored parameters and the calibration; restores all defaults",
                       [&options, yes] { return reset(options, *yes); });
-  factory->add_flag("--yes", *yes, "Agree beforehand");
+  factory->add_flag("--yes", *yes, "Agree in advance");
   add_examples(*factory, "inkwell parameters factory\ninkwell parameters factory --yes");
 }
 

@@ -9,7 +9,7 @@ namespace {
 void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
   guide
       .add_option_function<int>(
-          "--motor", [&loop](int motor) { loop.motors = {motor}; }, "This motor only, 1 to 3; all three unless given")
+          "--motor", [&loop](int motor) { loop.motors = {motor}; }, "Motor to measure, 1 to 3. Default: all three")
       ->type_name("NUMBER")
       ->check(whole_number_within(1, 3));
   guide
@@ -24,7 +24,7 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
 }  // namespace
 
 void add_tune_command(const Place& place) {
-  auto* command = place.program.add_subcommand("tune", "Guides that find parameters by measuring");
+  auto* command = place.program.add_subcommand("tune", "Guides that determine parameters by measurement");
   command->require_subcommand(1);
   add_examples(*command,
                "inkwell tune current-loop\ninkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");

@@ -123,13 +123,13 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
 }  // namespace
 
 void add_watch_command(const Place& place) {
-  auto* command =
-      place.program.add_subcommand("watch", "The pose, live: position, force, buttons and state, ten lines a second");
+  auto* command = place.program.add_subcommand(
+      "watch", "Prints the live pose: position, force, buttons and state, ten lines per second");
   const auto watch_options = std::make_shared<WatchOptions>();
-  command->add_option("--seconds", watch_options->seconds, "End after this time of the board; without it, at Ctrl+C")
+  command->add_option("--seconds", watch_options->seconds, "Stop after this board time. Default: at Ctrl+C")
       ->type_name("SECONDS")
       ->check(more_than_zero());
-  command->add_option("--rate", watch_options->rate_Hz, "Lines a second, 0.1 to 1000")
+  command->add_option("--rate", watch_options->rate_Hz, "Lines per second, 0.1 to 1000")
       ->type_name("HZ")
       ->check(number_within(0.1, 1000.0))
       ->capture_default_str();

@@ -85,38 +85,44 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   const auto settings = std::make_shared<Settings>();
   auto& window = settings->window;
   const char* group = window_group;
-  program.add_option("--parameters", window.parameters_file, "Send this TOML file to the device once it is connected")
+  program
+      .add_option("--parameters", window.parameters_file,
+                  "TOML file of parameters to send when the device is connected")
       ->type_name("FILE")
       ->group(group);
-  program.add_option("--layout", window.layout, "Layout of the scope to begin with: one of these, or of your own")
+  program.add_option("--layout", window.layout, "Initial layout of the scope: one of these, or a custom layout")
       ->type_name(layout_choices())
       ->group(group);
-  program.add_option("--theme", settings->theme, "Colours")->check(CLI::IsMember({"dark", "light"}))->group(group);
+  program.add_option("--theme", settings->theme, "Color theme")->check(CLI::IsMember({"dark", "light"}))->group(group);
   program
       .add_option("--scale", window.scale,
-                  "Size of fonts, spacing and the window, 0.5 to 4; the display's own unless given")
+                  "Scale of fonts, spacing and window, 0.5 to 4. Default: the scale of the display")
       ->type_name("FACTOR")
       ->check(number_within(0.5, 4.0))
       ->group(group);
-  program.add_option("--width", window.width, "Width of the window: pixels, or on a fine display several for each")
+  program
+      .add_option("--width", window.width,
+                  "Width of the window in points: one pixel, or several on a high-resolution display")
       ->type_name("POINTS")
       ->check(whole_number_within(window::smallest_window_points.width, 16384))
       ->capture_default_str()
       ->group(group);
-  program.add_option("--height", window.height, "Height of the window, likewise")
+  program.add_option("--height", window.height, "Height of the window in points")
       ->type_name("POINTS")
       ->check(whole_number_within(window::smallest_window_points.height, 16384))
       ->capture_default_str()
       ->group(group);
-  program.add_option("--screenshot", window.screenshot, "Write a picture of the window to this PNG file and close")
+  program
+      .add_option("--screenshot", window.screenshot,
+                  "Save a screenshot of the window to this PNG file and close the window")
       ->type_name("FILE")
       ->group(group);
-  program.add_option("--after-seconds", window.after_seconds, "When the picture is taken")
+  program.add_option("--after-seconds", window.after_seconds, "Delay of the screenshot after the first frame")
       ->type_name("SECONDS")
       ->check(zero_or_more())
       ->capture_default_str()
       ->group(group);
-  program.add_flag("--frames-report", window.frames_report, "Print the frames a second when the window closes")
+  program.add_flag("--frames-report", window.frames_report, "Print the frame rate when the window closes")
       ->group(group);
   program
       .add_flag("--inspect", window.inspect,
@@ -125,9 +131,8 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program
-      .add_option(
-          "--control", settings->control,
-          "Control socket of the virtual board at --usbip, HOST:PORT or unix:PATH, for the mouse and for faults")
+      .add_option("--control", settings->control,
+                  "Control socket of the --usbip virtual board for mouse and faults: HOST:PORT or unix:PATH")
       ->type_name("ADDRESS")
       ->group(group);
   const OpenWindow open = [&options, settings](const window::ReplayRequest& replay) {
@@ -145,8 +150,8 @@ void refuse_window_options_in_vain(const CLI::App& program) {
   for (const CLI::Option* option : program.get_options())
     if (option->get_group() == window_group && option->count() > 0)
       throw UsageError(
-          fmt::format("{} is an option of the window, and `inkwell {}` opens none. Leave it out; `inkwell` alone and "
-                      "`inkwell {}` take it.",
+          fmt::format("{} is a window option, and `inkwell {}` opens no window. Omit it, or use it with `inkwell` "
+                      "alone or `inkwell {}`.",
                       option->get_name(), commands.front()->get_name(), command_with_window));
 }
 

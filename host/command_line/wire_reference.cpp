@@ -114,14 +114,19 @@ std::string_view name_of(protocol::SignalWire wire) {
 
 void print_wire() {
   fmt::print(
-      "\n## What goes over the wire\n\nLittle-endian; `float` is IEEE 754's of 32 bits. Offsets and sizes are in "
-      "bytes, "
-      "bit 0 is the lowest. The codes of State, Fault, Refusal, RequestResult, ForceSource and Limit are in tables "
+      "\n"
+      "## Wire format\n\n"
+      "The byte order is little-endian. `float` is a 32-bit IEEE 754 number. Offsets and sizes are in bytes; bit 0 is "
+      "the lowest bit. The codes of State, Fault, Refusal, RequestResult, ForceSource and Limit are in the tables "
       "below.\n");
   for (const auto& intro : layouts::intros) {
     std::string text = "    ";
     for (const char letter : intro.text) text += letter == '\n' ? std::string("\n    ") : std::string(1, letter);
-    fmt::print("\n`{}` says:\n\n{}\n", intro.header, text);
+    fmt::print(
+        "\n"
+        "From `{}`:\n\n"
+        "{}\n",
+        intro.header, text);
   }
   print_structs();
   print_enumerations();

@@ -38,14 +38,15 @@ std::string name_of(const CLI::Option& option) {
 std::string of_conversion(const Given& given) {
   const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
   const auto& values = given.option->results();
-  const std::string name = name_of(*given.option), help = fmt::format("`{} --help` explains it.", given.command);
+  const std::string name = name_of(*given.option), help = fmt::format("`{} --help` describes it.", given.command);
   if (given.option->get_items_expected_max() == 0)
-    return fmt::format("{} takes no value such as {}. Leave that out; {}", name, CLI::detail::join(values, " "), help);
+    return fmt::format("{} accepts no value, but got {}. Omit the value; {}", name, CLI::detail::join(values, " "),
+                       help);
   // Of several values CLI11 does not say which it means.
   const auto no_number = std::ranges::find_if_not(values, is_number);
   if (no_number != values.end())
-    return fmt::format("{} is no number for {}. Give one such as 12; {}", *no_number, name, help);
-  return fmt::format("{} does not do for {}. Give a whole number that is not negative, such as 12; {}",
+    return fmt::format("{} is not a number for {}. Give a number such as 12; {}", *no_number, name, help);
+  return fmt::format("{} is not valid for {}. Give a whole number that is not negative, such as 12; {}",
                      CLI::detail::join(values, " "), name, help);
 }
 
@@ -56,8 +57,8 @@ std::optional<std::string> of_missing_value(const CLI::App& program, std::string
   const auto given =
       find_given(program, program.get_name(), [&](const auto& option) { return option.get_name() == name; });
   if (!given) return std::nullopt;
-  return fmt::format("Nothing stands behind {}. Give it its value; `{} --help` explains it.", name_of(*given->option),
-                     given->command);
+  return fmt::format("The value of {} is missing. Give it after the option; `{} --help` describes it.",
+                     name_of(*given->option), given->command);
 }
 
 }  // namespace

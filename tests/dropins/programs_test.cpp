@@ -67,7 +67,7 @@ TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and end
   INFO(run.out, run.err);
   CHECK(run.exit_code == 0);
   CHECK(told(run.out, "position").substr(0, 2) == "0 ");
-  CHECK(run.err.find("the program gets the arm") != std::string::npos);
+  CHECK(run.err.find("the program uses the arm") != std::string::npos);
   CHECK(run.err.find("a simulation") != std::string::npos);
   CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "exit 7"}).exit_code == 7);
   CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "kill -9 $$"}).exit_code == 137);
@@ -79,7 +79,7 @@ TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and end
   CHECK(run_program("inkwell", {"run", "--virtaul", "true"}).exit_code == 2);
   const auto missing = run_program("inkwell", {"run", "--virtual", "/no/such/program"});
   CHECK(missing.exit_code == 1);
-  CHECK(missing.err.find("/no/such/program can not be started") != std::string::npos);
+  CHECK(missing.err.find("/no/such/program cannot be started") != std::string::npos);
   CHECK(run_program("inkwell", {"run", "--virtual"}).exit_code == 2);
   CHECK(run_program("inkwell", {"run", "--usbip", "127.0.0.1:1", "true"}).exit_code == 1);
 }

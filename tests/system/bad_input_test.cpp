@@ -129,8 +129,8 @@ TEST_CASE("an arm description that is wrong is refused with the line to mend") {
 
 TEST_CASE("the companion refuses what it does not know") {
   SUBCASE("a command behind two dashes") {
-    check_refused(run_program("inkwell", {"--", "run", "./program"}), {"--", "Leave it out"});
-    check_refused(run_program("inkwell", {"--virtual", "--", "info"}), {"--", "Leave it out"});
+    check_refused(run_program("inkwell", {"--", "run", "./program"}), {"--", "Omit it"});
+    check_refused(run_program("inkwell", {"--virtual", "--", "info"}), {"--", "Omit it"});
   }
   SUBCASE("parameter") {
     check_refused(run_program("inkwell", {"--virtual", "parameters", "set", "wall_stifness_N_per_m=500"}),
@@ -172,29 +172,30 @@ TEST_CASE("the companion refuses what it does not know") {
       CHECK(result.err == "inkwell: " + sentence + "\n");
     };
     says({"campaign", "run", "17", "abc"},
-         "abc is no number for CASE. Give one such as 12; `inkwell campaign run --help` explains it.");
+         "abc is not a number for CASE. Give a number such as 12; `inkwell campaign run --help` describes it.");
     says({"campaign", "run", "-3"},
-         "-3 does not do for CASE. Give a whole number that is not negative, such as 12; "
-         "`inkwell campaign run --help` explains it.");
-    says({"soak", "--seed", "x"}, "x is no number for --seed. Give one such as 12; `inkwell soak --help` explains it.");
+         "-3 is not valid for CASE. Give a whole number that is not negative, such as 12; "
+         "`inkwell campaign run --help` describes it.");
+    says({"soak", "--seed", "x"},
+         "x is not a number for --seed. Give a number such as 12; `inkwell soak --help` describes it.");
     says({"--virtual", "--seed", "1.5", "info"},
-         "1.5 does not do for --seed. Give a whole number that is not "
-         "negative, such as 12; `inkwell --help` explains it.");
+         "1.5 is not valid for --seed. Give a whole number that is not "
+         "negative, such as 12; `inkwell --help` describes it.");
     says({"--json=maybe", "info"},
-         "--json takes no value such as maybe. Leave that out; `inkwell --help` explains it.");
-    says({"campaign", "--jobs", "two"}, "--jobs: two does not do. Give a whole number from 1 to 256.");
-    says({"watch", "--rate", "nan"}, "--rate: nan does not do. Give a number that is from 0.1 to 1000.");
+         "--json accepts no value, but got maybe. Omit the value; `inkwell --help` describes it.");
+    says({"campaign", "--jobs", "two"}, "--jobs: two is not valid. Give a whole number from 1 to 256.");
+    says({"watch", "--rate", "nan"}, "--rate: nan is not valid. Give a number that is from 0.1 to 1000.");
     says({"soak", "--seconds"},
-         "Nothing stands behind --seconds. Give it its value; `inkwell soak --help` explains it.");
+         "The value of --seconds is missing. Give it after the option; `inkwell soak --help` describes it.");
   }
   SUBCASE("layout") {
     check_refused(run_program("inkwell", {"--virtual", "--layout", "nonsense"}), {"nonsense", "--layout", "paper"});
   }
   SUBCASE("options of the window where none opens") {
     check_refused(run_program("inkwell", {"plot", "push.h5", "--layout", "nonsense"}),
-                  {"--layout", "`inkwell plot` opens none"});
+                  {"--layout", "`inkwell plot` opens no window"});
     check_refused(run_program("inkwell", {"--parameters", "soft.toml", "record", "push.h5"}),
-                  {"--parameters", "`inkwell record` opens none"});
+                  {"--parameters", "`inkwell record` opens no window"});
     // Replaying opens one, so there it is the recording that is missed.
     const auto replayed = run_program("inkwell", {"replay", "nowhere.h5", "--info", "--layout", "paper"});
     check_refused(replayed, {"nowhere.h5"});
@@ -210,7 +211,7 @@ TEST_CASE("the companion refuses what it does not know") {
   SUBCASE("empty names of devices, which scripts make") {
     for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
              {"info", "--usbip", ""}, {"info", "--serial", ""}, {"flash", "--virtual", ""}})
-      check_refused(run_program("inkwell", words), {words[1].c_str(), "An empty text"});
+      check_refused(run_program("inkwell", words), {words[1].c_str(), "The value is empty"});
   }
   SUBCASE("ELF") {
     check_refused(run_program("inkwell", {"--virtual", "--elf", "nowhere.elf", "info"}), {"nowhere.elf"});

@@ -84,7 +84,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   const auto check_none = [&] {
     const auto refused = rig.run({"fault", "--out", file});
     CHECK(refused.exit_code == 1);
-    CHECK(refused.err.find("No black box is kept") != std::string::npos);
+    CHECK(refused.err.find("No black box is recorded") != std::string::npos);
     CHECK_FALSE(std::filesystem::exists(file));
     CHECK(nlohmann::json::parse(rig.run({"fault", "--json"}).out).at("black_box").is_null());
     CHECK(rig.run({"fault"}).out.find("black box") == std::string::npos);
@@ -110,8 +110,8 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   CHECK(recording.marks[0].period == recording.periods[protocol::black_box_rows_before]);
 
   const auto shown = rig.run({"fault"});
-  CHECK(shown.out.find("A black box is kept: every signal around bridge_fault") != std::string::npos);
-  CHECK(shown.out.find("`inkwell fault --out FILE` saves it") != std::string::npos);
+  CHECK(shown.out.find("The board has recorded a black box: every signal around bridge_fault") != std::string::npos);
+  CHECK(shown.out.find("Save it with `inkwell fault --out FILE`") != std::string::npos);
   CHECK(shown.out.find("exception") == std::string::npos);
   const auto json = nlohmann::json::parse(rig.run({"fault", "--out", file, "--json"}).out);
   CHECK(json.at("file") == file);
@@ -128,7 +128,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
 
   const auto exists = rig.run({"fault", "--out", file});
   CHECK(exists.exit_code == 2);
-  CHECK(exists.err.find("exists. Give another name, or --overwrite to replace") != std::string::npos);
+  CHECK(exists.err.find("already exists. Give another name, or add --overwrite to replace") != std::string::npos);
   CHECK(rig.run({"fault", "--out", file, "--overwrite"}).exit_code == 0);
   for (const auto& words : std::vector<std::vector<std::string>>{{"fault", "--overwrite"},
                                                                  {"fault", "--out", ""},
@@ -142,7 +142,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   rig.control.heal("bridge_fault");
   rig.control.run(0.01);
   rig.control.resume();
-  CHECK(rig.run({"fault", "clear"}).out.find("A black box is kept") != std::string::npos);
+  CHECK(rig.run({"fault", "clear"}).out.find("The board has recorded a black box") != std::string::npos);
   CHECK(rig.run({"force", "on", "--seconds", "0.1"}).exit_code == 0);
   std::filesystem::remove(file);
   check_none();
@@ -229,7 +229,7 @@ TEST_CASE("a command switches the force on for as long as it runs, and any other
   words.insert(words.begin(), build_directory() + "/inkwell");
   RunningProgram on(words);
   CHECK(on.read_line() == "The force is on.");
-  CHECK(on.read_line() == "Ctrl-C switches it off.");
+  CHECK(on.read_line() == "Ctrl-C switches the force off.");
   CHECK(rig.run({"force"}).out == "The force is on.\n");
   SUBCASE("Ctrl-C") {
     kill(on.process(), SIGINT);

@@ -116,9 +116,9 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   result = board.flash({"--dfu", "--allow-downgrade"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
-  CHECK(says(result, "The board held firmware"));
+  CHECK(says(result, "The board contained firmware"));
   CHECK(says(result, "protocol " + std::to_string(protocol::protocol_version + 1)));
-  CHECK_FALSE(says(result, "brown-out level was another"));  // it has been set, and outlives the firmware
+  CHECK_FALSE(says(result, "brown-out level was changed"));  // it has been set, and outlives the firmware
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("a word of yes writes it all the same") {
   --identity.protocol_version;
   // What it makes of the chip is no firmware: made up here, it only has to get there.
   const auto result = board.flash({write_elf(directory, made_segments(identity)), "--yes"});
-  CHECK(says(result, "was written and read back, but the board does not show itself"));
+  CHECK(says(result, "was written and verified, but the board does not respond"));
 }
 
 TEST_CASE("a flashing that was cut off is repaired by the same command") {
@@ -199,7 +199,7 @@ TEST_CASE("a flashing that was cut off is repaired by the same command") {
   const auto result = board.flash({});
   INFO(result.err);
   CHECK(result.exit_code == 0);
-  CHECK(says(result, "The board held nothing that says what it is"));  // its begin went first
+  CHECK(says(result, "The board contained unidentified data"));  // its begin went first
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 
@@ -294,7 +294,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   std::filesystem::remove(called);
   const auto nameless = run_program("/usr/bin/env", {path, companion, "flash", "--swd"});
   CHECK(nameless.exit_code == 2);
-  CHECK(says(nameless, "--board, which is one of these: bench_modules, omni_driver"));
+  CHECK(says(nameless, "--board: bench_modules, omni_driver"));
   const auto path_as_interface =
       run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--interface", "../x", "--board", "omni_driver"});
   CHECK(path_as_interface.exit_code == 2);

@@ -165,5 +165,5 @@ TEST_CASE("without consent nothing is powered") {
 TEST_CASE("a range that is none is wrong usage") {
   const auto result = run_program("inkwell", {"calibrate", "pots", "--virtual", "--yes", "--yaw-range", "2:-2"});
   CHECK(result.exit_code == 2);
-  CHECK(result.err.find("is no range") != std::string::npos);
+  CHECK(result.err.find("is not a range") != std::string::npos);
 }

@@ -326,7 +326,7 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(run({"--last"}).exit_code == 0);
   const auto open = run({});
   CHECK(open.exit_code == 1);
-  CHECK(open.out.find("motor_2 has failed, and without it there is no force.") != std::string::npos);
+  CHECK(open.out.find("motor_2 failed, and the force stays off.") != std::string::npos);
   const auto json = nlohmann::json::parse(run({"--last", "--json"}).out);
   CHECK(json.at("well") == false);
   CHECK(json.at("items").at(17).at("item") == "motor_2");

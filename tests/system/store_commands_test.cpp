@@ -69,7 +69,7 @@ TEST_CASE("values last until the board's power goes, unless they are stored") {
   CHECK(board.stiffness() == default_stiffness);
 
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600"});
-  CHECK(board.run({"parameters", "store"}).out == "The parameters are stored on the board and outlive its power.\n");
+  CHECK(board.run({"parameters", "store"}).out == "The parameters are stored on the board and survive power loss.\n");
   board.restart();
   CHECK(board.stiffness() == 600);
 
@@ -80,7 +80,7 @@ TEST_CASE("values last until the board's power goes, unless they are stored") {
 
 TEST_CASE("what is not stored is marked, counted and listed with the value that is") {
   RememberingBoard board;
-  CHECK(board.run({"parameters"}).out.find("next start gives every parameter the value that it has now") !=
+  CHECK(board.run({"parameters"}).out.find("After its next start the board has the same parameter values") !=
         std::string::npos);
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "wall_damping_Ns_per_m=3"});
   board.done({"parameters", "store"});
@@ -194,7 +194,7 @@ TEST_CASE("values that a virtual board of one command would lose are told of, an
   const auto stiffness = [&] { return std::stod(run({"get", "wall_stiffness_N_per_m"}).out); };
   const auto lost = run({"set", "wall_stiffness_N_per_m=600"});
   REQUIRE(lost.exit_code == 0);
-  CHECK(lost.err.find("flash.bin keeps only what is stored. Add --store") != std::string::npos);
+  CHECK(lost.err.find("flash.bin contains only stored values. Add --store") != std::string::npos);
   CHECK(stiffness() == default_stiffness);
 
   const auto kept = run({"set", "wall_stiffness_N_per_m=700", "--store", "--json"});
@@ -206,7 +206,7 @@ TEST_CASE("values that a virtual board of one command would lose are told of, an
   CHECK(stiffness() == default_stiffness);
 
   const auto without_file = run_program("inkwell", {"parameters", "set", "wall_stiffness_N_per_m=600", "--virtual"});
-  CHECK(without_file.err.find("With --flash FILE and --store") != std::string::npos);
+  CHECK(without_file.err.find("Use --flash FILE and --store") != std::string::npos);
 }
 
 TEST_CASE("a virtual board without a file says that it forgets") {

@@ -53,8 +53,8 @@ TEST_CASE("an arm that does not tell its board does not keep the others from bei
   usb.add_arm("0022");
   const auto [exit_code, complaint] = run_here({"inkwell", "devices"});
   CHECK(exit_code == 0);
-  CHECK(contains(complaint, "Arm 0011 does not tell its board"));
-  CHECK(contains(complaint, "Arm 0022 does not tell its board"));
+  CHECK(contains(complaint, "The board of arm 0011 cannot be read"));
+  CHECK(contains(complaint, "The board of arm 0022 cannot be read"));
 }
 
 TEST_CASE("a recording whose end does not come says so, and is no success") {
@@ -81,11 +81,11 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
   std::string said;
   SUBCASE("its stream breaks off, and the poses go on") {
     end = [&] { usb.set_bulk_fails(arm, true); };
-    said = "The recording holds everything up to then";
+    said = "The recording contains all samples up to then";
   }
   SUBCASE("its stream says nothing, and the poses go on") {
     end = [] {};
-    said = "tells its pose but sends no samples";
+    said = "sends poses but no samples";
   }
   SUBCASE("what comes next lies behind its end") {
     end = [&] {
@@ -93,7 +93,7 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
       usb.send_bulk(arm, scope_frame(token, 1000, 0.5f));
       usb.send_bulk(arm, scope_frame(token, 1500, 0.5f));
     };
-    said = "were lost on the way";
+    said = "were lost between board and PC";
   }
   std::thread cable([&] {
     while (usb.endpoints_under_way(arm).empty()) std::this_thread::yield();
