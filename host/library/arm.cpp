@@ -91,7 +91,7 @@ inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> a
   const auto next =
       poses_.wait([&](const auto& newest, Loss loss) { return is_new = loss == Loss::none && newest.sequence != seen; },
                   checked_timeout_s(timeout_s), answer);
-  if (!is_new) throw TimedOut("No pose came in time. Reset the board, or let a paused virtual board run.");
+  if (!is_new) throw TimedOut("No pose arrived in time. Reset the board, or let a paused virtual board run.");
   return next;
 }
 
@@ -103,7 +103,7 @@ void Arm::sleep(double duration_s) const {
     const double before_s = now.time_s;
     now = poses_.wait([&](const auto& newest, Loss) { return newest.time_s >= end_s; }, silence_s);
     if (now.time_s == before_s)
-      throw TimedOut("No pose came for 2 s. Reset the board, or let a paused virtual board run.");
+      throw TimedOut("No pose arrived for 2 s. Reset the board, or let a paused virtual board run.");
   }
 }
 
@@ -132,7 +132,7 @@ void Arm::enable_force(double timeout_s) {
     waited_s += wait_s;
     if (waited_s < limit_s) continue;
     if (now.state == INKWELL_UNREFERENCED)
-      throw NotNow("The arm does not know where it is. Put the stylus into the inkwell once, then try again.");
+      throw NotNow("The encoders are not referenced. Put the stylus into the inkwell once, then try again.");
     throw TimedOut("The device did not switch the force on in time. Try again.");
   }
 }

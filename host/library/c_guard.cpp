@@ -55,7 +55,7 @@ inkwell_result result_of_exception() noexcept {
   } catch (const std::exception& error) {
     return fail(INKWELL_FAILED, error.what());
   } catch (...) {
-    return fail(INKWELL_FAILED, "Something failed that nobody expected. Report this with the version of the library.");
+    return fail(INKWELL_FAILED, "An unexpected internal error occurred. Report this with the version of the library.");
   }
 }
 

@@ -1,4 +1,4 @@
-// Every call of the C interface is guarded: no exception leaves the library, each call ends in a result, a cancelled
+// Every call of the C interface is guarded: no exception leaves the library, each call ends in a result, a canceled
 // thread ends where it waits, and a forked child uses nothing of its parent.
 #pragma once
 
@@ -33,7 +33,7 @@ inkwell_result guarded(Action action) {
   try {
     action();
     return INKWELL_OK;
-  } catch (const abi::__forced_unwind&) {  // the thread was cancelled
+  } catch (const abi::__forced_unwind&) {  // the thread was canceled
     throw;
   } catch (...) {
     return result_of_exception();
@@ -43,7 +43,7 @@ inkwell_result guarded(Action action) {
 /// Throws BadArgument if there is none.
 template <class Pointer>
 Pointer required(Pointer pointer, const char* what) {
-  if (pointer == nullptr) throw BadArgument(fmt::format("{} is NULL. Give one.", what));
+  if (pointer == nullptr) throw BadArgument(fmt::format("{} is NULL. Pass a valid pointer.", what));
   return pointer;
 }
 

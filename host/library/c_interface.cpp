@@ -52,7 +52,7 @@ inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, si
 
 inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind* kind) {
   return guarded([&] {
-    required(kind, "The place for the kind");
+    required(kind, "The pointer to the kind");
     switch (device::parse_address(required(address, "The address")).kind) {
       case device::Address::Kind::usb: *kind = INKWELL_ON_USB; break;
       case device::Address::Kind::usbip: *kind = INKWELL_AT_SERVER; break;
@@ -64,7 +64,7 @@ inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind
 inkwell_result inkwell_open(const char* address, inkwell_arm** arm) {
   return guarded([&] {
     const inkwell::process::NoCancellationPoints whole;
-    *required(arm, "The place for the arm") = new inkwell_arm(address == nullptr ? "" : address);
+    *required(arm, "The pointer to the arm") = new inkwell_arm(address == nullptr ? "" : address);
   });
 }
 
@@ -74,14 +74,14 @@ inkwell_result inkwell_close(inkwell_arm* arm) {
     if (!arm->origin.is_here()) return;  // the threads that its end would wait for are its parent's
     const inkwell::process::NoCancellationPoints whole;
     if (arm->arm.servo().is_caller())
-      throw NotNow("A servo can not close its arm. End the servo, and close the arm elsewhere.");
+      throw NotNow("A servo cannot close its own arm. Stop the servo, and close the arm in another thread.");
     delete arm;
   });
 }
 
 inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* information) {
   return guarded([&] {
-    required(information, "The place for the information");
+    required(information, "The pointer to the information");
     const auto& endpoint = arm_of(arm).endpoint();
     const auto told = arm_of(arm).device().information();
     *information = {};
@@ -101,7 +101,7 @@ inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* in
 
 inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_NAME_SIZE]) {
   return guarded([&] {
-    required(name, "The place for the name");
+    required(name, "The pointer to the name");
     const auto told = arm_of(arm).device().information();
     name[told.board_name.copy(name, INKWELL_BOARD_NAME_SIZE - 1)] = '\0';
   });
@@ -111,14 +111,14 @@ inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_
 
 inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {
   return guarded([&] {
-    required(pose, "The place for the pose");
+    required(pose, "The pointer to the pose");
     arm_of(arm).read([&](const PoseFeed::Seen& last) { *pose = last.pose; });
   });
 }
 
 inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose) {
   return guarded([&] {
-    required(pose, "The place for the pose");
+    required(pose, "The pointer to the pose");
     *pose = arm_of(arm).last().pose;  // what stays if none comes
     const auto answer = arm->seen.take_force() ? Turns::Answer::loop : Turns::Answer::none;
     *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest(), answer);
@@ -132,7 +132,7 @@ inkwell_result inkwell_sleep(inkwell_arm* arm, double duration_s) {
 
 inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced) {
   return guarded([&] {
-    required(is_referenced, "The place for the answer");
+    required(is_referenced, "The pointer to the result");
     arm_of(arm).read([&](const PoseFeed::Seen& last) { *is_referenced = last.is_referenced ? 1 : 0; });
   });
 }
@@ -189,7 +189,7 @@ inkwell_result inkwell_take_over(inkwell_arm* arm) {
 
 inkwell_result inkwell_get_driver(inkwell_arm* arm, inkwell_driver* driver) {
   return guarded([&] {
-    *required(driver, "The place for the answer") = {};
+    *required(driver, "The pointer to the result") = {};
     const auto found = arm_of(arm).device().driver();
     if (!found) return;
     driver->is_driven = 1;
@@ -207,7 +207,7 @@ inkwell_result inkwell_clear_fault(inkwell_arm* arm) {
 inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode) {
   return guarded([&] {
     if (mode != INKWELL_BESIDE_WALLS && mode != INKWELL_INSTEAD_OF_WALLS)
-      throw BadArgument(fmt::format("{} is no mode of force. Give INKWELL_BESIDE_WALLS or INKWELL_INSTEAD_OF_WALLS.",
+      throw BadArgument(fmt::format("{} is not a force mode. Give INKWELL_BESIDE_WALLS or INKWELL_INSTEAD_OF_WALLS.",
                                     static_cast<int>(mode)));
     arm_of(arm).set_force_mode(static_cast<protocol::ForceMode>(mode));
   });
@@ -251,7 +251,7 @@ inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_plane* plane
   return guarded([&] {
     if (plane_count > INKWELL_PLANES_MAXIMUM)
       throw BadArgument(
-          fmt::format("{} planes are too many. Give the {} nearest.", plane_count, INKWELL_PLANES_MAXIMUM));
+          fmt::format("{} planes are too many. Give the {} nearest planes.", plane_count, INKWELL_PLANES_MAXIMUM));
     if (plane_count > 0) required(planes, "The list of planes");
     device::Shapes shapes;
     for (std::size_t i = 0; i < plane_count; ++i)

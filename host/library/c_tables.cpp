@@ -17,14 +17,14 @@ namespace protocol = inkwell::protocol;
 namespace {
 
 protocol::Parameter parameter_named(const char* name) {
-  if (const auto parameter = protocol::find_parameter(std::string_view(required(name, "A parameter's name"))))
+  if (const auto parameter = protocol::find_parameter(std::string_view(required(name, "The parameter name"))))
     return *parameter;
   throw BadArgument(fmt::format("There is no parameter {}.{} `inkwell parameters` lists them all.", name,
                                 device::suggestion(protocol::known_parameters(), name)));
 }
 
 protocol::Signal signal_named(const char* name) {
-  if (const auto signal = protocol::find_signal(std::string_view(required(name, "A signal's name")))) return *signal;
+  if (const auto signal = protocol::find_signal(std::string_view(required(name, "The signal name")))) return *signal;
   throw BadArgument(fmt::format("There is no signal {}.{} `inkwell signals` lists them all.", name,
                                 device::suggestion(protocol::known_signals(), name)));
 }
@@ -68,7 +68,7 @@ const inkwell_parameter* inkwell_parameter_at(size_t index) {
 
 inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* name, double* value) {
   return guarded([&] {
-    required(value, "The place for the value");
+    required(value, "The pointer to the value");
     const auto parameter = parameter_named(name);
     *value = arm_of(arm).device().parameters()[parameter];
   });
@@ -101,7 +101,7 @@ inkwell_result inkwell_factory_reset(inkwell_arm* arm) {
 
 inkwell_result inkwell_get_stored_parameter(inkwell_arm* arm, const char* name, double* value) {
   return guarded([&] {
-    required(value, "The place for the value");
+    required(value, "The pointer to the value");
     const auto parameter = parameter_named(name);
     *value = arm_of(arm).device().stored_parameters()[parameter];
   });
@@ -109,7 +109,7 @@ inkwell_result inkwell_get_stored_parameter(inkwell_arm* arm, const char* name, 
 
 inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store) {
   return guarded([&] {
-    required(store, "The place for the state of the store");
+    required(store, "The pointer to the store state");
     const auto report = arm_of(arm).device().store_report();
     *store = {};
     store->contents = static_cast<inkwell_stored>(report.contents);
@@ -126,7 +126,7 @@ namespace {
 
 void tell_test(inkwell_arm* arm, bool is_new, inkwell_test_item* items, size_t capacity, size_t* count) {
   required(count, "The count");
-  if (capacity > 0) required(items, "The place for the items");
+  if (capacity > 0) required(items, "The pointer to the items");
   device::Device& board = arm_of(arm).device();
   const protocol::SelfTestReport report = is_new ? board.self_test() : board.read_self_test();
   *count = protocol::self_test_item_count;
@@ -180,7 +180,7 @@ inkwell_result read_samples(inkwell_arm* arm, double timeout_s, float* values, P
                             size_t* count, uint64_t* lost) {
   return guarded([&] {
     required(count, "The count");
-    if (capacity > 0) required(values, "The place for the samples");
+    if (capacity > 0) required(values, "The pointer to the samples");
     *count = 0;
     if (lost != nullptr) *lost = 0;
     const auto samples = arm_of(arm).scope().read(timeout_s, capacity);
@@ -206,7 +206,7 @@ inkwell_result inkwell_read_samples(inkwell_arm* arm, double timeout_s, float* v
 }
 
 inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path) {
-  return guarded([&] { arm_of(arm).start_recording(required(path, "The file's name")); });
+  return guarded([&] { arm_of(arm).start_recording(required(path, "The file name")); });
 }
 
 inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost) {

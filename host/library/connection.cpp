@@ -24,7 +24,7 @@ static_assert(Turns::patience.servo < silence_limit);
 /// A process that was stopped and goes on has not listened meanwhile: a longer wait counts as this one.
 constexpr auto longest_wait = 50ms;
 
-constexpr char silent[] = "No pose has come for 2 s. Reset the board, or let a paused virtual board run.";
+constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
 
 /// The board is there again, but this arm cannot go on with it.
 class CannotReturn : public Error {
@@ -134,10 +134,11 @@ bool Connection::tell_lost_claim() {
   if (!arm_.device->try_driver(driver)) return false;
   // A release by this program is not a loss.
   if (driver && !driver->is_this_device)
-    poses_.lose_claim(fmt::format("The arm was taken over by {}. Its force is the other program's now.",
+    poses_.lose_claim(fmt::format("The arm was taken over by {}. That program now controls the force.",
                                   device::driver_text(*driver)));
   else if (!driver)
-    poses_.lose_claim("This program fell silent, so the board ended its claim to the arm. Switch the force on again.");
+    poses_.lose_claim(
+        "This program sent nothing for a second, so the board ended its claim to the arm. Switch the force on again.");
   return true;
 }
 
@@ -169,7 +170,7 @@ bool Connection::try_to_reopen() {
   const auto serial_number = opened->information().serial_number;
   if (serial_number != arm_.endpoint.serial_number)
     throw CannotReturn(fmt::format(
-        "Another arm, {}, is now at the address of the arm {}. Connect that one again, or open the new arm.",
+        "Another arm, {}, is now at the address of the arm {}. Connect the previous arm again, or open the new arm.",
         serial_number, arm_.endpoint.serial_number));
   set_geometry(opened->parameters());
   arm_.device->take_link_of(*opened);
@@ -178,7 +179,7 @@ bool Connection::try_to_reopen() {
 
 std::optional<device::Endpoint> Connection::find_again() const {
   if (arm_.board && !arm_.board->is_running())
-    throw CannotReturn("The virtual board of this arm has ended. Open the arm again.");
+    throw CannotReturn("The virtual board of this arm has exited. Open the arm again.");
   if (arm_.board) return arm_.board->find();
   const auto found = device::find_arms(device::parse_address(device::address_of(arm_.endpoint)));
   // A server may have several. The board may have another place there since it was unplugged.

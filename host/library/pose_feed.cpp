@@ -17,7 +17,7 @@ namespace {
 constexpr double stepped_silence_s = 2.0;
 
 constexpr char lost_with_the_link[] =
-    "The link to the arm was lost, and the force with it. Switch the force on again when the arm is back.";
+    "The link to the arm was lost, and the force is off. Switch the force on again when the arm is connected.";
 
 std::string why_off(const inkwell_pose& pose) {
   switch (pose.state) {
@@ -25,19 +25,19 @@ std::string why_off(const inkwell_pose& pose) {
       return fmt::format("A fault switched the force off. {}",
                          device::fault_line(static_cast<protocol::Fault>(pose.fault)));
     case INKWELL_STARTING:
-      return "The force is off, because the board restarted or tests itself. Switch it on again when the arm is ready.";
+      return "The force is off because the board restarted or runs its self-test. Switch the force on again when the "
+             "arm is ready.";
     case INKWELL_UNREFERENCED:
-      return "The force is off, because the arm no longer knows where it is. Put the stylus into the inkwell once, "
-             "then "
-             "switch the force on again.";
-    default: return "Another program switched the force off. Switch it on again to continue.";
+      return "The force is off because the encoders are no longer referenced. Put the stylus into the inkwell once, "
+             "then switch the force on again.";
+    default: return "Another program switched the force off. Switch the force on again to continue.";
   }
 }
 
 }  // namespace
 
 double checked_timeout_s(double seconds) {
-  if (std::isnan(seconds)) throw BadArgument("The time-out is not a number. Give seconds, from 0 on.");
+  if (std::isnan(seconds)) throw BadArgument("The time-out is not a number. Give a time of 0 s or more.");
   return std::max(seconds, 0.0);
 }
 

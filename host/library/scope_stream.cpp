@@ -40,7 +40,7 @@ ScopeStream::~ScopeStream() {
 
 void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
   const std::lock_guard user(user_mutex_);
-  if (recorder_) throw NotNow("A recording runs. Stop it before other signals are selected.");
+  if (recorder_) throw NotNow("A recording is running. Stop it before you select other signals.");
   if (signals.empty() && !is_selected()) return;
   poses_.require_poses();
   device_.select_signals(signals);
@@ -164,8 +164,8 @@ void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
     signals = signals_;
   }
   poses_.require_poses();
-  if (signals.empty()) throw NotNow("No signals are selected. Select those to be recorded first.");
-  if (recorder_) throw NotNow("A recording runs already. Stop it first.");
+  if (signals.empty()) throw NotNow("No signals are selected. Select the signals to record first.");
+  if (recorder_) throw NotNow("A recording is already running. Stop it first.");
   auto recorder = std::make_unique<recording::Recorder>(
       path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation));
   const std::lock_guard lock(mutex_);
@@ -174,7 +174,7 @@ void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
 
 recording::RecorderStatus ScopeStream::stop_recording() {
   const std::lock_guard user(user_mutex_);
-  if (!recorder_) throw NotNow("No recording runs.");
+  if (!recorder_) throw NotNow("No recording is running. Start one first.");
   std::unique_ptr<recording::Recorder> finished;
   {
     const std::lock_guard lock(mutex_);

@@ -26,7 +26,7 @@ Servo::~Servo() {
 
 void Servo::start(Function function) {
   const std::lock_guard lock(mutex_);
-  if (runs_) throw NotNow("A servo runs on this arm already. Stop it first.");
+  if (runs_) throw NotNow("A servo is already running on this arm. Stop it first.");
   runs_ = true;
   ++started_;
   is_to_end_ = false;

@@ -20,11 +20,12 @@ Vector force_of(const py::object& answer) {
     force_N = answer.cast<Vector>();
   } catch (const py::cast_error&) {
     throw py::type_error("The servo returned " + std::string(py::repr(answer)) +
-                         ". Let it return three numbers, the force in N, or None.");
+                         ". Return three numbers, the force in N, or None.");
   }
   for (const double value : force_N)
     if (!std::isfinite(value))
-      throw py::value_error("The servo returned a force that is not a finite number on one axis.");
+      throw py::value_error(
+          "The servo returned a force that is not a finite number on one axis. Return finite numbers.");
   return force_N;
 }
 
@@ -51,7 +52,7 @@ Arm::Use::Use(Arm& arm) : arm_(arm) {
     closed = arm.closed_;
     if (!closed) ++arm.uses_;
   }
-  if (closed) raise(INKWELL_REFUSED, "The arm is closed. Open it anew.");
+  if (closed) raise(INKWELL_REFUSED, "The arm is closed. Open it again.");
 }
 
 Arm::Use::~Use() {
@@ -78,7 +79,8 @@ bool Arm::is_closed() const { return closed_; }
 void Arm::close() {
   if (!origin_.is_here()) closed_ = true;  // there is nothing to be closed: the arm stays its parent's
   if (is_closed()) return;
-  if (in_servo) raise(INKWELL_REFUSED, "A servo can not close its arm. Stop it, and close the arm elsewhere.");
+  if (in_servo)
+    raise(INKWELL_REFUSED, "A servo cannot close its own arm. Stop the servo, and close the arm in another thread.");
   Ending ending;
   {
     const Use arm(*this);
@@ -115,7 +117,7 @@ Pose Arm::wait_for_pose(double timeout_s) {
 }
 
 void Arm::sleep(double duration_s) {
-  if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is not a time. Give seconds, from 0 on.");
+  if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is not valid. Give a time of 0 s or more.");
   constexpr double attempt_s = 0.05;  // so that Ctrl-C is heard
   const double end_s = pose().time_s + duration_s;
   for (double left_s = duration_s; left_s > 0; left_s = end_s - pose().time_s) {

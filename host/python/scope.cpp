@@ -50,13 +50,14 @@ py::tuple Arm::read_scope(std::size_t rows, double timeout_s, bool fill) {
         return result == INKWELL_OK && read == 0 ? INKWELL_TIMED_OUT : result;
       });
     } catch (py::error_already_set& error) {
-      if (changed) raise(INKWELL_REFUSED, "Other signals were selected while their samples were read. Read again.");
+      if (changed)
+        raise(INKWELL_REFUSED, "Other signals were selected while samples were read. Read the samples again.");
       timed_out = error.matches(PyExc_TimeoutError);
       if (!timed_out) throw;
       if (fill)
         raise(INKWELL_TIMED_OUT,
-              py::str("Of {} samples {} came, then none for {:g} s. Reset the board, or let a paused "
-                      "virtual board run.")
+              py::str(
+                  "Of {} samples {} arrived, then none for {:g} s. Reset the board, or let a paused virtual board run.")
                   .format(rows, count, timeout_s));
     }
     if (!fill) break;

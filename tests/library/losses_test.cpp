@@ -80,7 +80,7 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
 
   board.drive();
   board.control.pause();
-  board.check_lost("No pose has come for 2 s");
+  board.check_lost("No pose has arrived for 2 s");
   CHECK(inkwell_wait_for_pose(board.arm, 0.01, &last) == INKWELL_TIMED_OUT);
   board.control.resume();
   REQUIRE(inkwell_wait_for_pose(board.arm, 60, &last) == INKWELL_OK);

@@ -23,7 +23,7 @@ void take_out(Board& board, VirtualArm& arm) {
   arm.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
 }
 
-TEST_CASE("a servo can not close its arm, and says so") {
+TEST_CASE("a servo cannot close its own arm, and says so") {
   VirtualArm virtual_arm;
   struct State {
     std::atomic<int> result = -1;
@@ -39,7 +39,7 @@ TEST_CASE("a servo can not close its arm, and says so") {
   REQUIRE(inkwell_start_servo(virtual_arm.arm, closes, &state) == INKWELL_OK);
   virtual_arm.wait_until([&](const auto&) { return state.result != -1; });
   CHECK(state.result == INKWELL_REFUSED);
-  CHECK(state.sentence.find("can not close its arm") != std::string::npos);
+  CHECK(state.sentence.find("cannot close its own arm") != std::string::npos);
   CHECK(inkwell_stop_servo(virtual_arm.arm) == INKWELL_OK);
 }
 

@@ -178,7 +178,7 @@ class Losses(unittest.TestCase):
     def test_silence(self):
         self.becomes_active()
         self.board.call("pause")
-        self.is_lost(self.says("silence", "No pose has come for 2 s"))
+        self.is_lost(self.says("silence", "No pose has arrived for 2 s"))
         self.board.call("resume")
         self.is_back()
         if INTERFACE in ENDS_WITH_A_SILENCE:

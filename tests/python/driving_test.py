@@ -31,7 +31,7 @@ class Driving(unittest.TestCase):
 
         self.assertTrue(callable(spring))
         self.assertTrue(self.arm.servo_is_running)
-        with self.assertRaisesRegex(inkwell.Refused, "runs on this arm already"):
+        with self.assertRaisesRegex(inkwell.Refused, "already running on this arm"):
             self.arm.servo(lambda pose: None)
         # Between two springs of 300 and 100 N/m, 20 mm apart.
         pulled = wait_until(self.arm, lambda pose: abs(pose.position_m[0] - 0.005) < 0.0007
@@ -94,7 +94,7 @@ class Driving(unittest.TestCase):
         self.assertTrue(self.arm.wait_for_servo(60))
         self.assertEqual(calls, 5)
         self.arm.servo(lambda pose: self.arm.close())
-        with self.assertRaisesRegex(inkwell.Refused, "can not close its arm"):
+        with self.assertRaisesRegex(inkwell.Refused, "cannot close its own arm"):
             self.arm.wait_for_servo(60)
         self.assertGreater(self.arm.pose.time_s, 0)
 

@@ -1,8 +1,8 @@
-// libinkwell for C++: the C interface with owners that let go by themselves, and errors as exceptions.
+// libinkwell for C++: the C interface with objects that release their resources, and with errors as exceptions.
 //
-//   inkwell::Arm arm;                                  // the only one on USB, or what INKWELL_DEVICE names
+//   inkwell::Arm arm;                                  // the only arm on USB, or the arm that INKWELL_DEVICE names
 //   arm.enable_force();
-//   arm.start_servo([](const inkwell::Pose& pose) {    // a thousand times a second
+//   arm.start_servo([](const inkwell::Pose& pose) {    // 1000 times per second
 //     return inkwell::Vector{-200.0 * pose.position_m[0], 0.0, 0.0};
 //   });
 #pragma once
@@ -26,23 +26,24 @@ namespace inkwell {
 using Pose = inkwell_pose;
 using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
-using Vector = std::array<double, 3>;  ///< in the workspace's axes
+using Vector = std::array<double, 3>;  ///< in the workspace axes
 
-/// A function of the library did not end with INKWELL_OK; what() is its sentence.
+/// Error: a function of the library did not return INKWELL_OK. what() is its sentence.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
   inkwell_result result;
 };
 
-/// No poses come: the link to the arm is lost, or the arm is silent. Both may end; see INKWELL_DISCONNECTED.
+/// Error: no poses arrive, because the link to the arm is lost or the arm is silent. The library recovers by itself;
+/// see INKWELL_DISCONNECTED.
 class Disconnected : public Failure {
  public:
   Disconnected() : Failure(INKWELL_DISCONNECTED) {}
-  Pose last_pose{};  ///< the last known one
+  Pose last_pose{};  ///< the last known pose
 };
 
-/// Throws Failure unless it is INKWELL_OK.
+/// Throws Failure unless the result is INKWELL_OK.
 inline void require(inkwell_result result) {
   if (result != INKWELL_OK) throw Failure(result);
 }
@@ -53,18 +54,18 @@ inline std::vector<inkwell_device> devices() {
   require(inkwell_list_devices(nullptr, 0, &count));
   std::vector<inkwell_device> list(count);
   require(inkwell_list_devices(list.data(), list.size(), &count));
-  if (count < list.size()) list.resize(count);  // one was unplugged in between
+  if (count < list.size()) list.resize(count);  // an arm was unplugged in between
   return list;
 }
 
-/// An open arm, which is closed with this object. Each function calls the C function of the same name, and throws
-/// Failure if that does not return INKWELL_OK, as Disconnected while no poses come. A running servo moves with its arm.
-/// All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Destroy no arm in its own servo: the
-/// library cannot close it there, and it stays open.
+/// An open arm, which the destructor closes. Each function calls the C function of the same name. It throws Failure if
+/// the C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo moves with its
+/// arm. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do not destroy an arm in its own
+/// servo: the library cannot close the arm there, and it stays open.
 class Arm {
  public:
-  /// Returns the force on the hand. An exception ends the servo, and stop_servo() throws it. Any other cause that has
-  /// ended a servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
+  /// Returns the force on the hand. An exception stops the servo, and stop_servo() throws it. Any other cause that has
+  /// stopped a servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
   using Servo = std::function<Vector(const Pose&)>;
 
   /// Accepts the addresses of inkwell_open().
@@ -72,7 +73,7 @@ class Arm {
     require(inkwell_open(address.c_str(), &opened_->arm));
   }
 
-  /// For the C interface, which must not close it. Null in a moved-from arm.
+  /// The arm for use with the C interface, which must not close it. Null in a moved-from arm.
   inkwell_arm* get() const { return opened_ ? opened_->arm : nullptr; }
 
   Pose pose() const {
@@ -112,7 +113,7 @@ class Arm {
     require(inkwell_get_driver(get(), &driver));
     return driver;
   }
-  /// Throws Failure with INKWELL_REFUSED if the fault is there again.
+  /// Throws Failure with INKWELL_REFUSED if the fault recurs.
   void clear_fault() { require(inkwell_clear_fault(get())); }
   void set_force_mode(inkwell_force_mode mode) { require(inkwell_set_force_mode(get(), mode)); }
   void set_force(const Vector& force_N) { require(inkwell_set_force(get(), force_N.data())); }
@@ -124,12 +125,12 @@ class Arm {
     throw_what_ended_servo();
     if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
     std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
-    // Until its state is stored here, the new servo must not find the previous one's.
+    // Until its state is stored here, the new servo must not find the state of the previous servo.
     const std::lock_guard<std::mutex> lock(opened_->mutex);
     require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
     opened_->servo.swap(state);
   }
-  /// Throws the exception or any other cause that ended the servo.
+  /// Throws the exception or any other cause that stopped the servo.
   void stop_servo() {
     require(inkwell_stop_servo(get()));
     std::exception_ptr thrown;
@@ -159,7 +160,7 @@ class Arm {
     require(inkwell_get_stored_parameter(get(), name.c_str(), &value));
     return value;
   }
-  /// A new self-test's items, or with `only_last` those of the newest.
+  /// Returns the items of a new self-test, or with `only_last` the items of the last self-test.
   std::vector<inkwell_test_item> self_test(bool only_last = false) {
     const auto test = only_last ? inkwell_get_self_test : inkwell_self_test;
     std::vector<inkwell_test_item> items(64);
@@ -196,7 +197,7 @@ class Arm {
    public:
     explicit ServoState(Servo servo) : servo_(std::move(servo)) {}
 
-    /// False once it has thrown.
+    /// Returns false if the servo has thrown.
     bool call(const Pose& pose, double force_N[3]) noexcept {
       try {
         const Vector wanted_N = servo_(pose);
@@ -213,7 +214,7 @@ class Arm {
       return std::exchange(thrown_, nullptr);
     }
 
-    bool is_reported = false;  ///< a cause that ended it, other than the program; guarded by the mutex of Opened
+    bool is_reported = false;  ///< the stop cause was thrown, or is the program; guarded by the mutex of Opened
 
    private:
     const Servo servo_;
@@ -221,18 +222,18 @@ class Arm {
     std::exception_ptr thrown_;
   };
 
-  /// The arm, and the state that its servo uses until the arm is closed. Its address does not change when Arm moves.
+  /// The arm, and the state that its servo uses until the arm is closed. The address does not change when Arm moves.
   struct Opened {
     Opened() = default;
     Opened(const Opened&) = delete;
     Opened& operator=(const Opened&) = delete;
     ~Opened() {
-      // A servo that destroys its own arm goes on, so its state has to stay.
+      // A servo that destroys its own arm keeps running, so its state must stay.
       if (inkwell_close(arm) != INKWELL_OK) static_cast<void>(servo.release());
     }
 
     inkwell_arm* arm = nullptr;
-    std::mutex mutex;  ///< for `servo`
+    std::mutex mutex;  ///< guards `servo`
     std::unique_ptr<ServoState> servo;
   };
 
