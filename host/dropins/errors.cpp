@@ -24,28 +24,34 @@ struct Text {
 
 constexpr Text texts[] = {
     {success, "HD_SUCCESS", "No error."},
-    {invalid_enum, "HD_INVALID_ENUM", "The call does not take this constant. Check the constant's name."},
-    {invalid_value, "HD_INVALID_VALUE", "The value is outside of what the call takes. Give one in its range."},
-    {invalid_operation, "HD_INVALID_OPERATION", "This can not be done now. Check the order of the calls."},
+    {invalid_enum, "HD_INVALID_ENUM", "The call does not accept this constant. Check the constant's name."},
+    {invalid_value, "HD_INVALID_VALUE", "The value is outside the range of the call. Give a value in its range."},
+    {invalid_operation, "HD_INVALID_OPERATION",
+     "This call is not possible in the present state. Check the order of the calls."},
     {invalid_input_type, "HD_INVALID_INPUT_TYPE", "The parameter has another type. Use the call for its type."},
-    {bad_handle, "HD_BAD_HANDLE", "No device is open under this handle. Use what hdInitDevice() returned."},
+    {bad_handle, "HD_BAD_HANDLE", "No device is open with this handle. Use the handle that hdInitDevice() returned."},
     {warm_motors, "HD_WARM_MOTORS",
-     "The motors are warm, and the force may be held back. Ask for less force for a while."},
-    {exceeded_max_force, "HD_EXCEEDED_MAX_FORCE", "The force is larger than the arm's. It is off and comes back."},
-    {exceeded_max_force_impulse, "HD_EXCEEDED_MAX_FORCE_IMPULSE", "The force changes faster than is allowed."},
-    {exceeded_max_velocity, "HD_EXCEEDED_MAX_VELOCITY", "The stylus is too fast. The force is off and comes back."},
-    {force_error, "HD_FORCE_ERROR", "The arm can not give this force. Ask for a force or for motor values, not both."},
+     "The motors are warm, and the force may be reduced. Request less force for a while."},
+    {exceeded_max_force, "HD_EXCEEDED_MAX_FORCE",
+     "The requested force exceeds the arm's limit. The force is off and returns by itself."},
+    {exceeded_max_force_impulse, "HD_EXCEEDED_MAX_FORCE_IMPULSE",
+     "The force changes faster than the limit allows. Change it more slowly."},
+    {exceeded_max_velocity, "HD_EXCEEDED_MAX_VELOCITY",
+     "The stylus is too fast. The force is off and returns by itself."},
+    {force_error, "HD_FORCE_ERROR", "The arm cannot apply this force. Request either a force or motor values."},
     {device_fault, "HD_DEVICE_FAULT", "The device does not work. Run `inkwell info`."},
-    {device_already_initiated, "HD_DEVICE_ALREADY_INITIATED", "The device is open. Disable it before it is opened."},
+    {device_already_initiated, "HD_DEVICE_ALREADY_INITIATED",
+     "The device is already open. Disable it before you open it again."},
     {comm_error, "HD_COMM_ERROR", "The link to the device is lost. Check its cable, then open it again."},
     {comm_config_error, "HD_COMM_CONFIG_ERROR", "The link to the device is not set up. Run `inkwell info`."},
-    {timer_error, "HD_TIMER_ERROR", "The scheduler can not be started. Check how many threads are allowed."},
-    {illegal_begin, "HD_ILLEGAL_BEGIN", "A frame is open already, or was in this tick. End it, one in each tick."},
+    {timer_error, "HD_TIMER_ERROR", "The scheduler cannot be started. Check how many threads are allowed."},
+    {illegal_begin, "HD_ILLEGAL_BEGIN",
+     "A frame is already open, or this tick had one. End the frame, and begin one per tick."},
     {illegal_end, "HD_ILLEGAL_END", "No frame is open. Begin one first."},
-    {frame_error, "HD_FRAME_ERROR", "This is only allowed between hdBeginFrame() and hdEndFrame()."},
-    {invalid_priority, "HD_INVALID_PRIORITY", "The priority is not between 0 and 65535."},
-    {scheduler_full, "HD_SCHEDULER_FULL", "The scheduler has as many callbacks as it can take. Unschedule some."},
-    {invalid_license, "HD_INVALID_LICENSE", "There is no such licence, and none is needed."},
+    {frame_error, "HD_FRAME_ERROR", "This call is only allowed between hdBeginFrame() and hdEndFrame()."},
+    {invalid_priority, "HD_INVALID_PRIORITY", "The priority is not between 0 and 65535. Give one in this range."},
+    {scheduler_full, "HD_SCHEDULER_FULL", "The scheduler has its maximum number of callbacks. Unschedule some."},
+    {invalid_license, "HD_INVALID_LICENSE", "There is no such license, and no license is needed."},
 };
 
 std::mutex stack_mutex;
@@ -107,14 +113,14 @@ const char* error_text(unsigned code) {
     }
     return keep(fmt::format("{}: {}", text.name, sentence));
   }
-  return "This is not a code of HDAPI's errors.";
+  return "This is not an HDAPI error code.";
 }
 
 const char* keep(const std::string& text) {
   auto& self = stack();
   const std::lock_guard lock(stack_mutex);
   if (const auto found = self.kept.find(text); found != self.kept.end()) return found->c_str();
-  if (self.kept.size() == kept_maximum) return "The reason is not kept any more: there were too many.";
+  if (self.kept.size() == kept_maximum) return "The reason is no longer stored: there were too many different reasons.";
   return self.kept.insert(text).first->c_str();
 }
 
