@@ -114,50 +114,51 @@ py::list signals() {
 }
 
 void define_structs(py::module_& module) {
-  py::enum_<inkwell_state>(module, "State", "What the arm is ready for.")
+  py::enum_<inkwell_state>(module, "State", "State of the arm.")
       .value("STARTING", INKWELL_STARTING)
-      .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus has to rest in the inkwell once")
+      .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus must rest in the inkwell once")
       .value("READY", INKWELL_READY, "the pose is valid, the force is off")
       .value("ACTIVE", INKWELL_ACTIVE, "the pose is valid, the force is on")
-      .value("FAULT", INKWELL_FAULT, "the force is off, and fault_text says why");
-  py::enum_<inkwell_force_mode>(module, "ForceMode", "How a program's forces and the board's walls go together.")
-      .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are felt too")
-      .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only what programs ask for");
+      .value("FAULT", INKWELL_FAULT, "the force is off, and Pose.fault_text has the cause");
+  py::enum_<inkwell_force_mode>(module, "ForceMode", "Effect of a program's forces on the board's walls.")
+      .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are active too")
+      .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only the forces of programs are active");
 
-  py::class_<inkwell_pose>(module, "Pose", "Where the stylus is, once a millisecond. Its arrays are read-only.")
+  py::class_<inkwell_pose>(module, "Pose",
+                           "Position and state of the stylus, once per millisecond. The arrays are read-only.")
       .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
       .def_readonly("sequence", &inkwell_pose::sequence,
-                    "one more for each millisecond; a gap is a pose that was missed. It wraps at 2**32, after 49 days")
+                    "counts milliseconds; a gap is a missed pose. It wraps at 2**32, after 49 days")
       .def_readonly("state", &inkwell_pose::state)
       .def_readonly("fault", &inkwell_pose::fault, "one of inkwell.Fault")
       .def_property_readonly(
           "fault_text", [](const inkwell_pose& pose) { return std::string(inkwell_fault_text(pose.fault)); },
           "cause and remedy of the fault")
       .def_property_readonly("position_m", array_of(&inkwell_pose::position_m),
-                             "of the probe, where the stylus is held, in the workspace's axes, m; shape (3,)")
+                             "position of the probe in the workspace axes, m; shape (3,)")
       .def_property_readonly("velocity_m_s", array_of(&inkwell_pose::velocity_m_s),
-                             "over the last 8 ms, m/s; shape (3,)")
+                             "velocity of the probe over the last 8 ms, m/s; shape (3,)")
       .def_property_readonly("rotation", array_of(&inkwell_pose::rotation, {3, 3}),
-                             "of the stylus; the columns are its x, y and z axis; shape (3, 3)")
+                             "rotation of the stylus; the columns are its x, y and z axes; shape (3, 3)")
       .def_property_readonly("gimbal_rad", array_of(&inkwell_pose::gimbal_rad), "yaw, pitch and roll, rad; shape (3,)")
       .def_property_readonly("joint_rad", array_of(&inkwell_pose::joint_rad), "joint angles, rad; shape (3,)")
       .def_property_readonly("force_N", array_of(&inkwell_pose::force_N),
-                             "that the board asks of the motors, everything together, N; shape (3,)")
-      .def_property_readonly("feels_walls", &feels<INKWELL_WALLS>, "the walls of the board's box are felt")
-      .def_property_readonly("feels_shapes", &feels<INKWELL_SHAPES>, "shapes that a program placed are felt")
-      .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "forces of a program are felt")
+                             "total force that the board requests from the motors, N; shape (3,)")
+      .def_property_readonly("feels_walls", &feels<INKWELL_WALLS>, "the hand feels the walls of the board's box")
+      .def_property_readonly("feels_shapes", &feels<INKWELL_SHAPES>, "the hand feels shapes that a program placed")
+      .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "the hand feels forces of a program")
       .def_property_readonly("limited_by_force", &is_limited<INKWELL_LIMIT_FORCE>,
-                             "the force is held at force_limit_N, or on its way up to it")
+                             "the force is limited to force_limit_N, or is rising to it")
       .def_property_readonly("limited_by_change", &is_limited<INKWELL_LIMIT_CHANGE>,
-                             "the force changes as fast as force_change_N_per_s lets it")
+                             "the force changes at the rate force_change_N_per_s")
       .def_property_readonly("limited_by_energy", &is_limited<INKWELL_LIMIT_ENERGY>,
-                             "the hand got all the energy that it may: what drives the motion gives way")
+                             "the energy reserve is used up; the force along the motion is scaled down")
       .def_property_readonly("limited_by_heat", &is_limited<INKWELL_LIMIT_HEAT>,
-                             "a hot motor gives all the current that it still may, and all give way together")
+                             "a hot motor is at its reduced current limit; all motors are scaled down together")
       .def_property_readonly("limited_by_speed", &is_limited<INKWELL_LIMIT_SPEED>,
-                             "the probe is nearly as fast as it may be: what drives the motion gives way")
+                             "the probe is close to the speed limit; the force along the motion is scaled down")
       .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
-                             "a motor gives all the current that it may, and all give way together")
+                             "a motor is at its current limit; all motors are scaled down together")
       .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
       .def_property_readonly("button_2", flag_of(&inkwell_pose::button_2), "pressed")
       .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")
@@ -167,21 +168,21 @@ void define_structs(py::module_& module) {
   py::class_<inkwell_device>(module, "Device", "An arm that can be opened.")
       .def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
       .def_property_readonly("serial_number", text_of(&inkwell_device::serial_number),
-                             "empty where it is not known before the device is opened")
+                             "empty if it is not known before the device is opened")
       .def_property_readonly("product", text_of(&inkwell_device::product))
-      .def_property_readonly("is_virtual", flag_of(&inkwell_device::is_virtual), "what comes from it is a simulation")
+      .def_property_readonly("is_virtual", flag_of(&inkwell_device::is_virtual), "True for a simulation")
       .def("__repr__", [](const inkwell_device& device) {
         return std::string(
             py::str("<inkwell.Device {!r}{}>").format(device.address, device.is_virtual != 0 ? ", a simulation" : ""));
       });
 
   using Information = inkwell_information;
-  py::class_<Information>(module, "Information", "What an arm says of itself and has counted.")
+  py::class_<Information>(module, "Information", "Identity and counters of an arm.")
       .def_property_readonly("serial_number", text_of(&Information::serial_number))
       .def_property_readonly("product", text_of(&Information::product))
       .def_property_readonly("firmware_version", text_of(&Information::firmware_version))
-      .def_property_readonly("is_virtual", flag_of(&Information::is_virtual), "what comes from it is a simulation")
-      .def_readonly("servo_rate_Hz", &Information::servo_rate_Hz, "of the board's control interrupt, Hz")
+      .def_property_readonly("is_virtual", flag_of(&Information::is_virtual), "True for a simulation")
+      .def_readonly("servo_rate_Hz", &Information::servo_rate_Hz, "rate of the board's control interrupt, Hz")
       .def_readonly("servo_cycles_longest", &Information::servo_cycles_longest,
                     "longest control interrupt since the board started, processor cycles")
       .def_readonly("force_reports", &Information::force_reports, "forces of programs since the board started")
@@ -189,42 +190,44 @@ void define_structs(py::module_& module) {
       .def_readonly("force_reports_late", &Information::force_reports_late)
       .def_readonly("force_reports_refused", &Information::force_reports_refused)
       .def_property_readonly("motor_heat", array_of(&Information::motor_heat),
-                             "1 is what the continuous current leads to; shape (3,)");
+                             "1 is the heat at continuous current; shape (3,)");
 }
 
 void define_store(py::module_& module) {
-  py::enum_<inkwell_stored>(module, "Stored", "What the board has stored.")
+  py::enum_<inkwell_stored>(module, "Stored", "Contents of the board's parameter store.")
       .value("NOTHING", INKWELL_STORED_NOTHING)
       .value("PARAMETERS", INKWELL_STORED_PARAMETERS)
-      .value("FACTORY_RESET", INKWELL_STORED_FACTORY_RESET, "what was stored before is forgotten")
-      .value("OTHER_SCHEMA", INKWELL_STORED_OTHER_SCHEMA, "by a firmware whose records this one cannot read");
-  py::class_<inkwell_store>(module, "Store", "The state of the board's store.")
+      .value("FACTORY_RESET", INKWELL_STORED_FACTORY_RESET, "the stored parameters were erased")
+      .value("OTHER_SCHEMA", INKWELL_STORED_OTHER_SCHEMA,
+             "records of another firmware, which this firmware cannot read");
+  py::class_<inkwell_store>(module, "Store", "State of the board's parameter store.")
       .def_readonly("contents", &inkwell_store::contents)
-      .def_readonly("not_stored", &inkwell_store::not_stored, "parameters that would be lost with the board's power")
-      .def_readonly("stores_left", &inkwell_store::stores_left, "before the board's next start, which makes room")
-      .def_readonly("records_written", &inkwell_store::records_written, "in the board's life")
+      .def_readonly("not_stored", &inkwell_store::not_stored, "parameters that are lost at power loss")
+      .def_readonly("stores_left", &inkwell_store::stores_left,
+                    "stores that fit before the board's next start, which frees space")
+      .def_readonly("records_written", &inkwell_store::records_written, "records since the board was made")
       .def_property_readonly(
           "sector_erases",
           [](const inkwell_store& store) { return py::make_tuple(store.sector_erases[0], store.sector_erases[1]); },
-          "in the board's life, of each of its two sectors");
+          "erases of each of the two sectors since the board was made");
 }
 
 void define_self_test(py::module_& module) {
-  py::enum_<inkwell_test>(module, "Test", "What an item of the board's self-test came to.")
-      .value("NOT_DONE", INKWELL_TEST_NOT_DONE, "it has not been looked at, or could not be while something else fails")
+  py::enum_<inkwell_test>(module, "Test", "Result of a self-test item.")
+      .value("NOT_DONE", INKWELL_TEST_NOT_DONE, "not checked, or not checkable while another item fails")
       .value("PASSED", INKWELL_TEST_PASSED)
       .value("FAILED", INKWELL_TEST_FAILED)
       .value("MOVED", INKWELL_TEST_MOVED, "not done: the arm moved too fast")
-      .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 takes no part")
-      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault came before it was over");
+      .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 is not used")
+      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault interrupted the test");
   py::class_<inkwell_test_item>(module, "TestItem", "An item of the board's self-test.")
       .def_readonly("name", &inkwell_test_item::name)
       .def_readonly("result", &inkwell_test_item::result)
-      .def_readonly("figure", &inkwell_test_item::figure, "0 if the item has none, or was not looked at")
-      .def_readonly("unit", &inkwell_test_item::unit, "of the figure; empty if the item has none")
+      .def_readonly("figure", &inkwell_test_item::figure, "0 if the item has no figure, or was not checked")
+      .def_readonly("unit", &inkwell_test_item::unit, "unit of the figure; empty if the item has no figure")
       .def_property_readonly("takes_force", [](const inkwell_test_item& item) { return item.takes_force != 0; })
-      .def_readonly("meaning", &inkwell_test_item::meaning, "what it means if it passes")
-      .def_readonly("remedy", &inkwell_test_item::remedy, "if it fails")
+      .def_readonly("meaning", &inkwell_test_item::meaning, "condition that the test checks")
+      .def_readonly("remedy", &inkwell_test_item::remedy, "what to do if the item fails")
       .def("__repr__", [](const inkwell_test_item& item) {
         return std::string("<TestItem ") + item.name + ": " + py::str(py::cast(item.result)).cast<std::string>() + ">";
       });
@@ -234,9 +237,10 @@ void define_driver(py::module_& module) {
   using Driver = inkwell_driver;
   py::class_<Driver>(module, "Driver", "The program that drives an arm.")
       .def_property_readonly("is_driven", flag_of(&Driver::is_driven), "False: no program drives the arm")
-      .def_property_readonly("is_this_arm", flag_of(&Driver::is_this_arm), "it is driven through this arm object")
-      .def_property_readonly("program", text_of(&Driver::program), "its name")
-      .def_readonly("process_id", &Driver::process_id, "on the driver's computer")
+      .def_property_readonly("is_this_arm", flag_of(&Driver::is_this_arm),
+                             "True: the arm is driven through this object")
+      .def_property_readonly("program", text_of(&Driver::program), "name of the program")
+      .def_readonly("process_id", &Driver::process_id, "process number on the driver's computer")
       .def_readonly("driven_s", &Driver::driven_s, "board time since it claimed the arm, s")
       .def("__repr__", [](const Driver& driver) {
         return driver.is_driven != 0
@@ -291,7 +295,7 @@ void define_arm(py::module_& module) {
 }  // namespace inkwell::python
 
 PYBIND11_MODULE(_native, module) {
-  module.doc() = "libinkwell for the package's Python files.";
+  module.doc() = "Bindings of libinkwell for the Python files of the package.";
   inkwell::python::define_structs(module);
   inkwell::python::define_store(module);
   inkwell::python::define_self_test(module);
@@ -299,7 +303,7 @@ PYBIND11_MODULE(_native, module) {
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,
-             "The arms on this computer's USB, and the virtual one that INKWELL_DEVICE names.");
+             "Lists the arms on this computer's USB, and the virtual board that INKWELL_DEVICE names.");
   module.def("faults", &inkwell::python::faults);
   module.def("parameters", &inkwell::python::parameters);
   module.def("signals", &inkwell::python::signals);

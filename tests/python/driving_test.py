@@ -114,7 +114,7 @@ class Driving(unittest.TestCase):
             with self.assertRaisesRegex(inkwell.BadArgument, "not a finite number"):
                 self.arm.set_force((0, wrong, 0))
         for wrong in (1, 2), "xyz", None:
-            with self.assertRaisesRegex(TypeError, "^What was given is .*Give three numbers, the force in N"):
+            with self.assertRaisesRegex(TypeError, "^The argument is .*Give three numbers, the force in N"):
                 self.arm.set_force(wrong)
 
     def test_a_limit_that_holds_the_force_back_is_told(self):
@@ -190,7 +190,7 @@ class Driving(unittest.TestCase):
         self.arm.close()
         for thread in waiting:
             thread.join()
-        self.assertEqual([str(error) for error in raised], ["The arm is closed. Open it anew."] * 4)
+        self.assertEqual([str(error) for error in raised], ["The arm is closed. Open it again."] * 4)
         self.arm.close()
 
 

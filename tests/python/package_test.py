@@ -158,16 +158,16 @@ class Reading(unittest.TestCase):
     def test_what_is_of_a_wrong_type_is_told_in_a_sentence(self):
         arm = self.arm
         for attempt, words in ((lambda: inkwell.open(5), "is 5. Give the address as text"),
-                               (lambda: arm.servo(1), "1 can not be called. Give a function"),
+                               (lambda: arm.servo(1), "1 cannot be called. Give a function"),
                                (lambda: arm.set_force("abc"), "is 'abc'. Give three numbers"),
                                (lambda: arm.set_force_mode(3), "inkwell.ForceMode"),
                                (lambda: arm.wait_for_pose("long"), "is 'long'. Give seconds"),
                                (lambda: arm.enable_force(None), "is None. Give seconds"),
-                               (lambda: arm.select_signals(7), "names of signals"),
-                               (lambda: arm.read_scope(rows=-1), "how many rows"),
-                               (lambda: arm.virtual_hand.move((0, 0)), "three numbers, the place in m"),
+                               (lambda: arm.select_signals(7), "signal names"),
+                               (lambda: arm.read_scope(rows=-1), "number of rows"),
+                               (lambda: arm.virtual_hand.move((0, 0)), "three numbers, the position in m"),
                                (lambda: arm.virtual_hand.press("a"), "True or False"),
-                               (lambda: arm.parameters.set(force_limit_N=()), "force_limit_N is given as ()")):
+                               (lambda: arm.parameters.set(force_limit_N=()), "force_limit_N is (), which is not a number")):
             with self.assertRaises(TypeError) as raised:
                 attempt()
             self.assertIn(words, str(raised.exception))
@@ -188,7 +188,7 @@ class Reading(unittest.TestCase):
         with self.assertRaises(KeyError):
             samples["force_x_N"]
         for wrong_s in -1, 0, math.nan, math.inf, "long", None:
-            with self.assertRaisesRegex(inkwell.BadArgument, "duration is .*Give seconds, more than 0"):
+            with self.assertRaisesRegex(inkwell.BadArgument, "duration is .*Give a time of more than 0 s"):
                 self.arm.capture("supply_V", duration_s=wrong_s)
         with self.assertRaisesRegex(inkwell.BadArgument, "No signal is named"):
             self.arm.capture(duration_s=1)
@@ -321,7 +321,7 @@ class Programs(unittest.TestCase):
             arm.select_signals("supply_V")
             board.let_pass(0.1)
             board.call("pause")
-            with self.assertRaisesRegex(inkwell.TimedOut, r"^Of 100000 samples \d{3,5} came, then none for 0.2 s"):
+            with self.assertRaisesRegex(inkwell.TimedOut, r"^Of 100000 samples \d{3,5} arrived, then none for 0.2 s"):
                 arm._samples(100_000, 0.2, True)  # as capture() does
             board.call("resume")
 

@@ -1,17 +1,17 @@
-"""A haptic arm in Python.
+"""Haptic arm for Python programs.
 
     import inkwell
 
-    with inkwell.open() as arm:            # or open("virtual"), a simulated one
+    with inkwell.open() as arm:            # or open("virtual") for a simulated arm
         arm.enable_force()
 
         @arm.servo
-        def spring(pose):                  # a thousand times a second
+        def spring(pose):                  # 1000 times per second
             return -100 * (pose.position_m - [0, 0, -0.03])
 
-        input("Enter ends it. ")
+        input("Press Enter to stop. ")
 
-Lengths are in metres, forces in newtons, angles in radians, times in seconds. What goes wrong is an inkwell.Error.
+Lengths are in meters, forces in newtons, angles in radians, times in seconds. Errors are raised as inkwell.Error.
 """
 
 from ._native import Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
@@ -36,10 +36,10 @@ __all__ = [
 
 
 def signals() -> list[Signal]:
-    """The signals that can be recorded, with unit and help."""
+    """Returns the signals that can be recorded, with unit and help."""
     return list(_signals.values())
 
 
 def parameters_table() -> list[Parameter]:
-    """The parameters that every arm has, with unit, range, default and help."""
+    """Returns the parameters of every arm, with unit, range, default and help."""
     return list(_parameters.values())

@@ -1,4 +1,4 @@
-"""libinkwell for the package's Python files."""
+"""Bindings of libinkwell for the Python files of the package."""
 
 import enum
 from collections.abc import Callable, Sequence
@@ -12,7 +12,7 @@ _Vector = Sequence[float] | npt.NDArray[np.floating]
 _Array = npt.NDArray[np.float64]
 
 class State(enum.Enum):
-    """What the arm is ready for."""
+    """State of the arm."""
     STARTING = 0
     UNREFERENCED = 1
     READY = 2
@@ -20,12 +20,12 @@ class State(enum.Enum):
     FAULT = 4
 
 class ForceMode(enum.Enum):
-    """How a program's forces and the board's walls go together."""
+    """Effect of a program's forces on the board's walls."""
     BESIDE_WALLS = 1
     INSTEAD_OF_WALLS = 2
 
 class Pose:
-    """Where the stylus is, once a millisecond. Its arrays are read-only."""
+    """Position and state of the stylus, once per millisecond. The arrays are read-only."""
     @property
     def time_s(self) -> float: ...
     @property
@@ -87,7 +87,7 @@ class Device:
     def is_virtual(self) -> bool: ...
 
 class Information:
-    """What an arm says of itself and has counted."""
+    """Identity and counters of an arm."""
     @property
     def serial_number(self) -> str: ...
     @property
@@ -112,14 +112,14 @@ class Information:
     def motor_heat(self) -> _Array: ...
 
 class Stored(enum.Enum):
-    """What the board has stored."""
+    """Contents of the board's parameter store."""
     NOTHING = 0
     PARAMETERS = 1
     FACTORY_RESET = 2
     OTHER_SCHEMA = 3
 
 class Store:
-    """The state of the board's store."""
+    """State of the board's parameter store."""
     @property
     def contents(self) -> Stored: ...
     @property
@@ -132,7 +132,7 @@ class Store:
     def sector_erases(self) -> tuple[int, int]: ...
 
 class Test(enum.Enum):
-    """What an item of the board's self-test came to."""
+    """Result of a self-test item."""
     NOT_DONE = 0
     PASSED = 1
     FAILED = 2
@@ -212,7 +212,7 @@ class Arm:
 
 def version() -> str: ...
 def devices() -> list[Device]:
-    """The arms that can be opened."""
+    """Lists the arms that can be opened."""
 def faults() -> list[tuple[int, str]]: ...
 def parameters() -> list[tuple[str, str, str, float, float, float]]: ...
 def signals() -> list[tuple[str, str, str]]: ...

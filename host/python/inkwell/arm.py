@@ -20,30 +20,30 @@ from .scope import Samples
 from .shapes import Plane, Sphere
 
 Vector = Sequence[float] | npt.NDArray[np.floating]
-"""Three numbers along the axes of the workspace."""
+"""Three numbers along the workspace axes."""
 Servo = TypeVar("Servo", bound=Callable[[Pose], Vector | None])
 
 
 def _call(function: Callable[..., Any], *arguments: object, wants: str) -> Any:
-    """Calls the library, and says in a sentence what it can not take."""
+    """Calls the library. Describes arguments of a wrong type in a sentence."""
     try:
         return function(*arguments)
     except TypeError:
         given = ", ".join(repr(each) for each in arguments)
-        raise TypeError(f"What was given is {given}. Give {wants}.") from None
+        raise TypeError(f"The argument is {given}. Give {wants}.") from None
 
 
 _SECONDS = "seconds, a number"
 _FORCE = "three numbers, the force in N along x, y and z"
 
 _open: "weakref.WeakSet[Arm]" = weakref.WeakSet()
-# An arm that drives stays open, even if no name is left for it.
+# An arm that drives stays open, even if no variable refers to it.
 _driving: "set[Arm]" = set()
 
 
 @atexit.register
 def _close_all() -> None:
-    # A servo that is called while the interpreter ends would find none.
+    # A servo must not be called while the interpreter exits.
     for arm in list(_open):
         with contextlib.suppress(Exception):
             arm.close()
@@ -56,37 +56,37 @@ class VirtualHand:
         self._arm = arm
 
     def move(self, target_m: Vector, stiffness_N_per_m: float = 300.0) -> None:
-        """Takes the stylus out of the inkwell and pulls the probe to `target_m` (m) as a spring does, with a hundredth
-        of its stiffness as damping."""
+        """Lifts the stylus out of the inkwell and pulls the probe to `target_m` (m) with a spring. The damping in Ns/m is a
+        hundredth of the stiffness."""
         _call(self._arm.move_virtual_hand, target_m, stiffness_N_per_m,
-              wants="three numbers, the place in m along x, y and z, and the stiffness in N/m")
+              wants="three numbers, the position in m along x, y and z, and the stiffness in N/m")
 
     def release(self) -> None:
-        """Lets go, so that the arm falls as a real one would."""
+        """Releases the stylus, and the arm falls like a real arm."""
         self._arm.release_virtual_hand()
 
     def press(self, button_1: bool = False, button_2: bool = False) -> None:
-        """Presses the buttons that are True and lets go of the others."""
+        """Presses the buttons that are True and releases the others."""
         _call(self._arm.press_virtual_buttons, button_1, button_2, wants="True or False for each button")
 
 
 class Recording:
-    """What a recording has, once it is over."""
+    """Result of a recording, which is valid after its end."""
 
     def __init__(self, path: str) -> None:
         self.path = path
         self.samples = 0
         """Control periods in the file."""
         self.lost = 0
-        """Control periods that did not reach it."""
+        """Control periods that were lost."""
 
 
 class Arm:
     """An open arm, from inkwell.open(). Closes at the end of `with`.
 
-    Lengths are in metres, forces in newtons, angles in radians, times in seconds; positions and forces are in the
-    workspace's axes, on the Omni x to the right, y up, z to the user. Any thread may use it; what waits lets the other
-    threads run. What goes wrong is an inkwell.Error.
+    Lengths are in meters, forces in newtons, angles in radians, times in seconds. Positions and forces are in the
+    workspace axes. On the Omni x points to the right, y up, z to the user. Any thread may use the arm; calls that wait
+    let other threads run. Errors are raised as inkwell.Error.
     """
 
     def __init__(self, address: str | None = None) -> None:
@@ -98,8 +98,8 @@ class Arm:
         _open.add(self)
 
     def close(self) -> None:
-        """Ends the servo, lets this program's force fade and forgets the arm. Raises what the servo raised, or what else
-        has ended it."""
+        """Stops the servo, fades this program's force and closes the arm. Raises the exception of the servo, or any other
+        cause that has stopped it."""
         try:
             self._native.close()
         finally:
@@ -118,49 +118,51 @@ class Arm:
             if raised is None:
                 raise
             if str(error) != str(raised):
-                raised.add_note(f"The servo had ended with {type(error).__name__}: {error}")
+                raised.add_note(f"The servo had stopped with {type(error).__name__}: {error}")
 
     @property
     def information(self) -> Information:
-        """What the arm says of itself and has counted; asks it."""
+        """Identity and counters, read from the arm."""
         return self._native.information()
 
     @property
     def board_name(self) -> str:
-        """The board that the arm's firmware is for, such as "omni_driver"; empty if it tells none. Asks it."""
+        """The board that the arm's firmware was built for, such as "omni_driver", read from the arm. Empty if the firmware
+        does not report it."""
         return self._native.board_name()
 
     def self_test(self, only_last: bool = False) -> list[TestItem]:
-        """Has the board test its motors, bridges, sensors and wires, by small pulses; each item's result, figure and
-        remedy. With `only_last` what the newest test has found, without a new one. Raises Refused while the force is on
-        or a fault is shown."""
+        """Runs the board's self-test of motors, bridges, sensors and wires with small pulses. Returns result, figure and
+        remedy of each item. With `only_last` it returns the results of the last test, without a new test. Raises Refused
+        while the force is on or the board reports a fault."""
         return self._native.last_self_test() if only_last else self._native.self_test()
 
     # ---- pose ------------------------------------------------------------------------------------------------
 
     @property
     def is_referenced(self) -> bool:
-        """Whether the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been
-        lost. Otherwise the newest pose's position, joints and rotation mean nothing, and its velocity is 0."""
+        """True while the encoders are referenced. They are referenced when the stylus rests in the inkwell, until encoder
+        counts may have been lost. Otherwise the newest pose has no valid position, joints and rotation. Its velocity is
+        0."""
         return self._native.is_referenced()
 
     @property
     def pose(self) -> Pose:
-        """The newest pose, without waiting. Raises Disconnected, which has the last known one, while no poses come."""
+        """The newest pose, without waiting. Raises Disconnected, with the last known pose, while no poses arrive."""
         return self._native.pose()
 
     def wait_for_pose(self, timeout_s: float = 10.0) -> Pose:
-        """The next pose that this thread has not seen. Raises TimedOut; Disconnected while the link is lost; and once
-        what has ended the servo, if neither the program nor the servo itself did."""
+        """Waits for the next pose that this thread has not read. Raises TimedOut, and Disconnected while the link is lost.
+        If the library has stopped the servo, it raises the cause once."""
         return _call(self._native.wait_for_pose, timeout_s, wants=_SECONDS)
 
     def sleep(self, duration_s: float) -> None:
-        """Waits until so much board time has passed. Use it instead of time.sleep(): a virtual board's time is not that
-        of the PC's clock. Raises TimedOut if no pose comes for 2 s."""
+        """Waits until this board time has passed. Use it instead of time.sleep(): a virtual board's time differs from the
+        PC's clock. Raises TimedOut if no pose arrives for 2 s."""
         _call(self._native.sleep, duration_s, wants=_SECONDS)
 
     def poses(self, duration_s: float = float("inf")) -> Iterator[Pose]:
-        """Each next pose, for so much board time; those that come while the loop's body runs are passed over."""
+        """Yields the next pose for this board time. Poses that arrive while the loop body runs are skipped."""
         pose = first = self.wait_for_pose()
         while pose.time_s - first.time_s <= duration_s:
             yield pose
@@ -169,22 +171,23 @@ class Arm:
     # ---- force -----------------------------------------------------------------------------------------------
 
     def enable_force(self, timeout_s: float = 5.0) -> None:
-        """Switches the force on: here the program says that a hand may feel it. Waits for the device, which has to know
-        where it is. Raises Refused with the remedy, and InUse while another program drives the arm. The faults USB_GONE and
-        HOST_SILENT of a program that drove before this one, or before a lost link, are cleared first."""
+        """Switches the force on and waits until it is on. From here on the hand may feel a force. Raises Refused with the
+        remedy, for example if the encoders are not referenced. Raises InUse while another program drives the arm. The
+        faults USB_GONE and HOST_SILENT of a previous driver, or from before a lost link, are cleared first."""
         _call(self._native.enable_force, timeout_s, wants=_SECONDS)
 
     def disable_force(self) -> None:
-        """Lets the force fall to nothing within soft_landing_s, and returns once it is off. Raises InUse while another
+        """Reduces the force to zero within soft_landing_s, and returns when the force is off. Raises InUse while another
         program drives the arm."""
         self._native.disable_force()
 
     def stop(self) -> None:
-        """Takes the force away at once, whichever program drives the arm, and returns once it is off."""
+        """Switches the force off immediately, whichever program drives the arm, and returns when the force is off."""
         self._native.stop()
 
     def take_over(self) -> None:
-        """Takes the arm over from the program that drives it. That program's force fades and its shapes end."""
+        """Takes the arm over from the program that drives it. That program's force fades, and its shapes are
+        removed."""
         self._native.take_over()
 
     @property
@@ -193,42 +196,43 @@ class Arm:
         return self._native.driver()
 
     def clear_fault(self) -> None:
-        """Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away. Raises Refused with
-        the remedy if its cause is still there."""
+        """Clears a fault whose cause is gone, and waits 0.2 s to confirm that it does not recur. Raises Refused with the
+        remedy if the cause is still present."""
         self._native.clear_fault()
 
     def set_force_mode(self, mode: ForceMode) -> None:
-        """How this program's forces and the board's walls go together; INSTEAD_OF_WALLS unless it is set."""
+        """Sets how this program's forces combine with the board's walls. The default is INSTEAD_OF_WALLS."""
         _call(self._native.set_force_mode, mode, wants="one of inkwell.ForceMode")
 
     def set_force(self, force_N: Vector) -> None:
-        """The force on the hand (N; shape (3,)) until the next call. Without another call it fades after
-        program_force_expiry_s. Raises InUse if another program drives the arm, and ForceLost once a fault, another
-        program or a lost link has switched the force off, until it is on again. In a servo, return the force instead."""
+        """Sets the force on the hand (N; shape (3,)) until the next call. Without another call it fades after
+        program_force_expiry_s. Raises InUse if another program drives the arm. After a fault, another program or a lost
+        link has switched the force off, it raises ForceLost until the force is on again. In a servo, return the force
+        instead."""
         _call(self._native.set_force, force_N, wants=_FORCE)
 
     def servo(self, function: Servo) -> Servo:
-        """Decorates the function that is called at each pose, a thousand times a second, and returns the force on the
-        hand (N; shape (3,)) or None:
+        """Decorates the function that is called at each pose, 1000 times per second. It returns the force on the hand
+        (N; shape (3,)) or None:
 
             @arm.servo
             def spring(pose):
                 return -100 * (pose.position_m - [0, 0, -0.03])
 
-        It is called in a thread of its own until stop_servo() or the end of `with`, which raise what it raised. It also
-        ends with a lost force or lost poses: ForceLost, Disconnected or InUse comes once out of the next call of
-        wait_for_pose(), poses(), wait_for_servo(), stop_servo(), servo(), or out of the end of `with`. It shares the
-        interpreter with the other threads, so let it be short.
+        The function is called in a separate thread until stop_servo() or the end of `with`, which raise its exception.
+        The servo also stops when the force or the poses are lost. ForceLost, Disconnected or InUse is then raised once, by
+        the next call of wait_for_pose(), poses(), wait_for_servo(), stop_servo() or servo(), or at the end of `with`.
+        The function shares the interpreter with the other threads, so keep it short.
         """
         if not callable(function):
-            raise TypeError(f"{function!r} can not be called. Give a function that takes a pose and returns a force.")
+            raise TypeError(f"{function!r} cannot be called. Give a function that accepts a pose and returns a force.")
         self._native.start_servo(function)
         _driving.add(self)
         return function
 
     def stop_servo(self) -> None:
-        """Waits until the servo is not called any more; in a servo, ends it after this call. Raises what it raised, or
-        what else has ended it."""
+        """Stops the servo and waits until its last call has returned. In a servo it stops the servo after this call. Raises
+        the exception of the servo, or any other cause that has stopped it."""
         try:
             self._native.stop_servo()
         finally:
@@ -241,8 +245,8 @@ class Arm:
         return self._native.servo_is_running()
 
     def wait_for_servo(self, timeout_s: float = float("inf")) -> bool:
-        """Waits until the servo ends by itself, for so much board time, and returns whether it did. Raises what it
-        raised, or what else has ended it."""
+        """Waits until the servo stops by itself, for at most this board time. Returns whether it stopped. Raises the
+        exception of the servo, or any other cause that has stopped it."""
         waited_s = 0.0
         while self.servo_is_running:
             if waited_s > timeout_s:
@@ -253,48 +257,49 @@ class Arm:
             except errors.TimedOut:
                 waited_s += 2.0
             except errors.Disconnected:
-                time.sleep(0.01)  # which ends the servo
+                time.sleep(0.01)  # a lost link stops the servo
         self.stop_servo()
         return True
 
     def place_shapes(self, *shapes: Plane | Sphere) -> None:
-        """Places up to eight planes and one sphere instead of all shapes, at one control period and without a jump of
-        the force. Without arguments, takes them away."""
+        """Replaces all shapes by up to eight planes and one sphere, in one control period and without a jump of the force.
+        Without arguments it removes all shapes."""
         spheres = [shape for shape in shapes if isinstance(shape, Sphere)]
         planes = [shape for shape in shapes if isinstance(shape, Plane)]
         if len(spheres) + len(planes) < len(shapes):
-            raise TypeError("A shape is an inkwell.Plane or an inkwell.Sphere.")
+            raise TypeError("A shape has a wrong type. Give an inkwell.Plane or an inkwell.Sphere.")
         if len(spheres) > 1:
-            raise errors.BadArgument(f"{len(spheres)} spheres are too many. Give the nearest.")
+            raise errors.BadArgument(f"{len(spheres)} spheres are too many. Give the nearest sphere.")
         try:
             self._native.place_shapes(planes, spheres[0] if spheres else None)
-        except RuntimeError:  # of a value that can not be converted
-            raise TypeError("A value of a shape has a wrong type. Give three numbers for a point, a normal or a centre, "
-                            "and one for each of the others.") from None
+        except RuntimeError:  # a value cannot be converted
+            raise TypeError("A value of a shape has a wrong type. Give three numbers for a point, a normal or a center, "
+                            "and one number for each other value.") from None
 
     # ---- scope and recording ---------------------------------------------------------------------------------
 
     def select_signals(self, *names: str) -> None:
-        """Streams these signals (inkwell.signals() lists them) at every control period from now on; none stops it."""
-        _call(self._native.select_signals, names, wants="names of signals as text, which inkwell.signals() lists")
+        """Starts to stream these signals at every control period; inkwell.signals() lists them. Without names it stops the
+        stream."""
+        _call(self._native.select_signals, names, wants="signal names as text; inkwell.signals() lists them")
         self._signals = names
 
     def read_scope(self, rows: int = 4096, timeout_s: float = 1.0) -> Samples:
-        """Samples of the selected signals that have come: waits until there are some, and takes at most `rows`. After a
-        time-out there are none."""
+        """Waits for samples of the selected signals, and returns at most `rows` of them. After a time-out it returns no
+        samples."""
         return self._samples(rows, timeout_s, False)
 
     def capture(self, *names: str, duration_s: float, timeout_s: float = 10.0) -> Samples:
-        """Selects these signals, takes samples for `duration_s` of board time, all that there are, and selects none
-        again. Raises TimedOut if none comes for `timeout_s`."""
+        """Selects these signals, records all their samples for `duration_s` of board time, and stops the stream. Raises
+        TimedOut if no sample arrives for `timeout_s`."""
         try:
             is_a_time = math.isfinite(duration_s) and duration_s > 0
         except TypeError:
             is_a_time = False
         if not is_a_time:
-            raise errors.BadArgument(f"The duration is {duration_s!r}. Give seconds, more than 0.")
+            raise errors.BadArgument(f"The duration is {duration_s!r}. Give a time of more than 0 s.")
         if not names:
-            raise errors.BadArgument("No signal is named. Give one at least; inkwell.signals() lists them.")
+            raise errors.BadArgument("No signal is named. Give at least one; inkwell.signals() lists all signals.")
         self.select_signals(*names)
         try:
             return self._samples(max(1, round(duration_s * self._servo_rate_Hz)), timeout_s, True)
@@ -304,18 +309,18 @@ class Arm:
     def _samples(self, rows: int, timeout_s: float, fill: bool) -> Samples:
         signals = self._signals
         values, periods, lost = _call(self._native.read_scope, rows, timeout_s, fill,
-                                      wants="how many rows, from 0 on, and the time-out in seconds")
+                                      wants="the number of rows, 0 or more, and the time-out in seconds")
         return Samples(signals, values, periods, lost, self._servo_rate_Hz)
 
     @contextlib.contextmanager
     def record(self, path: str | os.PathLike[str], *names: str) -> Iterator[Recording]:
-        """Records these signals into a file (.h5, or .csv) until the end of `with`:
+        """Records these signals to a file (.h5 or .csv) until the end of `with`:
 
             with arm.record("push.h5", "position_x_m", "force_x_N") as recording:
                 arm.sleep(5)
             print(recording.samples, recording.lost)
 
-        Raises at its end what has ended the servo meanwhile, if neither the program nor the servo itself did.
+        If the library has stopped the servo meanwhile, the end of `with` raises the cause.
         """
         recording = Recording(os.fspath(path))
         self.select_signals(*names)
@@ -333,21 +338,21 @@ class Arm:
 def open(address: str | None = None, *, seed: int | None = None) -> Arm:
     """Opens an arm; its force is off.
 
-    address: None           what the environment's INKWELL_DEVICE says, else the only arm on USB
-             serial number  the arm on USB that has it
-             "usbip:HOST:PORT"  that of a USB/IP server, such as a virtual board that runs already;
-                            "usbip:unix:PATH" at a Unix socket
-             "virtual"      a virtual board of its own, which ends with the arm; "virtual:FILE" with the arm that FILE
-                            describes, "virtual?arm=FILE&elf=FILE" with another firmware too
-    seed:    for a virtual board: the seed of its noise. Its time then passes only while a call of this package waits for
-             it, such as sleep(), so the same program gives the same samples each time.
+    address: None           the address in the environment variable INKWELL_DEVICE, otherwise the only arm on USB
+             serial number  the arm on USB with this number
+             "usbip:HOST:PORT"  the arm of a USB/IP server, such as a running virtual board;
+                            "usbip:unix:PATH" for a Unix socket
+             "virtual"      a new virtual board, which exits with the arm; "virtual:FILE" with the arm description FILE,
+                            "virtual?arm=FILE&elf=FILE" also with another firmware
+    seed:    seed of the noise of a virtual board. Its time then passes only while a call of this package, such as sleep(),
+             waits for the board. The same program therefore returns the same samples each time.
     """
     if seed is None:
         return Arm(address)
     if not isinstance(seed, int) or seed < 0:
-        raise errors.BadArgument(f"The seed is {seed!r}. Give a whole number from 0 on.")
+        raise errors.BadArgument(f"The seed is {seed!r}. Give a whole number of 0 or more.")
     if address is None or not (address == "virtual" or address.startswith(("virtual:", "virtual?"))):
-        raise errors.BadArgument(f'A seed is for a virtual board, not for {address!r}. Open "virtual".')
+        raise errors.BadArgument(f'A seed requires a virtual board, not {address!r}. Open "virtual".')
     kind, _, options = address.partition("?")
     if kind != "virtual":
         options = "arm=" + address.removeprefix("virtual:")

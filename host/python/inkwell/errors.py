@@ -1,4 +1,4 @@
-"""What can go wrong, a class for each result of the library. The message says what is wrong and what to do."""
+"""Errors: one class for each result of the library. The message states what is wrong and what to do."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ if typing.TYPE_CHECKING:
 
 
 class Error(Exception):
-    """Anything that the library or the arm refuses; the classes below say more."""
+    """Base class of all errors of the library and the arm."""
 
     result: int
 
 
 class NoDevice(Error):
-    """No arm is there, or more than one and none was named."""
+    """No arm is connected, or the address does not select one of several."""
 
     result = 1
 
 
 class NoPermission(Error, PermissionError):
-    """The user may not use the device."""
+    """The user has no permission to open the device."""
 
     result = 2
 
@@ -33,8 +33,8 @@ class Incompatible(Error):
 
 
 class Disconnected(Error, ConnectionError):
-    """No poses come: the link to the arm is lost, or the arm is silent. The library looks for the same arm until it is
-    back, and then goes on with it. After a lost link the force is off; enable_force() switches it on again."""
+    """No poses arrive: the link to the arm is lost, or the arm is silent. The library searches for the same arm and
+    connects to it again. After a lost link the force is off; enable_force() switches it on again."""
 
     result = 4
     last_pose: Pose | None = None
@@ -42,37 +42,37 @@ class Disconnected(Error, ConnectionError):
 
 
 class InUse(Error):
-    """Another program has what only one can have."""
+    """Another program has exclusive use of the arm or the scope."""
 
     result = 5
 
 
 class BadArgument(Error, ValueError):
-    """A value that the function can not take."""
+    """The function does not accept a value."""
 
     result = 6
 
 
 class Refused(Error):
-    """The arm does not take it, or not now."""
+    """The arm does not accept the request in its present state."""
 
     result = 7
 
 
 class TimedOut(Error, TimeoutError):
-    """What was waited for did not come."""
+    """The expected event did not occur in time."""
 
     result = 8
 
 
 class Failed(Error):
-    """Anything else; the message says what."""
+    """Any other error; the message describes it."""
 
     result = 9
 
 
 class ForceLost(Error):
-    """The force went off, and this program did not switch it off: a fault, another program, or a lost link."""
+    """A fault, another program or a lost link has switched the force off."""
 
     result = 10
 

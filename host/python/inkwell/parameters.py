@@ -1,4 +1,4 @@
-"""The parameters of an arm as attributes, from the library's own table."""
+"""Parameters of an arm as attributes, from the library's table."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -7,12 +7,12 @@ from . import _native, errors
 
 
 class Parameter(NamedTuple):
-    """A row of the table of parameters."""
+    """A row of the parameter table."""
 
     name: str
-    """It ends in its unit."""
+    """The name, which ends in the unit."""
     unit: str
-    """Empty for a pure number."""
+    """Empty for a dimensionless number."""
     help: str
     minimum: float
     maximum: float
@@ -30,17 +30,17 @@ def _number(name: str, value: object) -> float:
     try:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError) as error:
-        raise type(error)(f"{name} is given as {value!r}. Give a number.") from None
+        raise type(error)(f"{name} is {value!r}, which is not a number. Give a number.") from None
 
 
 class Parameters:
-    """The parameters of an arm. Reading one tells its value, setting one sends it to the board:
+    """Parameters of an arm. Reading an attribute returns the value; assigning to it sends the value to the board:
 
         arm.parameters.wall_stiffness_N_per_m = 500
-        arm.parameters.set(wall_stiffness_N_per_m=500, wall_damping_Ns_per_m=1)   # both at one control period
+        arm.parameters.set(wall_stiffness_N_per_m=500, wall_damping_Ns_per_m=1)   # both in one control period
 
-    They last until the board loses its power, unless store() keeps them. print(arm.parameters) shows all values,
-    help(inkwell.Parameters) units, ranges and defaults.
+    Changes are lost when the board loses power, unless store() stores them. print(arm.parameters) shows all values.
+    help(inkwell.Parameters) shows units, ranges and defaults.
     """
 
     __slots__ = ("_arm",)
@@ -49,28 +49,29 @@ class Parameters:
         object.__setattr__(self, "_arm", arm)
 
     def set(self, **values: float) -> None:
-        """Sets several: all take effect at one control period, or none does."""
+        """Sets several parameters. All take effect in one control period, or none does."""
         self._arm.set_parameters([(name, _number(name, value)) for name, value in values.items()])
 
     def store(self) -> None:
-        """Has the board keep its parameters as they are now, over its power. Raises Refused while the force is on."""
+        """Stores the current parameters on the board, so that they survive power loss. Raises Refused while the force is
+        on."""
         self._arm.store_parameters()
 
     def restore(self) -> None:
-        """Gives every parameter what is stored. Raises Refused if nothing is."""
+        """Sets every parameter to its stored value. Raises Refused if nothing is stored."""
         self._arm.restore_parameters()
 
     def factory_reset(self) -> None:
-        """Has the board forget what it has stored, the calibration of its arm too; every parameter gets its default.
+        """Erases the stored parameters, including the calibration of the arm, and sets every parameter to its default.
         Raises Refused while the force is on."""
         self._arm.factory_reset()
 
     def store_state(self) -> _native.Store:
-        """What is stored, how many values are not, and the wear of the flash."""
+        """Returns the contents of the store, the number of values that are not stored, and the wear of the flash."""
         return self._arm.store()
 
     def not_stored(self) -> dict[str, float]:
-        """The parameters that would be lost with the board's power, with the value that is stored."""
+        """Returns the parameters that are lost at power loss, each with its stored value."""
         if self._arm.store().not_stored == 0:
             return {}
         stored = {name: self._arm.stored_parameter(name) for name in self}
@@ -80,8 +81,8 @@ class Parameters:
         return (row[0] for row in _native.parameters())
 
     def __getattr__(self, name: str) -> float:
-        # Only what has no property below comes here: a parameter of the arm's own force law, or none.
-        if name.startswith("_"):  # what Python and notebooks ask every object
+        # Called only for names without a property below: parameters of the arm's force law, or unknown names.
+        if name.startswith("_"):  # Python and notebooks read such names of every object
             raise AttributeError(name)
         try:
             return self._arm.parameter(name)
@@ -92,7 +93,7 @@ class Parameters:
         if name in TABLE:
             super().__setattr__(name, value)
         else:
-            getattr(self, name)  # which knows whether there is such a parameter
+            getattr(self, name)  # raises if there is no such parameter
             self._arm.set_parameters([(name, _number(name, value))])
 
     def __repr__(self) -> str:

@@ -10,10 +10,10 @@ from . import _native
 
 
 class Signal(NamedTuple):
-    """A row of the table of signals."""
+    """A row of the signal table."""
 
     name: str
-    """It ends in its unit."""
+    """The name, which ends in the unit."""
     unit: str
     help: str
 
@@ -23,17 +23,17 @@ TABLE = {row[0]: Signal(*row) for row in _native.signals()}
 
 @dataclasses.dataclass(frozen=True)
 class Samples:
-    """Samples of some signals, one row for each control period. samples["force_x_N"] is one of them."""
+    """Samples of signals, one row per control period. samples["force_x_N"] returns the samples of one signal."""
 
     signals: tuple[str, ...]
     values: npt.NDArray[np.float32]
     """Shape (samples, signals)."""
     periods: npt.NDArray[np.int64]
-    """The control period of each sample; shape (samples,). Divided by servo_rate_Hz it is a time as Pose.time_s."""
+    """Control period of each sample; shape (samples,). Divided by servo_rate_Hz it has the time base of Pose.time_s."""
     lost: int
-    """How many samples are missing before and between these."""
+    """Number of samples that were lost before and between these samples."""
     servo_rate_Hz: float
-    """Control periods in a second."""
+    """Control periods per second."""
 
     @property
     def time_s(self) -> npt.NDArray[np.float64]:
@@ -42,7 +42,7 @@ class Samples:
 
     def __getitem__(self, signal: str) -> npt.NDArray[np.float32]:
         if signal not in self.signals:
-            raise KeyError(f"{signal} was not selected, only {', '.join(self.signals)}")
+            raise KeyError(f"{signal} was not selected. Selected are: {', '.join(self.signals)}")
         return self.values[:, self.signals.index(signal)]
 
     def __len__(self) -> int:
