@@ -1,6 +1,6 @@
 function inkwell_enable(arm, on)
-% inkwell_enable(arm)         Switches the force on: a hand may feel it from here on.
-% inkwell_enable(arm, false)  Switches it off.
+% inkwell_enable(arm)         Switches the force on. From here on the hand may feel a force.
+% inkwell_enable(arm, false)  Switches the force off.
   if nargin < 2
     on = true;
   end

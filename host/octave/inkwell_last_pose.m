@@ -1,7 +1,7 @@
 function pose = inkwell_last_pose(arm)
-% pose = inkwell_last_pose(arm)  The last known pose, without waiting.
+% pose = inkwell_last_pose(arm)  Returns the last known pose without waiting.
 %
-% The struct is that of inkwell_pose. While no poses come, inkwell_pose is an error with the identifier
-% 'inkwell:disconnected'; this function still returns where the stylus was seen last.
+% The struct has the fields of inkwell_pose. While no poses arrive, inkwell_pose raises an error with the identifier
+% 'inkwell:disconnected'. This function still returns the last known pose.
   pose = inkwell_mex('last_pose', arm);
 end

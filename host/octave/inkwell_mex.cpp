@@ -25,13 +25,13 @@ struct Wrong : std::runtime_error {
 };
 
 const mxArray* argument(const Arguments& arguments, std::size_t index) {
-  if (index >= arguments.size()) throw Wrong("An argument is missing. See the help of the function.");
+  if (index >= arguments.size()) throw Wrong("An argument is missing. Read the help of the function.");
   return arguments[index];
 }
 
 std::string text(const mxArray* value) {
   char* characters = mxIsChar(value) ? mxArrayToString(value) : nullptr;
-  if (characters == nullptr) throw Wrong("A name was expected. Give it as text, 'like this'.");
+  if (characters == nullptr) throw Wrong("An argument is not a name. Give the name as text, 'like this'.");
   const std::string copy = characters;
   mxFree(characters);
   return copy;
@@ -42,7 +42,7 @@ std::vector<std::string> texts(const mxArray* value) {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < mxGetNumberOfElements(value); ++i) {
     const mxArray* cell = mxGetCell(value, static_cast<mwIndex>(i));
-    if (cell == nullptr) throw Wrong("A name is missing in the list of names.");
+    if (cell == nullptr) throw Wrong("An entry of the name list is not a name. Give all names as text.");
     all.push_back(text(cell));
   }
   return all;
@@ -56,13 +56,13 @@ std::vector<const char*> pointers(const std::vector<std::string>& names) {
 
 double number(const mxArray* value) {
   if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 1)
-    throw Wrong("A number was expected.");
+    throw Wrong("An argument is not a number. Give a number.");
   return mxGetScalar(value);
 }
 
 inkwell::Vector vector(const mxArray* value) {
   if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 3)
-    throw Wrong("Three numbers were expected, [x y z].");
+    throw Wrong("An argument is not a vector. Three numbers are required, [x y z].");
   const double* numbers = mxGetPr(value);
   return {numbers[0], numbers[1], numbers[2]};
 }
@@ -239,7 +239,7 @@ Answers set(const Arguments& arguments) {
   const auto names = texts(argument(arguments, 1));
   const mxArray* values = argument(arguments, 2);
   if (!mxIsDouble(values) || mxIsComplex(values) || mxGetNumberOfElements(values) != names.size())
-    throw Wrong("Give as many values as names.");
+    throw Wrong("The numbers of names and values differ. Give as many values as names.");
   require(inkwell_set_parameters(find(arguments)->second, pointers(names).data(), mxGetPr(values), names.size()));
   return {};
 }
@@ -339,7 +339,7 @@ Answers read(const Arguments& arguments) {
     std::uint64_t lost_before = 0;
     require(inkwell_read_samples(arm, 10.0, values.data() + rows * columns, periods.data() + rows, wanted - rows,
                                  &count, &lost_before));
-    if (count == 0) throw Wrong("No samples came within 10 s. Reset the board, or let a paused virtual board run.");
+    if (count == 0) throw Wrong("No samples arrived within 10 s. Reset the board, or let a paused virtual board run.");
     rows += count;
     lost += lost_before;
   }

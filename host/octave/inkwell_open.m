@@ -1,20 +1,21 @@
 function arm = inkwell_open(address, seed)
 % inkwell_open  Opens a haptic arm; its force is off.
 %
-%   arm = inkwell_open()           what the environment's INKWELL_DEVICE says, else the only arm on USB
-%   arm = inkwell_open(address)    a serial number, 'usbip:HOST:PORT', 'usbip:unix:PATH', or 'virtual' for a simulated one
+%   arm = inkwell_open()           the address in INKWELL_DEVICE, otherwise the only arm on USB
+%   arm = inkwell_open(address)    a serial number, 'usbip:HOST:PORT', 'usbip:unix:PATH', or 'virtual' for a simulated arm
 %   arm = inkwell_open('virtual', seed)
-%     A simulated arm whose time passes only while a function waits for it: inkwell_pose, inkwell_sleep, inkwell_capture
-%     and others. The same script with the same seed gives the same samples each time.
+%     A simulated arm. Its time passes only while a function waits for the arm, such as inkwell_pose, inkwell_sleep or
+%     inkwell_capture. The same script with the same seed returns the same samples each time.
 %
-% Lengths are in m, forces in N, angles in rad, times in s of the board; positions and forces are in the arm's
-% workspace, on the Omni x to the right, y up, z to the user. Whatever goes wrong is an error that says what to do.
+% Lengths are in m, forces in N, angles in rad, times in s of board time. Positions and forces are in the arm's
+% workspace axes. On the Omni x points to the right, y up, z to the user. Each function raises an error that states what
+% to do.
   if nargin < 1
     address = '';
   end
   if nargin > 1
     if ~strcmp(address, 'virtual')
-      error('inkwell:refused', 'A seed is for a simulated arm. Give the address ''virtual''.');
+      error('inkwell:refused', 'A seed requires a simulated arm. Give the address ''virtual''.');
     end
     address = sprintf('virtual?seed=%d', seed);
   end

@@ -1,8 +1,8 @@
 function result = inkwell_parameters(arm, names, values)
-% inkwell_parameters                      All parameters with unit, range and help, a struct array.
-% inkwell_parameters(arm, name)           The value of one.
-% inkwell_parameters(arm, name, value)    Sets one.
-% inkwell_parameters(arm, names, values)  Sets several, a cell array of names, at one control period.
+% inkwell_parameters                      Returns all parameters with unit, range and help as a struct array.
+% inkwell_parameters(arm, name)           Returns the value of a parameter.
+% inkwell_parameters(arm, name, value)    Sets a parameter.
+% inkwell_parameters(arm, names, values)  Sets several parameters in one control period. `names` is a cell array.
   if nargin < 2
     result = inkwell_mex('parameters');
   elseif nargin < 3

@@ -1,7 +1,7 @@
 function inkwell_sleep(arm, duration_s)
-% inkwell_sleep(arm, duration_s)  Waits until so much board time has passed. Use it instead of pause(): the time of a
-%                                 simulated arm is not that of the computer's clock.
-  step_s = 0.1;  % so that Ctrl-C is heard
+% inkwell_sleep(arm, duration_s)  Waits until this board time has passed. Use it instead of pause(): the time of a
+%                                 simulated arm differs from the computer's clock.
+  step_s = 0.1;  % so that Ctrl-C works
   while duration_s > 0
     inkwell_mex('sleep', arm, double(min(duration_s, step_s)));
     duration_s = duration_s - step_s;

@@ -1,4 +1,5 @@
 function inkwell_stop(arm)
-% inkwell_stop(arm)  Takes the force away at once, whichever program drives the arm, and returns once it is off.
+% inkwell_stop(arm)  Switches the force off immediately, whichever program drives the arm. Returns when the force
+%                    is off.
   inkwell_mex('stop', arm);
 end

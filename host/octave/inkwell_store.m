@@ -1,15 +1,15 @@
 function state = inkwell_store(arm, action)
-% inkwell_store(arm)                   The board keeps its parameters as they are now, over its power.
-% inkwell_store(arm, 'restore')        Every parameter gets what is stored.
-% inkwell_store(arm, 'factory reset')  The board forgets what is stored, the calibration too; defaults everywhere.
-% state = inkwell_store(arm, 'state')  What is stored:
+% inkwell_store(arm)                   Stores the current parameters on the board, so that they survive power loss.
+% inkwell_store(arm, 'restore')        Sets every parameter to its stored value.
+% inkwell_store(arm, 'factory reset')  Erases the stored parameters and the calibration, and sets all defaults.
+% state = inkwell_store(arm, 'state')  Returns the state of the store:
 %
 %   state.contents         'nothing', 'parameters', 'factory reset' or 'other schema'
-%   state.not_stored       how many values would be lost with the board's power
-%   state.stores_left      how many stores fit before the board's next start, which makes room
-%   state.records_written  in the board's life
+%   state.not_stored       number of values that are lost at power loss
+%   state.stores_left      number of stores that fit before the board's next start, which frees space
+%   state.records_written  records since the board was made
 %
-% The board refuses while the force is on.
+% The board refuses to store or erase while the force is on.
   if nargin < 2
     action = 'store';
   end

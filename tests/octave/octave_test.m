@@ -71,7 +71,7 @@ assert(samples(:, 2), 18 * ones(2000, 1), 1);
 assert(time_s(end), (1999 + lost) / 20000, 1e-9);
 refused(@() inkwell_capture(arm, {'position_z_mm'}, 0.1), 'Did you mean position_z_m?');
 for wrong = {-1, 0, NaN, Inf, 'long', [1 2]}
-  refused(@() inkwell_capture(arm, {'position_x_m'}, wrong{1}), 'The duration is no time');
+  refused(@() inkwell_capture(arm, {'position_x_m'}, wrong{1}), 'The duration is not valid');
 end
 for wrong = {{}, '', 7}
   refused(@() inkwell_capture(arm, wrong{1}, 1), 'No signal is named');
@@ -139,7 +139,7 @@ end
 samples = run_with_seed(7);
 assert(isequal(run_with_seed(7), samples));
 assert(! isequal(run_with_seed(8), samples));
-refused(@() inkwell_open('usbip:127.0.0.1:1', 7), 'A seed is for a simulated arm');
+refused(@() inkwell_open('usbip:127.0.0.1:1', 7), 'A seed requires a simulated arm');
 
 % A recording of the command line is loaded whole, and its marks are text.
 [programs, ~] = fileparts(fileparts(which('inkwell_mex')));

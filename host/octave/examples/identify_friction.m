@@ -1,12 +1,12 @@
 function fit = identify_friction(arm, picture)
-% fit = identify_friction(arm, picture)  Identifies what opposes a movement of the stylus along x, and draws it.
+% fit = identify_friction(arm, picture)  Identifies the friction of the stylus along x and plots it.
 %
-% The program leads the stylus to and fro by a spring for six seconds, takes the force that this needs, and fits to it
+% The program moves the stylus back and forth with a spring for six seconds. It records the required force and fits
 %
 %   force_N = coulomb_N * sign(velocity) + viscous_Ns_per_m * velocity + stiffness_N_per_m * x + offset_N
 %
-% On a real arm, take the stylus to the middle of the box and let go of it once it is held: then the friction is that of
-% the arm. A hand that holds it is a stiffness and a damping beside. `picture` is the name of a PNG file.
+% On a real arm, move the stylus to the middle of the box and release it when the spring holds it. The result is then the
+% friction of the arm. A hand on the stylus adds stiffness and damping. `picture` is the name of a PNG file.
   centre_m = [0; 0; -0.03];
   amplitude_m = 0.02;
   frequency_Hz = 0.5;
@@ -37,7 +37,7 @@ function fit = identify_friction(arm, picture)
   found = terms \ force_N;
   fit = struct('coulomb_N', found(1), 'viscous_Ns_per_m', found(2), 'stiffness_N_per_m', found(3), 'offset_N', found(4));
 
-  % What is left without the elastic part belongs to the velocity alone.
+  % Without the elastic part, the remaining force depends on the velocity only.
   from_velocity_N = force_N - terms(:, 3:4) * found(3:4);
   line_m_s = [min(velocity_m_s), 0, 0, max(velocity_m_s)];
   line_N = found(1) * [-1, -1, 1, 1] + found(2) * line_m_s;
