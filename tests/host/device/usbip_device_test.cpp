@@ -383,7 +383,7 @@ TEST_CASE("the begin of the newest frame of the bus is told as the device counts
   server.frame.time_cycles = 345;
   const auto arm = device::Device::open(server.endpoint());
   CHECK(arm->frame().value().sequence == 12);
-  CHECK(arm->frame().time_cycles == 345);
+  CHECK(arm->frame().value().time_cycles == 345);
 }
 
 TEST_CASE("a device names its board, also where it is refused") {
