@@ -20,7 +20,7 @@
 namespace inkwell::command_line {
 namespace {
 
-std::string_view name_of(protocol::ReportKind kind) {
+std::string_view kind_text(protocol::ReportKind kind) {
   switch (kind) {
     case protocol::ReportKind::input: return "input";
     case protocol::ReportKind::output: return "output";
@@ -44,7 +44,7 @@ void print_reports() {
   for (std::size_t i = 0; i < protocol::report_table.size(); ++i) {
     const auto& row = protocol::report_table[i];
     const auto& text = protocol::report_texts[i];
-    fmt::print("| 0x{:02x} | {} | {} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), name_of(row.kind),
+    fmt::print("| 0x{:02x} | {} | {} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), kind_text(row.kind),
                structure(text.get), structure(text.set), row.bytes,
                row.can_be_set() ? fmt::format("{}", row.set_bytes_minimum) : "-", text.meaning);
   }
