@@ -15,9 +15,9 @@ bool BackgroundWatch::start() {
   return memory_sound;
 }
 
-// Every 0.15 ms is often enough for all but the memory, whose check takes small steps. In each round they would take
-// the main loop a tenth of its time, and its code in the flash out of the cache. What is found stands for three rounds,
-// in which the control interrupt sees it.
+// All checks run in every third round, 0.15 ms, except the memory check, which runs in small steps. If the checks ran
+// in every round, they would use a tenth of the main loop's time and displace its code from the flash cache. Each
+// result is valid for three rounds, so the control interrupt always reads it.
 void BackgroundWatch::look() {
   const bool memory_sound = memory_check_.step();
   if (++rounds_ < rounds_per_look) return;
@@ -64,7 +64,8 @@ protocol::Watches BackgroundWatch::found_of_bridges() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};
-  // If a control interrupt came in between, the bridges may have been told something else than the pins showed.
+  // The result is skipped if a control interrupt occurred during the reads, because the interrupt may have switched the
+  // bridges.
   if (completed_periods.load() == periods_before) look_at(bridge_wire_, pins);
   return watch(Fault::bridge_wire, touches(bridge_wire_));
 }

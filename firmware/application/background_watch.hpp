@@ -1,6 +1,6 @@
-// What the main loop watches, beside the control interrupt: memory, supplies and wires. None of it is so quick that a
-// control period or two would matter, and the interrupt has no cycles to give. (The chip's own supply is: it
-// interrupts, and is looked at here for as long as it is low.)
+// Checks in the main loop: memory, supplies and wires. None of them needs a reaction within one or two control periods,
+// and the control interrupt has no spare cycles. The CPU supply needs a faster reaction and has an interrupt. The main
+// loop only polls how long this supply stays low.
 #pragma once
 
 #include <array>
@@ -21,15 +21,14 @@ namespace inkwell::application {
 
 class BackgroundWatch {
  public:
-  /// Goes through the whole memory, before anything that is damaged can drive a motor. The drivers must have started.
-  /// False if a bit of the memory is wrong.
+  /// Checks the whole memory. Call this function after the drivers have started and before a motor can be driven.
+  /// Returns false if a bit is wrong.
   bool start();
 
-  /// Call it each time that the main loop comes round, once in a control period at most. What is found goes to the
-  /// control interrupt.
+  /// Call this function in each round of the main loop, at most once per control period. The results go to the control
+  /// interrupt.
   void look();
 
-  /// What is known of VDDA.
   const control::AnalogSupply& analog_supply() const { return analog_supply_; }
 
  private:
@@ -48,7 +47,7 @@ class BackgroundWatch {
   std::array<control::EncoderWire, 3> encoder_wires_{};
   std::array<control::StuckEncoder, 3> stuck_encoders_{};
   control::BridgeWire bridge_wire_;
-  unsigned rounds_ = 0;  ///< of the main loop, since the last look
+  unsigned rounds_ = 0;  ///< main loop rounds since the last check
 };
 
 }  // namespace inkwell::application

@@ -1,4 +1,4 @@
-// The control interrupt: 20 000 times a second, from the sensors to the bridges.
+// The control interrupt: 20 000 times per second, from the sensors to the bridges.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/interrupts.hpp>
@@ -46,7 +46,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
   if (drive.enabled)
     bridges.write(drive.duty);
   else
-    bridges.write_brake();  // also while they are off: that is what they begin with when they come on
+    bridges.write_brake();  // also while the bridges are off: the bridges start with these levels
   if (drive.enabled || drive.brake)
     bridges.enable();
   else
@@ -75,9 +75,9 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t came_round_at_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - came_round_at_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  // Once, and not while the start takes its time.
+  // Requested once per stall, and not during start-up.
   if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != first_period) [[unlikely]]
-    drivers::CallBehindInterrupts::ask();  // hang_handler()
+    drivers::CallBehindInterrupts::ask();  // calls hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
                    watch(Fault::heartbeat_missed, bridges_were_let_go));
 
@@ -109,8 +109,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   drivers::finish_stores();
 }
 
-// Neither of the two interrupts the other. The next control period switches the bridges off; the main loop, which looks
-// as well, knows how long it lasts.
+// The two interrupts do not preempt each other. The next control period switches the bridges off. The main loop also
+// polls the supply and reports it while it is low.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
   drivers::finish_stores();

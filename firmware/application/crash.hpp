@@ -1,4 +1,4 @@
-// What is known of a crash, from the fault handler over the reset to the start that tells of it.
+// Crash record: the fault handler writes it, it survives the reset, and the next boot reports it.
 #pragma once
 
 #include <drivers/kept_over_reset.hpp>
@@ -8,12 +8,13 @@ namespace inkwell::application {
 
 extern drivers::KeptOverReset<protocol::CrashFacts> crash_record;
 
-/// Nothing else raises the non-maskable interrupt (RM0090, "Clock security system").
+/// The non-maskable interrupt has no other source (RM0090, "Clock security system").
 constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
   return crash.exception == protocol::crystal_exception;
 }
 
-/// Left by a main loop that hung; void if that came back, or if something else than the watchdog ended it.
+/// Record of a main loop that hung. The record is invalid if the main loop resumed, or if the watchdog did not cause
+/// the reset.
 constexpr bool is_hang(const protocol::CrashFacts& crash) { return crash.exception == protocol::hang_exception; }
 
 }  // namespace inkwell::application

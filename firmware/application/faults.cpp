@@ -1,5 +1,5 @@
-// What happens when the processor cannot go on: bridges off, a record, a restart; and a record of where the main loop
-// hangs.
+// Handling of CPU faults: bridges off, crash record, restart. This file also records the location of a hang of the main
+// loop.
 #include <algorithm>
 #include <iterator>
 
@@ -19,14 +19,13 @@ namespace {
 
 using protocol::CrashFacts;
 
-/// What the handlers here have saved: r4 to r11, and the value that a return from the exception would take
-/// (EXC_RETURN).
+/// Registers that the handlers in this file save: r4 to r11 and the return value of the exception (EXC_RETURN).
 struct SavedRegisters {
   std::uint32_t r4_to_r11[8];
   std::uint32_t exception_return;
 };
 
-/// What the processor pushed on entry; room for its floats follows, if they were in use.
+/// Frame that the processor pushes on entry. Space for floating-point registers follows, if they were in use.
 struct ExceptionFrame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12, link_register, program_counter, program_status;
@@ -34,14 +33,15 @@ struct ExceptionFrame {
 
 std::uint32_t address_of(const void* place) { return reinterpret_cast<std::uint32_t>(place); }
 
-/// Before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
+/// Stack pointer before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
 std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_return) {
   constexpr std::uint32_t no_floats = 1u << 4, was_aligned = 1u << 9, bytes_of_floats = 72;
   return address_of(frame + 1) + ((exception_return & no_floats) != 0 ? 0 : bytes_of_floats) +
          ((frame->program_status & was_aligned) != 0 ? 4 : 0);
 }
 
-/// A place of the firmware's code behind a BL, or a BLX with a register (ARMv7-M, A7.7.18 and A7.7.19).
+/// Whether the address is in firmware code directly after a BL, or after a BLX with a register (ARMv7-M, A7.7.18 and
+/// A7.7.19).
 bool is_behind_call(std::uint32_t address) {
   const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
     return address >= address_of(begin) + 4 && address < address_of(end);
@@ -52,7 +52,8 @@ bool is_behind_call(std::uint32_t address) {
   return ((behind[-2] & 0xF800) == 0xF000 && (behind[-1] & 0xD000) == 0xD000) || (behind[-1] & 0xFF87) == 0x4780;
 }
 
-/// Without frame pointers the stack does not tell its return addresses from old ones: what looks like one is noted.
+/// Without frame pointers, valid return addresses on the stack cannot be distinguished from old return addresses. The
+/// record therefore contains all possible return addresses.
 void note_callers(CrashFacts& crash) {
   std::size_t count = 0;
   const auto consider = [&](std::uint32_t word) {
@@ -63,7 +64,7 @@ void note_callers(CrashFacts& crash) {
   for (; word < stack_top && count < std::size(crash.callers); ++word) consider(*word);
 }
 
-/// Of the exception that is being handled.
+/// Collects the facts of the exception that is being handled.
 CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
   using registers::SCB;
   CrashFacts crash{};
@@ -89,10 +90,10 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 }  // namespace
 
-/// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
-/// broken. Then the record is made on the lowest 512 bytes of the stack, which nobody uses
-/// unless the stack has overflowed. No interrupt comes between: none is before a fault. A second fault in here begins
-/// anew as a hard fault, and one in that locks the processor up until the watchdog resets it.
+/// First switches the motors off with three stores that use no memory, because even the stack may be damaged. Then the
+/// record is made with the lowest 512 bytes of the stack, which are unused unless the stack has overflowed. No
+/// interrupt can preempt this function, because faults have the highest priority. A second fault in this function runs
+/// it again as a hard fault. A fault in the hard fault handler locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
@@ -119,17 +120,17 @@ extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame
   drivers::reset_chip();
 }
 
-/// The control interrupt asks for it, and interrupts it: what it finds on the stack is the main loop, which goes on
-/// afterwards if it can.
+/// The control interrupt requests this exception and can preempt it. The stack therefore contains the state of the main
+/// loop, which continues afterwards if possible.
 extern "C" [[gnu::naked]] void hang_handler() {
   asm volatile(
       "mov r0, sp \n"
       "push {r4-r11, lr} \n"
       "mov r1, sp \n"
-      "sub sp, #4 \n"  // a call wants the stack at a multiple of eight
+      "sub sp, #4 \n"  // a call requires an 8-byte aligned stack
       "bl record_hang \n"
       "add sp, #4 \n"
-      "dsb \n"  // as drivers::finish_stores()
+      "dsb \n"  // like drivers::finish_stores()
       "pop {r4-r11, pc} \n");
 }
 

@@ -1,4 +1,4 @@
-// The functions that the processor itself calls.
+// Functions that the processor calls.
 #pragma once
 
 namespace inkwell::application {
@@ -6,14 +6,14 @@ namespace inkwell::application {
 extern "C" {
 /// First instruction after a reset.
 [[noreturn]] void reset_handler();
-/// Every fault, the non-maskable interrupt and every interrupt that nobody asked for.
+/// All faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void fault_handler();
-/// Behind every interrupt, once drivers::CallBehindInterrupts asked for it (PendSV): notes where the main
-/// loop is.
+/// Runs after all other interrupts, on request of drivers::CallBehindInterrupts (PendSV). Records the location of the
+/// main loop.
 void hang_handler();
-/// End of the injected conversions: once every control period.
+/// End of the injected conversions, once per control period.
 void control_interrupt();
-/// The chip's supply has fallen too low.
+/// The CPU supply has fallen too low.
 void logic_supply_interrupt();
 }
 

@@ -1,4 +1,4 @@
-// Where the linker script puts it, whoever flashes the image finds it: protocol/image_identity.hpp.
+// The linker script places the identity at a fixed offset, where flashing tools read it: protocol/image_identity.hpp.
 #include <board/board.hpp>
 #include <protocol/image_identity.hpp>
 
@@ -11,7 +11,7 @@ static_assert(protocol::image_identity_offset == 512,
               "the linker script, boards/facts/stm32f405.ld, has the same number");
 static_assert(protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS).board_name() == board::facts.name);
 
-/// Of whole words, as all of the image is.
+/// Consists of whole words, like the entire image.
 struct alignas(4) PlacedIdentity {
   protocol::ImageIdentity identity;
 };

@@ -1,4 +1,4 @@
-// The driver board's firmware: what it is made of, in the order in which it comes to life.
+// Firmware of the driver board: its parts in start-up order.
 #include <optional>
 
 #include <board/board.hpp>
@@ -20,7 +20,7 @@
 namespace inkwell::application {
 namespace {
 
-/// The board cannot work, and its bridges are off: blinks ten times a second for as long as `lasts`.
+/// Blinks ten times per second while `lasts` returns true. The board cannot work, and its bridges are off.
 template <class Condition>
 void blink_while(std::uint32_t processor_Hz, Condition lasts) {
   for (bool on = true; lasts(); on = !on) {
@@ -32,7 +32,8 @@ void give_up() {
   blink_while(board::processor_Hz, [] { return true; });
 }
 
-/// False if they did not start at once. There is no USB without them, so nobody can be told but by light and console.
+/// Returns false if the first attempt to start the clocks failed. USB needs the clocks, so only LED and console can
+/// report this.
 bool start_clocks() {
   if (drivers::start_clocks()) return true;
   if (!drivers::crystal_swings()) report_no_crystal();
@@ -40,14 +41,14 @@ bool start_clocks() {
   return false;
 }
 
-/// What the run before noted, if it ended by that.
+/// Returns the crash record, if the crash caused the last reset.
 std::optional<protocol::CrashFacts> take_crash(const drivers::ResetCause& cause) {
   const auto crash = crash_record.take();
   if (crash && is_hang(*crash) && !cause.watchdog()) return std::nullopt;
   return crash;
 }
 
-/// What is to be said of how the run before this one ended.
+/// Fault that reports the cause of the last reset.
 protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
@@ -74,12 +75,12 @@ int main() {
   logic_supply.start();
   if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
 
-  // Before anything uses a parameter, and before anything would be held up by an erase: the watchdog does not run yet,
-  // nor do bridges, interrupts and USB.
+  // The stored parameters are loaded before any parameter is used. A flash erase delays nothing here, because watchdog,
+  // bridges, interrupts and USB do not run yet.
   ParameterMemory parameter_memory;
   host_link.stored.start(parameter_memory, {INKWELL_VERSION_NUMBERS}, host_link.parameters);
 
-  // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
+  // The converter clocks must start before TIM1 triggers the converters (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();
   drivers::CallBehindInterrupts::start();
   bridges.start();
@@ -93,7 +94,7 @@ int main() {
   BackgroundWatch background_watch;
   host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
 
-  // Just after an update there is nearly a whole period in which to arm all three converters.
+  // Directly after an update event there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
   analog_inputs.arm();
   logic_supply.arm();
@@ -108,7 +109,7 @@ int main() {
   host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start() && watchdog_trial.is_passed,
                            watchdog_trial.bitten_after_ms);
 
-  prove_that_it_runs();  // from now on it is missed, also if it hangs in its first round
+  prove_that_it_runs();  // from here on a hang is detected, even in the first round
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();

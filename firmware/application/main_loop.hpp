@@ -1,28 +1,29 @@
-// What the main loop does each time that it comes round, beside the USB.
+// Tasks of the main loop in each round, in addition to USB.
 #pragma once
 
 #include "background_watch.hpp"
 
 namespace inkwell::application {
 
-/// The control interrupt misses a main loop that did not come round for longer.
+/// Time without a round of the main loop after which the control interrupt raises a fault.
 inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
-/// Once a round. The watchdog is fed only if the control interrupt ran too, so it bites when either hangs; the control
-/// interrupt misses the rounds sooner.
+/// Call this function once per round of the main loop. This function feeds the watchdog only if the control interrupt
+/// ran too. The watchdog therefore expires if the main loop or the control interrupt hangs. The control interrupt
+/// detects missing rounds sooner than the watchdog.
 void prove_that_it_runs();
 
-/// Goes on with the self-test, if there is one.
+/// Continues the self-test, if it runs.
 void follow_self_test(const BackgroundWatch& background_watch);
 
-/// Before the control interrupt runs: the motors are as warm as the run before left them, unless the power has just
-/// come.
+/// Sets the motor heat to that of the previous run, except after power-on. Call this function before the control
+/// interrupt is enabled.
 void take_motor_heat(bool power_has_come);
 
-/// Keeps how warm they are for the next start.
+/// Stores the motor heat for the next boot.
 void keep_motor_heat();
 
-/// By the status LED.
+/// Shows the state with the status LED.
 void show_state();
 
 }  // namespace inkwell::application

@@ -1,13 +1,13 @@
-// Where things lie; see the linker script (boards/facts/stm32f405.ld), which defines the symbols.
+// Memory locations. The linker script (boards/facts/stm32f405.ld) defines the symbols.
 #pragma once
 
 #include <cstdint>
 
-/// Puts a zero-initialised object, or one with a constructor that runs at start-up, into the core-coupled memory.
+/// Places a zero-initialized object, or one with a constructor that runs at start-up, in the core-coupled memory.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
-/// Puts an object without a constructor into the part of the main memory that start-up does not clear: it survives a
-/// reset, and holds anything after power-up.
+/// Places an object without a constructor in the part of the main memory that start-up does not clear. The object
+/// survives a reset; its contents are undefined after power-on.
 #define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
 
 extern "C" {
@@ -19,7 +19,7 @@ extern std::uint32_t core_coupled_data_begin[], core_coupled_data_end[], core_co
 extern std::uint32_t interrupt_vectors[], interrupt_text_begin[], interrupt_text_end[], interrupt_tables_begin[],
     interrupt_tables_end[];
 extern const std::uint32_t copied_begin[], copied_end[], code_begin[], image_check[];
-extern std::uint32_t parameter_store[];  // changes, if not by a store of the compiler's
+extern std::uint32_t parameter_store[];  // changed by flash programming, not by compiled stores
 extern const std::uint32_t data_image[], core_coupled_data_image[], interrupt_text_image[], interrupt_tables_image[];
 extern void (*const constructors_begin[])();
 extern void (*const constructors_end[])();

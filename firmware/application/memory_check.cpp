@@ -10,10 +10,10 @@
 namespace inkwell::application {
 namespace {
 
-/// So few that the main loop comes round as often as it did.
+/// Few words, so that the main loop is not slowed down.
 constexpr std::ptrdiff_t words_per_step = 4;
 
-/// What start-up copied.
+/// Memory range that start-up copied.
 struct Copy {
   const std::uint32_t* begin;
   const std::uint32_t* end;
@@ -58,9 +58,10 @@ void MemoryCheck::begin_round() {
 void MemoryCheck::check_flash() {
   const bool is_copied = next_ < copied_end;
   const std::uint32_t* const end = next_ + std::min(words_per_step, (is_copied ? copied_end : image_check) - next_);
-  // With a pointer of its own: where the member counts, GCC 12 writes the last word twice.
+  // The loop uses a local pointer: with the member as loop counter, GCC 12 writes the last word twice.
   for (const std::uint32_t* word = next_; word != end; ++word) checksum.add(*word);
-  next_ = is_copied && end == copied_end ? code_begin : end;  // the parameter store lies between them
+  next_ = is_copied && end == copied_end ? code_begin : end;  // the parameter store is between the copied code and the
+                                                              // other code
   if (next_ != image_check) return;
   sound_ = checksum.value() == *image_check;
   next_ = copies()[0].begin;
@@ -77,7 +78,7 @@ void MemoryCheck::check_copy() {
   ++part_;
 }
 
-// One sum in a step, for the same reason.
+// One checksum per step, because a step must be short.
 void MemoryCheck::check_parameters() {
   switch (part_++ - copies().size()) {
     case 1: sound_ = host_link.parameters.settings_are_intact(); break;

@@ -1,4 +1,4 @@
-// Whether a bit of the firmware or of its parameters has changed by itself, looked for in the background.
+// Background check for changed bits in the firmware and in its parameters.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,17 @@
 
 namespace inkwell::application {
 
-/// One round goes through the image in the flash, against the checksum that the build has put behind it
-/// (tools/seal_image.py), through the copies from which interrupts run, against the image, and through the settings
-/// that the control interrupt works with and the parameters that the next ones would be made of. It takes about a fifth
-/// of a second.
+/// One round takes about 0.2 s and checks:
+/// - the image in flash, against the checksum that the build appends (tools/seal_image.py)
+/// - the copies from which interrupts run, against the image
+/// - the settings of the control interrupt, and the parameters from which new settings are computed
 class MemoryCheck {
  public:
-  /// The first round, at once: nothing that is damaged shall drive a motor. False if a bit is wrong.
+  /// Runs the first round completely, because damaged memory must not drive a motor. Returns false if a bit is wrong.
   [[nodiscard]] bool start();
 
-  /// A few words. Call it each time that the main loop comes round; false from the first wrong bit on.
+  /// Checks a few words. Call this function in each round of the main loop. Returns false as soon as a wrong bit has
+  /// been found.
   [[nodiscard]] bool step();
 
  private:
@@ -25,8 +26,8 @@ class MemoryCheck {
   void begin_round();
 
   bool sound_ = true;
-  std::size_t part_ = 0;  ///< of the round: the flash, then each copy, then settings, parameters, and those stored
-  const std::uint32_t* next_ = nullptr;  ///< word of that part
+  std::size_t part_ = 0;  ///< part of the round: flash, each copy, settings, parameters, stored parameters
+  const std::uint32_t* next_ = nullptr;  ///< next word of this part
 };
 
 }  // namespace inkwell::application

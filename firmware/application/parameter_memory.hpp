@@ -1,4 +1,4 @@
-// The flash's two sectors for parameters, as the log of records uses them.
+// The two flash sectors for parameters, as the memory of the record log.
 #pragma once
 
 #include <link/flash_log.hpp>

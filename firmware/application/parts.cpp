@@ -11,7 +11,7 @@ using BlackBoxMemory = link::BlackBoxMemory<protocol::black_box_rows_before, pro
 extern link::ScopeFrames scope_frames;
 extern BlackBoxMemory black_box_memory;
 
-/// The loops overshoot by a twentieth at most (the current loop's tests), and the amplifiers' offsets come on top.
+/// The loops overshoot by at most 5 % (see the current loop tests). The amplifier offsets are added to the overshoot.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
   return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A <
          board::facts.current_measurable_A();
@@ -35,7 +35,7 @@ INKWELL_CORE_COUPLED control::Controller controller{
     first_period};
 INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
 
-// In main memory: one is written by the DMA controller, the others are large.
+// These objects are in main memory: the DMA controller writes analog_inputs, and the others are large.
 Part<drivers::AnalogInputs> analog_inputs;
 link::ScopeFrames scope_frames;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;

@@ -1,5 +1,4 @@
-// What the firmware is made of: the drivers, the controller, and what the main loop and the control interrupt hand to
-// each other.
+// Parts of the firmware: drivers, controller, and the data that main loop and control interrupt exchange.
 #pragma once
 
 #include <array>
@@ -22,16 +21,15 @@
 
 namespace inkwell::application {
 
-/// Every driver; it does not compile if two of them claim the same (drivers/claims.hpp).
+/// List of all drivers. The list does not compile if two drivers claim the same resource (drivers/claims.hpp).
 using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
                                  drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog,
                                  drivers::LogicSupply, drivers::Checksum, drivers::OtgFs, drivers::ParameterFlash>;
 
-/// A driver of the list.
 template <class Driver>
 requires(Parts::has<Driver>) using Part = Driver;
 
-/// Set up by main(), then the interrupts' own; of the supply the main loop asks too.
+/// Set up by main(), then owned by the interrupts. The main loop also reads logic_supply.
 extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;
@@ -39,7 +37,7 @@ extern Part<drivers::Switches> switches;
 extern Part<drivers::LogicSupply> logic_supply;
 extern control::Controller controller;
 
-/// The main loop's own.
+/// Owned by the main loop.
 extern Part<drivers::StatusLed> status_led;
 extern Part<drivers::Console> console;
 extern Part<drivers::IndependentWatchdog> watchdog;
@@ -49,17 +47,17 @@ extern Part<drivers::ParameterFlash> parameter_flash;
 
 extern link::Link host_link;
 
-/// Control periods and bus frames that count as completed at the start. A test's image begins just before the counters
-/// wrap (tests/target/near_wrap).
+/// Initial numbers of control periods and bus frames. A test image starts just before the counters wrap
+/// (tests/target/near_wrap).
 #ifndef INKWELL_FIRST_PERIOD
 #define INKWELL_FIRST_PERIOD 0
 #define INKWELL_FIRST_FRAME 0
 #endif
 inline constexpr std::uint32_t first_period = INKWELL_FIRST_PERIOD;
 
-/// Control periods completed, for the main loop.
+/// Completed control periods, for the main loop.
 extern link::Shared<std::uint32_t> completed_periods;
-/// As many as there were when the main loop came round last, for the control interrupt.
+/// Completed control periods at the last round of the main loop, for the control interrupt.
 extern link::Shared<std::uint32_t> main_loop_periods;
 
 }  // namespace inkwell::application

@@ -10,7 +10,7 @@
 namespace inkwell::application {
 namespace {
 
-/// Below the room on the stack: what its function keeps there as well, and what the march needs.
+/// Stack space below `room` for the other variables of the function and for the march test.
 constexpr std::ptrdiff_t words_of_callees = 64;
 
 std::span<volatile std::uint32_t> between(std::uint32_t* begin, std::uint32_t* end) {
@@ -22,7 +22,7 @@ std::span<volatile std::uint32_t> between(std::uint32_t* begin, std::uint32_t* e
 bool ram_keeps_pattern() {
   std::array<std::uint32_t, 128> room;
   std::uint32_t* stack = room.data();
-  asm("" : "+r"(stack));  // the compiler is not to know that what lies before it is no part of the array
+  asm("" : "+r"(stack));  // hides from the compiler that memory below the array is used
   bool is_sound = link::keeps_pattern(std::span<volatile std::uint32_t>(room));
   is_sound &= link::keeps_pattern(between(stack_bottom, stack - words_of_callees), std::span(room));
   is_sound &= link::keeps_pattern(between(stack_top, core_coupled_end), std::span(room));

@@ -1,10 +1,10 @@
-// Whether the RAM works, looked at once while nothing but main() uses it.
+// RAM test at boot, while only main() uses the RAM.
 #pragma once
 
 namespace inkwell::application {
 
-/// Before any interrupt and any transfer of the DMA controller. It keeps what lies there, and leaves out the stack in
-/// use and the interrupts' code, which the check of the memory compares with the flash. Takes a hundredth of a second.
+/// Call this function before any interrupt and any DMA transfer. The test preserves the RAM contents. The test omits
+/// the stack in use and the interrupt code, which MemoryCheck compares with the flash. The test takes 10 ms.
 [[nodiscard]] bool ram_keeps_pattern();
 
 }  // namespace inkwell::application

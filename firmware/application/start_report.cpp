@@ -30,7 +30,7 @@ constexpr CrashWord crash_words[] = {
 
 }  // namespace
 
-/// The virtual board finds it in the ELF and wires itself by it.
+/// The virtual board reads the name from the ELF file and connects its simulated wires for this board.
 extern "C" {
 extern const std::array<char, board::facts.name.size() + 1> inkwell_board_name;
 const std::array<char, board::facts.name.size() + 1> inkwell_board_name = board_name();

@@ -1,4 +1,4 @@
-// What the console says first.
+// First output of the console.
 #pragma once
 
 #include <drivers/system.hpp>
@@ -7,10 +7,10 @@
 
 namespace inkwell::application {
 
-/// Starts the console and writes version, cause of the reset, and, if there was one, where the crash was.
+/// Starts the console and writes the version, the reset cause and, after a crash, its location.
 void report_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash);
 
-/// Says on the console, at the clock that runs without the crystal, why there is no USB.
+/// Reports on the console why there is no USB. The console then runs from the internal oscillator.
 void report_no_crystal();
 
 }  // namespace inkwell::application

@@ -19,8 +19,9 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 
 }  // namespace
 
-/// The stack lies in the core-coupled memory, whose clock runs after a reset, but not when the boot loader in the chip
-/// starts the program (AN2606: it leaves RCC_AHB1ENR at 0). Loader and reset both load the stack pointer.
+/// The stack is in the core-coupled memory. The clock of this memory runs after a reset. This clock is off when the
+/// boot loader of the chip starts the program, because the boot loader leaves RCC_AHB1ENR at 0 (AN2606). Boot loader
+/// and reset both load the stack pointer.
 extern "C" [[gnu::naked]] void reset_handler() {
   asm volatile(
       "ldr r0, =%c[clocks] \n"
@@ -37,8 +38,8 @@ extern "C" [[noreturn, gnu::used]] void start() {
   using registers::FPU_CPACR;
   using registers::SCB;
   if (drivers::take_boot_loader_wish()) drivers::enter_boot_loader();
-  // Before any instruction on a float, among them those that save registers on entry to an interrupt. That the
-  // processor saves them lazily is its default (FPCCR) and stays.
+  // The floating-point unit must be enabled before any floating-point instruction, including register saving on
+  // interrupt entry. Lazy saving is the processor's default (FPCCR) and remains enabled.
   constexpr std::uint32_t full_access_to_both = 0b1111;
   FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
   asm volatile("dsb\n isb" ::: "memory");
@@ -49,21 +50,21 @@ extern "C" [[noreturn, gnu::used]] void start() {
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
-  // From now on the processor finds the handlers, without the flash, also where a boot loader left its own table.
+  // From here on the processor finds the handlers without flash access, even if a boot loader left its own table.
   std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();
-  // Faults have handlers of their own, before any interrupt: one whose frame finds no stack still becomes a hard fault,
-  // and that is not lost. A hard fault without a stack would lock the processor up.
+  // Faults get separate handlers before any interrupt is enabled. A fault without a stack for its frame then becomes a
+  // hard fault and is not lost. A hard fault without a stack would lock the processor up.
   SCB::SHCSR::modify(SCB::SHCSR::MEMFAULTENA(1), SCB::SHCSR::BUSFAULTENA(1), SCB::SHCSR::USGFAULTENA(1));
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 
-  asm volatile("bl main");  // C++ does not let itself call main()
+  asm volatile("bl main");  // C++ does not allow calls of main()
   __builtin_trap();
 }
 
 }  // namespace inkwell::application
 
-/// Called where a virtual function is not there yet or no more: a defect, so it ends in the fault handler.
+/// Called for a virtual function of an object that is not yet or no longer complete. This defect raises a CPU fault.
 extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }

@@ -1,4 +1,4 @@
-// The processor's vector table (RM0090, "Vector table for STM32F405xx").
+// Vector table of the processor (RM0090, "Vector table for STM32F405xx").
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ struct VectorTable {
   std::array<Handler, 82> interrupts;
 };
 
-/// The processor wants it at a multiple of 512 (PM0214, VTOR).
+/// The processor requires an address that is a multiple of 512 (PM0214, VTOR).
 extern const VectorTable vectors;
 
 }  // namespace inkwell::application

@@ -12,22 +12,23 @@ namespace {
 enum class Outcome : std::uint32_t { open, bitten, none };
 
 struct Course {
-  std::uint32_t reset_flags;  ///< of the power-up that it followed
+  std::uint32_t reset_flags;  ///< flags of the power-on that started the trial
   Outcome outcome;
 };
 
 [[gnu::section(".noinit")]] drivers::KeptOverReset<Course> kept_course;
-/// Without food. A word of its own, because the bite comes between any two instructions.
+/// Time since the watchdog was started, without feeding. The time is a separate variable, because the reset can occur
+/// between any two instructions.
 [[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
 
-/// 20 ms by its oscillator, which has 17 to 47 kHz, and some of its cycles; the internal oscillator by which it is
-/// measured is off by 4 % at most from -10 to 85 degrees (data sheet).
+/// The timeout is 20 ms of the watchdog oscillator (17 to 47 kHz), plus some of its cycles. The internal oscillator
+/// measures this timeout with an error of at most 4 % from -10 to 85 C (data sheet).
 constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
 
-/// Returns only if it does not bite.
+/// Returns only if the watchdog does not expire.
 void wait_for_bite() {
   constexpr std::uint32_t cycles_per_us = drivers::internal_oscillator_Hz / 1'000'000;
-  static_cast<void>(watchdog.start());  // main() starts it again, and tells whether it took its time
+  static_cast<void>(watchdog.start());  // main() starts it again and reports whether it accepted its timeout
   const std::uint32_t from_cycles = drivers::CycleCounter::now();
   std::uint32_t waited_now_us;
   do waited_us = waited_now_us = (drivers::CycleCounter::now() - from_cycles) / cycles_per_us;
@@ -37,7 +38,7 @@ void wait_for_bite() {
 }  // namespace
 
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
-  // With BOOT0 held high the bite would lead back into the boot loader that has just let the firmware start.
+  // With BOOT0 held high, the watchdog reset would start the boot loader again instead of the firmware.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
     kept_course.leave({cause.flags, Outcome::open});
     wait_for_bite();
@@ -50,7 +51,8 @@ WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
     trial.cause = {course->reset_flags};
     course->outcome = Outcome::bitten;
   }
-  // Another reset that came meanwhile leaves it undecided, so nothing is kept: the next bite is none of its own.
+  // A reset with another cause leaves the trial undecided. In this case nothing is stored, because the next watchdog
+  // reset does not belong to the trial.
   if (course->outcome == Outcome::open) return trial;
   if (course->outcome == Outcome::bitten) {
     trial.is_passed = waited_us > earliest_us && waited_us < latest_us;

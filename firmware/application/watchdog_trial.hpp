@@ -1,5 +1,5 @@
-// Whether the watchdog bites, tried each time that the power comes: everything else of it can be looked at, its bite
-// has to be felt.
+// Watchdog trial at each power-on. All other properties of the watchdog can be read; only a reset proves that the
+// watchdog expires.
 #pragma once
 
 #include <drivers/system.hpp>
@@ -7,14 +7,14 @@
 namespace inkwell::application {
 
 struct WatchdogTrial {
-  drivers::ResetCause cause;  ///< of the start; the trial's own bite is none
-  bool is_passed;             ///< it bit in its time, or was not tried since the power came
-  float bitten_after_ms;      ///< 0 if it has not
+  drivers::ResetCause cause;  ///< cause of this boot, not including the reset of the trial
+  bool is_passed;             ///< expired in time, or was not tried since power-on
+  float bitten_after_ms;      ///< 0 if the watchdog did not expire
 };
 
-/// When the power has come the watchdog bites in here, 14 to 38 ms later, and the next start tells what that showed.
-/// After other resets it tells what was found when the power came. Call it first: no bridge, clock or interrupt is to
-/// run meanwhile, and the cycle counter counts at the internal oscillator's rate.
+/// At power-on the watchdog expires in this function after 14 to 38 ms, and the next boot returns the result. After
+/// other resets the function returns the result of the last power-on. Call this function first: no bridge, clock or
+/// interrupt may run meanwhile. The cycle counter must count at the frequency of the internal oscillator.
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause);
 
 }  // namespace inkwell::application

@@ -49,7 +49,8 @@ bool update_reference(InkwellReference& reference, const std::array<std::int32_t
     const std::int32_t moved = encoder_counts[i] - reference.rest_counts[i];
     still = still && moved <= InkwellReference::still_counts && moved >= -InkwellReference::still_counts;
   }
-  // While the switch stays closed after a reference, or in doubt, the time stays full, so that it is taken once.
+  // After a stored reference, the rest time stays at its maximum while the switch is closed or in doubt. Each insertion
+  // of the stylus thus stores one reference.
   const bool taken = inkwell_closed && reference.rested_periods > InkwellReference::still_periods;
   if (taken) return false;
   if (!still) {

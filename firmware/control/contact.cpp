@@ -12,7 +12,7 @@ Contact find_contact(const Vector3& probe_m, const Box& box) {
 }
 
 Force bounded(Vector3 force_N, float limit_N) {
-  // Below a micronewton there is no direction to keep, and the reciprocal root would leave its range.
+  // Below 1 uN the direction is undefined, and the reciprocal square root would leave its range.
   constexpr float smallest_squared_N2 = 1e-12f;
   const float squared_N2 = dot(force_N, force_N);
   if (squared_N2 < smallest_squared_N2) return {};

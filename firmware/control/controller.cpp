@@ -34,11 +34,12 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
   return false;
 }
 
-/// From this part of the force limit on a force counts as held by it: a program's is cut to the limit before it is
-/// added up, and both may round it off by some millionths.
+/// A force of at least this part of the force limit counts as limited. A program's force is limited before the
+/// addition, and both operations may round it down by some millionths.
 constexpr float at_limit_part = 1.0f - 1e-4f;
 
-/// Of a limit, each third period: from the largest limit to the smallest in 10 ms.
+/// Decrease of an over-current bound in every third period. The bound falls from the largest limit to the smallest in
+/// 10 ms.
 constexpr float over_current_fall_A = 0.06f;
 
 bool joint_implausible(std::size_t joint, const Triple& joint_rad, Transmission transmission, const Limits& limits) {
@@ -68,7 +69,7 @@ void Controller::carry_out(const protocol::CommandReport& command) {
       asked_.events |= events(Event::disable);
       test_.end();
       break;
-    case Command::stop:  // also if the host is gone
+    case Command::stop:  // also sent when the host disconnects
       asked_.events |= events(Event::stop);
       test_.end();
       break;
@@ -83,7 +84,7 @@ void Controller::carry_out(const protocol::CommandReport& command) {
     case Command::heartbeat:
     case Command::select_signals:
     case Command::store_parameters:
-    case Command::factory_reset: break;  // the main loop's
+    case Command::factory_reset: break;  // handled by the main loop
   }
 }
 
@@ -102,7 +103,7 @@ void Controller::replace_shapes(const Shapes& shapes) {
 }
 
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
-  // The bridges are off until the offsets are known, so what the sensors read is their offset.
+  // The bridges are off until the offsets are known, so the readings are the offsets.
   if (!offsets_.measured()) {
     if (offsets_.periods == 0)
       for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
@@ -121,14 +122,15 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
-  // While walls push, a new reference would move the probe under the hand.
+  // While walls push, a new reference would shift the probe position under the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
-/// Before this period's pose and errors: a change is judged by the speed and the errors that were there before it.
+/// Runs before the pose and the control errors of this period are computed: a current change depends on the previous
+/// speed and the previous errors.
 void Controller::look_for_jump(const Triple& change_A, const Settings& settings) {
-  // A brake's currents come and go, and so does one whose bridges were just switched off.
+  // Braking currents change quickly, and so do currents of bridges that were just switched off.
   if (!drive_.enabled) return;
   for (std::size_t i = 0; i < 3; ++i) {
     const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[i] * joint_speed_rad_per_s_[i];
@@ -177,28 +179,28 @@ void Controller::render_force(const Settings& settings) {
     probe_.wall = settings.wall;
     probe_.switches = switches_.closed;
     const Vector3& law_N = law_.force_N(probe_, settings.force_law);
-    // Its square as well, which tells its direction. Where the law was given no numbers, the fault is not its own.
+    // The squared force must also be finite, because it determines the direction of the limited force. If the inputs
+    // are not finite, the law is not at fault.
     if (is_finite(dot(law_N, law_N))) [[likely]]
       touched_N = touched_N + law_N;
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
       raise(Fault::force_law);
   }
-  // Only what was felt is got over.
+  // The jump starts from the limited force, because only the limited force was felt.
   if (world_changed || law_changed)
     transition_ = over(bounded(touched_N_, force_limit_N_).force_N - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
   advance(transition_);
   force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
                                                     : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
-  // A limit that is lowered holds at once.
+  // A lowered limit applies immediately.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
   limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f);
   give(scaled(force, force_gain_), settings);
 }
 
-/// What the hand gets of a force: no more energy than it may have, nothing that drives it on when it is too fast, and
-/// no faster than it may change.
+/// Applies a force to the hand, limited in energy, in speed and in its rate of change.
 void Controller::give(Force asked, const Settings& settings) {
   account(reserve_, force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
@@ -210,7 +212,7 @@ void Controller::give(Force asked, const Settings& settings) {
   const float squared_N2 = dot(change_N, change_N);
   if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
     const float part = settings.change_squared_N2 * reciprocal_square_root(settings.change_squared_N2 * squared_N2);
-    // A limit that is lowered holds at once, whatever the force was.
+    // A lowered limit applies immediately, whatever the previous force was.
     asked = bounded(force_.force_N + part * change_N, force_limit_N_);
     limits_ |= bit(Limit::change, true);
   }
@@ -229,7 +231,7 @@ Force Controller::less_driving(const Force& asked, float power_W, const Settings
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  // One link's torque without the other's makes another force, which may be larger.
+  // Without the torque of one link motor, the torque of the other would produce a different and possibly larger force.
   if (settings.motors.idle != 0) leave_out(settings.motors.idle, torque_Nm_, jacobian_);
   const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
@@ -240,14 +242,14 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
-/// Of the motor whose turn it is: as it was measured, and as warm as it is now.
+/// Updates the resistance of the motor of this period from its measurement and its present heat.
 void Controller::know_resistance(const Settings& settings) {
   resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
                                        settings.motor_model.resistance_ohm[turn_]);
 }
 
 void Controller::watch_motors(const Settings& settings) {
-  // With the force on it changes by heat alone, as rarely as that does.
+  // With the force on, the resistance changes only with heat, so it is updated as rarely as the heat.
   if (!force_is_on() || heat_.readings == 0) know_resistance(settings);
   if (!force_is_on()) {
     rest(motor_watch_);
@@ -257,14 +259,14 @@ void Controller::watch_motors(const Settings& settings) {
   if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_, settings.motor_model.back_emf_Vs_per_rad))
       [[unlikely]]
     raise(Fault::motor_implausible);
-  // What the bridges were told in the period before is what they do until the next.
+  // The duty cycles of the previous period remain active until the next period.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
-/// A current reading that tells too little has its loop ask for more. The voltage of the motor whose turn it is has
-/// room for no more than what makes the force limit, whatever the reading tells: what the force leaves of that limit
-/// may be this motor's alone, at the end of the longer link.
+/// A current reading that is too low makes its loop request more current. The voltage range of the motor of this period
+/// is therefore limited to the current of the force limit. The range includes the unused part of the force limit, as if
+/// this motor alone produced it at the end of the longer link.
 void Controller::bound_voltages(const Settings& settings) {
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
   const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
@@ -279,7 +281,7 @@ void Controller::bound_voltages(const Settings& settings) {
       voltage_range(most_A, resistances_[turn_], back_emf_V, motor_watch_.loss.expected_V(), bound_V);
 }
 
-/// What the sensors show while the bridges have been off for a while is their offset, and it was measured.
+/// After the bridges have been off for a while, the sensors must read their measured offsets.
 void Controller::watch_idle_currents() {
   bool off_zero = false;
   if (!drive_.enabled && !drive_.brake && offsets_.measured())
@@ -298,24 +300,24 @@ void Controller::regulate_currents(const Settings& settings) {
       drive_pulses(settings);
     return;
   }
-  // A test of voltage has no loop.
+  // A voltage test has no current loop.
   constexpr std::size_t none = 3;
   const bool is_voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage;
   const std::size_t without_loop = is_voltage_test ? test_.motor : none;
-#pragma GCC unroll 1  // thrice the code is more than the interrupts' memory has left
+#pragma GCC unroll 1  // unrolled code does not fit into the interrupt memory
   for (std::size_t i = 0; i < 3; ++i) {
     CurrentLoopStep step =
         regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, voltage_ranges_[i]);
     if (i == without_loop) [[unlikely]]
       step = {{}, clamp(test_voltage_V(settings), voltage_ranges_[i].least_V, voltage_ranges_[i].most_V)};
     loops_[i] = step.loop;
-    drive_.duty[i] = step.voltage_V * supply_.per_V;  // the range keeps it within the limit, and so do the bridges
+    drive_.duty[i] = step.voltage_V * supply_.per_V;  // limited by the range and by the bridges
   }
   drive_.enabled = true;
 }
 
-/// A test has no force that is limited, so it ends where a force would: too fast an arm, a host that fell silent, and,
-/// its pulse, at the energy that may be given ahead.
+/// The energy, speed and change limits of the rendered force do not apply to a test. The test stops on over-speed, or
+/// if the host is silent. The pulse of the test also stops when it has used the energy reserve.
 void Controller::follow_test(protocol::Watches found, const Settings& settings) {
   constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
   if ((found & ends) != 0) {
@@ -324,21 +326,22 @@ void Controller::follow_test(protocol::Watches found, const Settings& settings) 
     return;
   }
   --test_.remaining_periods;
-  // Of a motor's electrical power its back EMF's part becomes motion. What the hand gives counts as well: which way a
-  // motor or an encoder counts may be wrong yet, and these pulses are what finds it out.
+  // The back EMF's part of the electrical power becomes motion. Energy from the hand counts too, because the signs of
+  // motor and encoder may still be wrong. Test pulses serve to determine these signs.
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
   test_.moved_J += std::fabs(back_emf_V * current_A_[test_.motor]) * protocol::servo_period_s;
   if (test_.moved_J > settings.energy.reserve_J) test_.rest();
 }
 
-/// By the joint whose turn it is. Before there is a reference the angle means nothing, and no state watches it.
+/// Checks the joint of this period. Without a reference the joint angle is meaningless, but in these states the fault
+/// is not watched.
 void Controller::watch_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);
 }
 
-// A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
-// the winding's where the voltage is bounded.
+// A lowered current limit applies to the references immediately. The current follows with the delay of the loop, and
+// with the delay of the winding where the voltage is limited.
 void Controller::follow_over_current(const Settings& settings) {
   const float limit_A = settings.limits.over_current_A[turn_];
   over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
@@ -350,7 +353,7 @@ float Controller::test_limit_A(const Settings& settings) const {
                                settings.motors.ampere_per_Nm[test_.motor]);
 }
 
-// The resistance is not known before it is tested, so what the current must not exceed is looked at in each period.
+// The resistance is unknown before the test, so the current limit is checked in each period.
 float Controller::test_voltage_V(const Settings& settings) const {
   return std::fabs(current_A_[test_.motor]) > test_limit_A(settings) ? 0.0f : test_.value();
 }
@@ -363,11 +366,11 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .dead_time_part = board_.dead_time_part});
   for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
-    // At least that, whatever their own limits are.
+    // The bound is at least the pulse current, independent of the motor limits.
     over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
   }
-  over_current_for_A_ = {};                       // so that they are followed again
-  over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
+  over_current_for_A_ = {};                       // restarts follow_over_current()
+  over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() subtracts this step in this period
   drive_.enabled = true;
 }
 
@@ -378,13 +381,13 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
     watch_inkwell_switch(settings);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
-  // Force and torques are in the references, as far as a motor takes part.
+  // Force and torques need no separate check: the references include them for all motors in use.
   const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
   protocol::Watches found =
       asked_.found | watch(Fault::bridge_fault, samples.bridge_fault) | watch(Fault::motor_hot, heat_.too_hot);
   protocol::Events now = asked_.events;
-  // By branches: a bit that is made whether or not there is a fault costs as much again as the look.
+  // Branches are cheaper: an unconditional bit operation would double the cost of each check.
   const auto find = [&found](Fault fault, bool is_there) {
     if (is_there) [[unlikely]]
       found |= watch(fault);
@@ -410,7 +413,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::risen, force_gain_ == 1.0f);
   note(Event::landed, force_gain_ == 0.0f);
   note(Event::held_back, limits_ != 0);
-  // Also where another fault is told, or was: what was lost is not back when that one is cleared.
+  // These faults void the reference even while another fault is active, and clearing that fault does not restore the
+  // reference.
   if ((found & protocol::voiding_watches) != 0 && reference_.valid) [[unlikely]]
     forget(reference_, (found & watch(Fault::inkwell_implausible)) != 0);
   if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
@@ -429,7 +433,7 @@ void Controller::change_state(const Supervisor& next) {
   if (next == before) return;
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   if (force_is_on_) off_zero_periods_ = 0;
-  // A change of state switches off in the period in which it is decided, not one later.
+  // A state change switches the bridges off in the period of the decision, not one period later.
   if (!(force_was_on && force_is_on_)) {
     drive_ = {};
     force_sources_ = 0;

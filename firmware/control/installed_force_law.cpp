@@ -1,5 +1,5 @@
-// Takes in the file of the force law and makes of its struct what the firmware works with. What a law must be is said
-// here, in sentences that the compiler shows.
+// Includes the force law file and adapts its struct to the firmware. Assertions with messages check the requirements on
+// a law.
 #include <control/installed_force_law.hpp>
 
 #include <bit>
@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-// By the build: INKWELL_FORCE_LAW_FILE and INKWELL_FORCE_LAW, the name of the file without its suffix.
+// Defined by the build: INKWELL_FORCE_LAW_FILE, and INKWELL_FORCE_LAW, the file name without its suffix.
 #include INKWELL_FORCE_LAW_FILE
 
 namespace inkwell::force_laws {
@@ -20,7 +20,7 @@ namespace inkwell::control {
 
 namespace {
 
-// ---- what a law must be -------------------------------------------------------------------------------
+// ---- requirements on a law ----------------------------------------------------------------------------
 
 template <class Law>
 concept IsDefined = requires {
@@ -50,7 +50,7 @@ concept HasSmallState = HasParts<Law> && std::is_trivially_copyable_v<typename L
                         std::is_default_constructible_v<typename Law::State> &&
                         sizeof(typename Law::State) <= ForceLawMemory::state_bytes;
 
-/// The rows, or none where the law has none.
+/// Rows of the law, or an empty array.
 template <class Law>
 constexpr auto parameter_rows() {
   if constexpr (requires { std::span<const ForceParameter<typename Law::Parameters>>(Law::parameter_rows); })
@@ -106,7 +106,7 @@ constexpr bool have_sound_ranges(const Rows& rows) {
   return true;
 }
 
-/// What the rest of this file works with while the law itself is not sound, so that only the sentence is shown.
+/// Replaces an invalid law in the rest of this file, so that the compiler shows only the assertion message.
 struct NoLaw {
   [[maybe_unused]] static constexpr std::string_view help = "";
   struct Parameters {};
@@ -208,7 +208,7 @@ constexpr std::size_t report_size = write_report(nullptr, 0);
 static_assert(report_size <= protocol::force_law_report_maximum,
               "names, units and helps of the force law are longer than protocol::force_law_report_maximum");
 
-// What the main loop alone reads; the rest of firmware/control lies in the RAM of the interrupts.
+// Data for the main loop only. The rest of firmware/control is in the interrupt RAM.
 #if defined(__arm__)
 #define INKWELL_IN_FLASH [[gnu::section(".force_law_rows")]]
 #else
@@ -234,7 +234,7 @@ INKWELL_IN_FLASH constinit const InstalledForceLaw installed_force_law = []() {
 
 namespace {
 
-/// Row by row, written out by the compiler: no loop is left, and no pointer to a member.
+/// The compiler unrolls this expansion: no loop and no member pointer remains.
 template <std::size_t count, class Do>
 void for_each_place(Do&& run) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (run(std::integral_constant<std::size_t, i>{}), ...); }
@@ -246,7 +246,7 @@ void for_each_place(Do&& run) {
 extern const std::size_t force_law_signal_count = signals.size();
 
 void reset_force_law(ForceLawMemory& memory) {
-  // Piece by piece: the library's functions for it lie in the flash.
+  // The state is copied byte by byte, because the library functions for copying are in flash.
   static constexpr State as_new{};
   const auto* from = reinterpret_cast<const std::byte*>(&as_new);
   for (std::size_t i = 0; i < sizeof as_new; ++i) memory.state[i] = from[i];

@@ -8,8 +8,8 @@ namespace {
 
 struct LinkDirections {
   SineCosine waist;
-  SineCosine link_2;  ///< phi2
-  SineCosine link_3;  ///< phi3
+  SineCosine link_2;
+  SineCosine link_3;
 };
 
 LinkDirections link_directions(const Triple& joint_rad, const Arm& arm) {
@@ -18,12 +18,12 @@ LinkDirections link_directions(const Triple& joint_rad, const Arm& arm) {
           sine_cosine(relative_to_rad + joint_rad[2] + arm.elbow_offset_rad)};
 }
 
-/// A direction given along forward, side and up, in workspace axes.
+/// Direction with forward, side and up components, in workspace axes.
 Vector3 in_workspace(Frame frame, float forward, float side, float up) {
   return frame == Frame::paper ? Vector3{forward, side, up} : Vector3{-side, up, forward};
 }
 
-/// A point in the arm's plane, seen from the shoulder.
+/// Point in the arm plane relative to the shoulder, in workspace axes.
 Vector3 from_plane(Frame frame, const SineCosine& waist, float reach_m, float height_m) {
   return in_workspace(frame, reach_m * waist.cosine, reach_m * waist.sine, height_m);
 }
@@ -40,7 +40,7 @@ Pose forward_kinematics(const Triple& joint_rad, const Arm& arm) {
   const SineCosine& waist = direction.waist;
 
   const Vector3 along_waist = in_workspace(arm.frame, -reach_m * waist.sine, reach_m * waist.cosine, 0.0f);
-  // A link that turns in its plane moves its end at right angles to itself.
+  // A link that rotates in its plane moves its end perpendicular to itself.
   const Vector3 along_link_2 = from_plane(arm.frame, waist, -height_2_m, reach_2_m);
   const Vector3 along_link_3 = from_plane(arm.frame, waist, -height_3_m, reach_3_m);
   const bool link_2_carries_link_3 = arm.transmission == Transmission::serial;
@@ -68,7 +68,7 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N) {
 }
 
 void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian) {
-  constexpr float no_lever_m2_per_rad2 = 1e-12f;  // keeps the division from 0
+  constexpr float no_lever_m2_per_rad2 = 1e-12f;  // prevents a division by 0
   const std::size_t other = 3 - idle;
   const Vector3& lever = jacobian.column[idle];
   const float part = dot(lever, jacobian.column[other]) * reciprocal(dot(lever, lever) + no_lever_m2_per_rad2);

@@ -29,7 +29,7 @@ void judge(MotorHeat& motors) {
 
 void update_heat(MotorHeat& motors, std::size_t motor, float current_A, const HeatScale& scale) {
   motors.square_sum_A2[motor] += current_A * current_A;
-  // One thing in a period: what is not in the longest control interrupt costs nothing.
+  // Each period runs only one task, so that the longest control interrupt stays short.
   switch (motors.readings) {
     case 0: hold_back(motors, motor); break;
     case 1:

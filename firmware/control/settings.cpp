@@ -62,8 +62,8 @@ Box box(const ParameterSet& set) {
           vector_of(set.of_each(Parameter::box_maximum_x_m)) - radius};
 }
 
-/// Torque of each motor at its joint, negative for a reversed one. Its back EMF is the same: a newton metre for an
-/// ampere is a volt second for a radian.
+/// Joint torque per ampere of each motor, negative for a reversed motor. The back EMF constant has the same value,
+/// because 1 Nm/A = 1 Vs/rad.
 Triple joint_Nm_per_A(const ParameterSet& set) {
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
@@ -109,10 +109,10 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set, const Triple& ampere_per_N) {
-  // Above the limit, but never so low that the sensors' noise reaches it. Where this is more than the board can
-  // measure, the board's bound comes first (BoardLimits).
+  // The bound is above the current limit and above the sensor noise. Where the board cannot measure this current, the
+  // lower bound of the board applies (BoardLimits).
   constexpr float over_current_minimum_A = 0.5f;
-  // Counts may be lost or the stops yield a little before the angles are called impossible.
+  // Margin of the joint limits for lost counts and elastic stops.
   constexpr float joint_margin_rad = 0.35f;
 
   Limits limits{set.of_each(protocol::lower_stops),
@@ -148,11 +148,11 @@ ProgramForceLimits program_force(const ParameterSet& set) {
           periods_in(set[Parameter::program_force_expiry_s])};
 }
 
-/// A jump goes by 4 % of the force limit in a millisecond: the skin takes no kick from it, and one as large as the
-/// limit is over in 25 ms.
+/// A jump fades at 4 % of the force limit per millisecond, which is too slow for a noticeable kick. A jump of the full
+/// limit takes 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
-/// Rise or fall of the force's gain in one period; a ramp of less than a period is a step.
+/// Change of the force gain in one period. A ramp of less than a period is a step.
 float ramp_per_period(float ramp_s) {
   return ramp_s > protocol::servo_period_s ? protocol::servo_period_s / ramp_s : 1.0f;
 }

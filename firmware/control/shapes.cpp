@@ -8,7 +8,7 @@ namespace inkwell::control {
 
 namespace {
 
-/// Of a plane that is not there: every point is in the free space.
+/// Plane for an unused entry: every point is in its free space.
 constexpr Plane nowhere{.normal = {}, .offset_m = -1.0f};
 
 float height_m(const Plane& plane, const Vector3& probe_m) { return dot(plane.normal, probe_m) - plane.offset_m; }
@@ -28,12 +28,12 @@ Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float dep
     return pushed_N;
   }
   const Vector3 away_m = grip.point_m - probe_m;
-  // Spring and damper along the surface: what they give along the normal is taken out together.
+  // Spring and damper along the surface. The normal component of their sum is removed below.
   const Vector3 pull_N = surface.stiffness_N_per_m * away_m - surface.damping_Ns_per_m * velocity_m_per_s;
   const Vector3 held_N = pull_N - dot(pull_N, normal) * normal;
   const float held_squared_N2 = dot(held_N, held_N);
   const float bound_N = normal_N * (grip.slides ? surface.dynamic_friction : surface.static_friction);
-  // Below a micronewton there is no direction to slide in.
+  // Below 1 uN the sliding direction is undefined.
   constexpr float smallest_squared_N2 = 1e-12f;
   grip.slides = held_squared_N2 > bound_N * bound_N && held_squared_N2 > smallest_squared_N2;
   if (!grip.slides) return pushed_N + held_N;
@@ -76,8 +76,8 @@ void TouchedShapes::list_alive() {
 }
 
 Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_per_s) {
-  const Vector3 probe_m = probe;  // in registers, whatever is stored meanwhile
-  // Most planes are not touched, so those that are come afterwards; their signs are collected without a branch.
+  const Vector3 probe_m = probe;  // local copy that stays in registers during stores
+  // Most planes are not touched. The signs are collected without branches, and touched planes are processed afterwards.
   std::uint32_t behind = 0;
   for (std::size_t i = 0; i < planes_.size(); ++i)
     behind |= std::bit_cast<std::uint32_t>(height_m(planes_[i], probe_m)) >> 31 << i;
@@ -95,7 +95,7 @@ Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_p
     const Sphere& sphere = shapes_->sphere;
     const Vector3 out_m = probe_m - sphere.centre_m;
     const float squared_m2 = dot(out_m, out_m);
-    // At the centre no way out is shorter than another.
+    // At the center the direction out of the sphere is undefined.
     constexpr float smallest_squared_m2 = 1e-14f;
     if (squared_m2 < sphere.radius_squared_m2 && squared_m2 > smallest_squared_m2) {
       const float per_distance = reciprocal_square_root(squared_m2);

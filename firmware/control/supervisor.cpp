@@ -14,13 +14,13 @@ using protocol::State;
 using protocol::Watches;
 using protocol::Way;
 
-/// Of its own, because a header's table may lie in the flash.
+/// Local copy, because a table in a header may be in flash.
 constexpr auto ways = protocol::way_table;
 
-/// The tables, turned so that an interrupt reads one entry of each.
+/// Tables indexed by state, so that an interrupt reads one entry of each.
 struct OfState {
   Watches watched = 0;
-  protocol::Events rest = 0;  ///< while these of `moved_by` are there and the others are not, every way is closed
+  protocol::Events rest = 0;  ///< values of the `moved_by` events at which every transition is closed
   protocol::Events moved_by = 0;
   const Way* ways_begin = nullptr;
   const Way* ways_end = nullptr;
@@ -36,7 +36,8 @@ constexpr auto of_state = []() {
       if (way.from != state) continue;
       if (here.ways_begin == nullptr) here.ways_begin = &way;
       here.ways_end = &way + 1;
-      // One of its needs, or of what it must not have, is enough to keep it closed: the last, the rarest.
+      // One missing or excluded event closes a transition. The last event in the list is used, because it is the
+      // rarest.
       const protocol::Events key = std::bit_floor(way.needs != 0 ? way.needs : way.unless);
       here.moved_by |= key;
       if (way.needs == 0) here.rest |= key;
@@ -58,7 +59,7 @@ constexpr auto faults = []() {
   return result;
 }();
 
-/// By the fault's code: what hinders it from being cleared.
+/// Watch that prevents a fault from being cleared, indexed by fault code.
 constexpr auto hindrance = []() {
   std::array<Watches, protocol::fault_code_end> result{};
   for (const auto& row : protocol::watch_table)
@@ -81,7 +82,7 @@ Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
   protocol::Events now = situation.events;
   if (supervisor.state == State::fault) [[unlikely]]
     now |= protocol::when(Event::cause, (situation.found & hindrance[static_cast<std::size_t>(supervisor.fault)]) != 0);
-  // On its way to the boot loader a board still knows what was told.
+  // A board that waits for its boot loader still stores the reported fault.
   now |= protocol::when(Event::told, supervisor.fault != Fault::none);
   for (const Way* way = here.ways_begin; way != here.ways_end; ++way)
     if (way->is_open(now))

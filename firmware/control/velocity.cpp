@@ -8,11 +8,12 @@ namespace inkwell::control {
 
 namespace {
 
-/// Farther than any arm moves within `rest_periods`; keeps the products below within 32 bits.
+/// Farther than any arm moves within `rest_periods`. The bound keeps the products below within 32 bits.
 constexpr std::int32_t farthest_counts = 65'536;
 static_assert(2LL * (farthest_counts + 1) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
 
-/// Fraction of half counts over periods; compared by cross-multiplication, which is exact and needs no divide.
+/// Slope as a fraction: half counts divided by periods. Cross-multiplication compares fractions exactly and without
+/// division.
 struct Slope {
   std::int32_t half_counts;
   std::int32_t periods;
@@ -20,8 +21,8 @@ struct Slope {
 
 bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
-/// Slope of the longest window that is of use and whose line passes all of its edges within the tolerance.
-// Not inlined: what follows it would be there once for each of its ends.
+/// Slope of the longest useful window whose line passes all of its edges within the tolerance.
+// Not inlined: the code after the call would be duplicated for each exit of the function.
 [[gnu::noinline]] Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
   const float speed = estimate.counts_per_period;
   const std::int32_t tolerance = speed > -0.5f && speed < 0.5f ? 1 : 2;  // half counts
@@ -58,7 +59,7 @@ void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
   if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
 }
 
-/// No edge came in this period: bounds the speed by one count in the time of silence.
+/// Bounds the speed to one count in the time without an edge. Called in each period without an edge.
 void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   if (silent_periods >= SpeedEstimate::rest_periods) {
     estimate.remembered = 0;
@@ -66,7 +67,8 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
     estimate.counts_per_period = 0.0f;
     return;
   }
-  // Steps of a sixteenth instead of a little in every period: a value that rests is cheap to stream.
+  // The speed falls in steps of 1/16 instead of a little in every period, because an unchanged value is cheap to
+  // stream.
   constexpr float step = 1.0f + 1.0f / 16.0f;
   const float speed = estimate.counts_per_period;
   const auto silent = static_cast<float>(silent_periods);

@@ -18,18 +18,18 @@ using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 /// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
-/// How long a channel is sampled: a code of ADC_SMPRx, and what it stands for. The shunt amplifiers, which are fast,
-/// have the 3 cycles that a reset leaves.
+/// Sampling time of a channel: the code in ADC_SMPRx and its cycles. The fast shunt amplifiers keep the reset value of
+/// 3 cycles.
 struct Sampling {
   std::uint32_t code, cycles;
   constexpr float time_s() const { return static_cast<float>(cycles) / board::adc_Hz; }
-  /// With the conversion behind it.
+  /// Cycles including the conversion.
   constexpr std::uint32_t whole_cycles() const { return cycles + 12; }
 };
-/// Potentiometers and the supply's divider are slow, but a capacitor at the pin gives what the sampling capacitor
-/// takes.
+/// Potentiometers and supply divider are slow sources, but a capacitor at the pin supplies the charge of the sampling
+/// capacitor.
 constexpr Sampling wiper_sampling{0b011, 56}, supply_sampling = wiper_sampling;
-/// The internal reference wants 10 us (data sheet, "Embedded internal reference voltage").
+/// The internal reference needs 10 us (data sheet, "Embedded internal reference voltage").
 constexpr Sampling reference_sampling{0b111, 480};
 static_assert(reference_sampling.time_s() > 10e-6f);
 
@@ -41,8 +41,9 @@ static_assert(static_cast<float>(3 * wiper_sampling.whole_cycles() + supply_samp
                   0.8f / board::servo_rate_Hz,
               "the slow conversions must be over when the next injected ones come");
 
-/// The converter's own, at their worst (data sheet, ADC characteristics). The capacitor at the pin must lose less than
-/// half a step to it, whatever the channel before left in it, and the switch between the two ten time constants.
+/// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may have the voltage of
+/// the previous channel. This charge must change the capacitor at the pin by less than half a step. Sampling must last
+/// ten time constants of the switch.
 constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
 constexpr bool is_settled(const Sampling& sampling, float filter_F) {
   return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
@@ -51,8 +52,8 @@ static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
                   is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// In the order of their conversions. The supply comes last: what it leaves in the sampling capacitor is near the
-/// middle of the range, as a current is.
+/// Slow channels in conversion order. The supply comes last: it leaves the sampling capacitor near mid-range, as a
+/// motor current does.
 struct SlowChannel {
   std::uint32_t channel;
   Sampling sampling;
@@ -63,8 +64,7 @@ constexpr SlowChannel slow_sequence[slow_channels] = {{board::facts.gimbal[0].ch
                                                       {reference_channel, reference_sampling},
                                                       {board::facts.supply.channel, supply_sampling}};
 
-/// The sampling times of the channels from `first` on, ten of which have a place in SMPR2 (0 to 9), the others in
-/// SMPR1.
+/// Sampling times of the ten channels from `first` on. SMPR2 contains channels 0 to 9, SMPR1 contains the others.
 constexpr std::uint32_t sampling_from(std::uint32_t first) {
   std::uint32_t bits = 0;
   for (const auto& [channel, sampling] : slow_sequence)
@@ -72,13 +72,13 @@ constexpr std::uint32_t sampling_from(std::uint32_t first) {
   return bits;
 }
 
-/// ADC_CR2 of ADC1 from arm() on; SWSTART starts the slow conversions.
+/// ADC_CR2 of ADC1 from arm() on. SWSTART starts the slow conversions.
 constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
                                      ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
-  // A sequence of one, as after a reset, takes its channel from the last place.
+  // A sequence of one channel, the default after a reset, uses the last channel field.
   Converter::JSQR::write(typename Converter::JSQR::JSQ4(input.channel));
 }
 
@@ -101,13 +101,12 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-/// What a stream's last transfer may have left, and the next one may not find (RM0090, DMA stream configuration
-/// procedure).
+/// Flags of the previous transfer that must be clear before the next one (RM0090, DMA stream configuration procedure).
 constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;
 
-/// Sets the stream up from its first transfer; it must be off.
+/// Sets up the stream from its first transfer. The stream must be disabled.
 INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
   DMA2::LIFCR::write(flags_of_stream);
@@ -121,7 +120,8 @@ INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destin
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-/// Periods without a whole sequence after which it is taken for dead. One is missed when a control interrupt is late.
+/// Periods without a complete sequence after which the sequence is restarted. A late control interrupt causes one such
+/// period.
 constexpr std::uint32_t patience_periods = 4;
 
 }  // namespace
@@ -142,7 +142,7 @@ void AnalogInputs::start() {
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
-  // The reference takes 10 us to start, and has them before arm() (data sheet, "Embedded internal reference voltage").
+  // The reference needs 10 us to start, which pass before arm() (data sheet, "Embedded internal reference voltage").
   ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
   set_up_injected<ADC1>(board::facts.motor_current[0]);
   set_up_injected<ADC2>(board::facts.motor_current[1]);
@@ -150,7 +150,7 @@ void AnalogInputs::start() {
   set_up_slow_sequence();
 }
 
-// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
+// The converters are accurate 3 us after they are switched on (data sheet, ADC characteristics, t_STAB).
 void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
@@ -158,7 +158,8 @@ void AnalogInputs::arm() {
   InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
-// ADC1 interrupts when all three are over, since they began together: only one that does not work is missed.
+// All three converters start together, so all have finished when ADC1 interrupts. Only a broken converter has no
+// result.
 INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
   bool are_new = true;
   const std::array current_A{take_current_A<ADC1>(are_new), take_current_A<ADC2>(are_new),
@@ -169,8 +170,8 @@ INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   if (slow_stopped_) return set_up_slow();
   if (!DMA2::LISR::TCIF0::is_set()) {
-    // After a late control interrupt the sequence may still be running; starting it again in its middle would shift all
-    // later results by a place. An overrun of the converter or an error of the transfer ends it for good.
+    // After a late control interrupt the sequence may still be running. A restart in its middle would shift all later
+    // results by one position. A converter overrun or a transfer error stops the sequence permanently.
     if (++slow_age_periods_ % patience_periods == 0) stop_slow();
     return;
   }
@@ -179,8 +180,9 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
-// The way back of RM0090, "Overrun detection", in two periods: a stream that is told to stop first finishes its
-// transfer, and nothing waits here. Without requests none is left over for the stream when it starts again.
+// Stops the conversions as RM0090 describes under "Overrun detection". The recovery takes two periods without a wait in
+// the interrupt. A disabled stream first finishes its transfer. With DMA requests disabled, no old request remains when
+// the stream starts again.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);
   DMA2::S0CR::write(0);
@@ -191,7 +193,7 @@ INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   ++slow_age_periods_;
   slow_stopped_ = false;
   set_up_memory_access(slow_.data());
-  // A result that nobody took would make the first new one an overrun again.
+  // An unread result would make the first new result an overrun.
   ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }

@@ -19,11 +19,11 @@ using Enable = DigitalOutput<Bridges, board::facts.bridge_enable>;
 using Heartbeat = DigitalOutput<Bridges, board::facts.bridge_heartbeat>;
 using Hold = DigitalInput<Bridges, board::facts.bridge_hold>;
 
-/// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
+/// Master mode of TIM1: source of its trigger output (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
 constexpr std::uint32_t trigger_on_update = 0b010;
 
-/// Sets a timer up, outputs off, counter at rest at 0. Compare values are written before the outputs are switched on.
+/// Sets up a timer with outputs off and its counter stopped at 0. Compare values are written before the outputs are on.
 template <class Timer>
 void set_up() {
   constexpr std::uint32_t centre_aligned = 0b01;
@@ -36,12 +36,13 @@ void set_up() {
   Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
   Timer::BDTR::write(outputs_off);
   Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
-  // Loads the repetition counter as well, so the events are counted from here: with an odd repetition value and
-  // the counter starting upward from 0, every sixth turning point is one at the bottom (RM0090, "Repetition counter").
+  // This event also loads the repetition counter, so updates are counted from here. The repetition value is odd and the
+  // counter starts upward from 0. The update is therefore at every sixth turning point, at the bottom (RM0090,
+  // "Repetition counter").
   Timer::EGR::write(typename Timer::EGR::UG(1));
 }
 
-/// The bridge is a template argument, so that no table of channels is read.
+/// The bridge is a template argument, so that no channel table is read.
 template <std::size_t bridge>
 void write_legs(const LegCompares& legs) {
   constexpr unsigned place = board::facts.bridges[bridge].channel - 1u;
@@ -49,7 +50,7 @@ void write_legs(const LegCompares& legs) {
   TIM8::CCR::write(place, legs.leg_b);
 }
 
-/// All legs A are at one port and all legs B at another, so that each is looked at by one access.
+/// All legs A are on one port and all legs B on another, so one access reads three legs.
 template <board::Pin first, board::Pin second, board::Pin third>
 bool any_is_high() {
   static_assert(first.port == second.port && first.port == third.port);
@@ -57,37 +58,37 @@ bool any_is_high() {
   return (DigitalInput<Bridges, first>::read_port() & pins) != 0;
 }
 
-/// Starts both counters together: TIM8 waits for the trigger output of TIM1, which is its internal trigger 0
-/// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
-/// bridge stay apart; the bridges' own dead times are several times that.
+/// Starts both counters together: TIM8 waits for the trigger output of TIM1, its internal trigger 0 (RM0090, "TIMx
+/// internal trigger connection"). The trigger arrives about two cycles late, which separates the legs of a bridge by 12
+/// ns. The dead times of the bridges are several times longer.
 void start_together() {
   constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
   TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0), TIM8::SMCR::SMS(start_on_trigger));
   TIM1::CR1::modify(TIM1::CR1::CEN(1));
-  // Reading TIM1 back gives TIM8 the time to see the trigger before it means something else. Later ones find it
-  // running.
+  // Two reads of TIM1 leave TIM8 enough time to receive the trigger, before the trigger output changes its source.
+  // Later triggers have no effect on the running timer.
   static_cast<void>(TIM1::CR1::read());
   static_cast<void>(TIM1::CR1::read());
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
 }
 
-/// A flag is cleared by writing 0 to it; writing 1 to the others leaves them alone.
+/// Writing 0 clears a flag; writing 1 does not change it.
 void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
-/// Four microseconds: a hundred picofarads.
+/// Settling time of 4 us, in which an internal pull charges 100 pF.
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {
-  // At 60 kHz nothing asks for fast edges, and slow ones disturb the shunt amplifiers less. The pull-downs hold the
-  // legs low if the timer should ever let go of them.
+  // A PWM of 60 kHz does not need fast edges, and slow edges disturb the shunt amplifiers less. The pull-downs keep the
+  // legs low if the timer does not drive them.
   connect<Bridges, board::facts.bridges[0].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[2].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[0].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[2].leg_b>(Pull::down, Speed::medium);
-  // Open drain: the board has the strong pull-up, this one only keeps a bench without bridges from floating.
+  // Open drain: the board has a strong pull-up. This pull-up only prevents floating on a bench without bridges.
   connect<Bridges, board::facts.bridge_fault_tim1>(Pull::up, Speed::low);
   connect<Bridges, board::facts.bridge_fault_tim8>(Pull::up, Speed::low);
 }
@@ -97,10 +98,10 @@ void connect_pins() {
 void Bridges::start() {
   Enable::start();
   Heartbeat::start();
-  Hold::start(Pull::down);  // of a wire that is broken
+  Hold::start(Pull::down);  // defines the level if the wire is broken
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
-  // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
-  // That the outputs go idle as well is to be seen on the bench (the board's README.md, "First power-up").
+  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors.
+  // Whether the outputs also become idle must be checked on the bench (the board's README.md, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 
@@ -118,7 +119,7 @@ INKWELL_INTERRUPT void Bridges::write_neutral() {
 
 INKWELL_INTERRUPT void Bridges::write(const std::array<float, 3>& duty) {
   std::array<LegCompares, 3> legs;
-#pragma GCC unroll 1  // thrice the code would not be quicker
+#pragma GCC unroll 1  // unrolled code would not be faster
   for (std::size_t i = 0; i < legs.size(); ++i) legs[i] = leg_compares(duty[i]);
   write_legs<0>(legs[0]);
   write_legs<1>(legs[1]);

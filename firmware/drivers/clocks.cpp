@@ -11,7 +11,7 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-/// A tenth of a second at the clock that runs while the crystal and the PLL start.
+/// 0.1 s in cycles of the internal oscillator, which runs while the crystal and the PLL start.
 constexpr std::uint32_t start_cycles = internal_oscillator_Hz / 10;
 
 /// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
@@ -25,8 +25,8 @@ constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
 }
 static_assert(bus_divider_code(1) == 0 && bus_divider_code(2) == 0b100 && bus_divider_code(16) == 0b111);
 
-/// Runs from the internal oscillator with the PLL off, as after a reset. The boot loader in the chip starts programs
-/// without one, and a running PLL cannot be changed.
+/// Selects the internal oscillator and switches the PLL off, as after a reset. The chip's boot loader starts programs
+/// without a reset, and a running PLL cannot be changed.
 bool return_to_internal_oscillator() {
   constexpr std::uint32_t internal = 0b00;
   RCC::CR::modify(RCC::CR::HSION(1));
@@ -42,7 +42,7 @@ bool return_to_internal_oscillator() {
 bool start_clocks() {
   if (!return_to_internal_oscillator()) return false;
 
-  // 168 MHz needs voltage scale 1. It is the default, but a boot loader may have changed it.
+  // A frequency of 168 MHz needs voltage scale 1. Scale 1 is the default, but a boot loader may have changed the scale.
   RCC::APB1ENR::modify(RCC::APB1ENR::PWREN(1));
   static_cast<void>(RCC::APB1ENR::read());
   PWR::CR::modify(PWR::CR::VOS(1));
@@ -56,7 +56,7 @@ bool start_clocks() {
   RCC::CR::modify(RCC::CR::PLLON(1));
   if (!wait_for(start_cycles, [] { return RCC::CR::PLLRDY::is_set(); })) return false;
 
-  // Wait states before speed, and bus dividers before it too, so that no part is ever over its limit.
+  // Wait states and bus dividers change before the frequency, so that no part ever exceeds its limit.
   FLASH::ACR::write(FLASH::ACR::LATENCY(board::flash_wait_states), FLASH::ACR::PRFTEN(1), FLASH::ACR::ICEN(1),
                     FLASH::ACR::DCEN(1));
   if (!wait_for(start_cycles, [] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;
@@ -66,7 +66,8 @@ bool start_clocks() {
   RCC::CFGR::modify(RCC::CFGR::SW(from_pll));
   if (!wait_for(start_cycles, [] { return RCC::CFGR::SWS::read() == from_pll; })) return false;
 
-  // A dead crystal would leave the last duty on the motors: the security system turns it into a fault.
+  // If the crystal stops, the last duty cycle would remain on the motors. The clock security system raises a fault
+  // instead.
   RCC::CR::modify(RCC::CR::CSSON(1));
   return true;
 }

@@ -33,7 +33,7 @@ void connect_encoder() {
   connect<Encoders, wiring.b>(Pull::up, Speed::low);
 }
 
-/// Ten microseconds: a quarter of a nanofarad.
+/// Settling time of 10 us, in which an internal pull charges 250 pF.
 constexpr std::uint32_t pull_cycles = board::processor_Hz / 100'000;
 
 }  // namespace
@@ -64,7 +64,7 @@ void Encoders::start() {
   set_up<TIM4>();
 }
 
-// TIM5 counts to 32 bits, the others to 16, as a reset leaves them: their lower halves wrap alike.
+// After a reset TIM5 counts to 32 bits and the others to 16 bits. The lower 16 bits of all timers wrap in the same way.
 INKWELL_INTERRUPT std::array<std::uint16_t, 3> Encoders::read() const {
   return {static_cast<std::uint16_t>(TIM5::CNT::read()), static_cast<std::uint16_t>(TIM3::CNT::read()),
           static_cast<std::uint16_t>(TIM4::CNT::read())};

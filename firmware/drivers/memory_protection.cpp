@@ -13,24 +13,24 @@ enum class Use { none, data, tables, code };
 
 struct Region {
   std::uint32_t base;       ///< a multiple of the size
-  std::uint32_t size_bits;  ///< logarithm of the size in bytes
+  std::uint32_t size_bits;  ///< base-2 logarithm of the size in bytes
   Use use;
-  bool is_shared;  ///< as the manual has it for SRAM (PM0214, table "Memory region attributes for STM32")
+  bool is_shared;  ///< as PM0214 specifies for SRAM (table "Memory region attributes for STM32")
 };
 
 constexpr std::uint32_t bits_of_2_KB = 11, bits_of_16_KB = 14, bits_of_32_KB = 15, bits_of_128_KB = 17,
                         bits_of_1_MB = 20, bits_of_32_MB = 25, bits_of_128_MB = 27;
 
-/// Of regions that lie one in another the last counts. What lies in none is as without the unit (RM0090, "Memory map").
+/// Of overlapping regions the last one applies. The default memory map applies elsewhere (RM0090, "Memory map").
 constexpr Region regions[] = {
-    {0x0000'0000, bits_of_128_MB, Use::none, false},  // the flash once more
-    {0x0800'0000, bits_of_128_MB, Use::none, false},  // up to the stack's end
+    {0x0000'0000, bits_of_128_MB, Use::none, false},  // alias of the flash
+    {0x0800'0000, bits_of_128_MB, Use::none, false},  // up to the stack
     {0x0800'0000, bits_of_1_MB, Use::code, false},    // flash
-    {0x0800'8000, bits_of_32_KB, Use::data, false},   // of it what holds parameters
-    {0x1000'F800, bits_of_2_KB, Use::tables, false},  // core-coupled: what interrupts read
+    {0x0800'8000, bits_of_32_KB, Use::data, false},   // flash sectors for parameters
+    {0x1000'F800, bits_of_2_KB, Use::tables, false},  // core-coupled memory: tables that interrupts read
     {0x2000'0000, bits_of_128_KB, Use::data, true},   // SRAM1 and SRAM2
-    {0x2001'C000, bits_of_16_KB, Use::code, true},    // SRAM2: what runs in interrupts
-    {0x2200'0000, bits_of_32_MB, Use::none, true},    // each bit of the SRAM once more
+    {0x2001'C000, bits_of_16_KB, Use::code, true},    // SRAM2: code that runs in interrupts
+    {0x2200'0000, bits_of_32_MB, Use::none, true},    // bit-band alias of the SRAM
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A dial with detents around an axis of the workspace: the probe turns about it and falls from notch to notch. The
-// notch that it is in is kept until the next one is well passed, so that the dial does not chatter between two.
+// Dial with detents around an axis of the workspace. The probe turns about the axis and snaps from notch to notch. The
+// present notch changes only well after its boundary, so that the dial does not chatter between two notches.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -41,7 +41,7 @@ struct detent_dial {
     const float x_m = probe.position_m.x - parameters.x_m;
     const float y_m = probe.position_m.y - parameters.y_m;
     const float radius_m = __builtin_sqrtf(x_m * x_m + y_m * y_m);
-    if (radius_m < 0.005f) return wall_force_N(probe);  // on its axis a dial has no direction to turn
+    if (radius_m < 0.005f) return wall_force_N(probe);  // on the axis the direction is undefined
     const Vector3 along{-y_m / radius_m, x_m / radius_m, 0.0f};
 
     state.way_m += protocol::servo_period_s * dot(along, probe.velocity_m_per_s);

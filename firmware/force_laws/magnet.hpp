@@ -1,4 +1,4 @@
-// A magnet in the workspace: it pulls the probe from afar, and holds it like a spring when it is near.
+// Magnet in the workspace. The magnet attracts the probe from a distance and acts like a spring near its center.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -32,7 +32,8 @@ struct magnet {
 
   struct State {};
 
-  /// F = F0 (2 d / r) / (1 + (d / r)^2) towards the magnet: largest, F0, at the distance r, and nothing at the magnet.
+  /// F = F0 (2 d / r) / (1 + (d / r)^2) towards the magnet. The force reaches F0 at the distance r and is zero at the
+  /// magnet.
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State&, Signals& signals) {
     const Vector3 to_magnet_m = Vector3{parameters.x_m, parameters.y_m, parameters.z_m} - probe.position_m;
     const float squared_m2 = dot(to_magnet_m, to_magnet_m);

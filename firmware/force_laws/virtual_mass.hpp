@@ -1,8 +1,9 @@
-// C code as a law: what MATLAB Coder, Simulink or Octave users have is a step function with structs. These lines give
-// it the probe, and its parameters and outputs their rows; generated_code/virtual_mass.c stays as it is.
+// C code as a force law. MATLAB Coder, Simulink and Octave users have a step function with structs. This file passes
+// the probe to the function and adds rows for its parameters and outputs. The file generated_code/virtual_mass.c is
+// unchanged.
 #pragma once
 
-#include <cmath>  // what the C code includes has to be included here, outside of the namespace
+#include <cmath>  // headers of the C code must be included here, outside the namespace
 
 #include <control/force_law.hpp>
 

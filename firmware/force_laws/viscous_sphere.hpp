@@ -1,4 +1,4 @@
-// A ball of honey in the workspace: inside of it the probe is held back the more, the faster it moves.
+// Viscous sphere in the workspace: inside it, a damping force opposes the motion of the probe.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -31,7 +31,7 @@ struct viscous_sphere {
 
   struct State {};
 
-  /// F = -c v, with a skin of a fifth of the radius in which c rises from nothing: no step where it is entered.
+  /// F = -c v. In a skin of one fifth of the radius c rises from zero, so the force has no step at the surface.
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State&, Signals& signals) {
     const Vector3 from_centre_m = probe.position_m - Vector3{parameters.x_m, parameters.y_m, parameters.z_m};
     const float depth_m = parameters.radius_m - __builtin_sqrtf(dot(from_centre_m, from_centre_m));

@@ -13,7 +13,7 @@ namespace {
 using protocol::Fault;
 using protocol::State;
 
-// FNV-1a, by words.
+// FNV-1a, computed by words.
 constexpr std::uint32_t hash_basis = 2166136261u;
 
 std::uint32_t hash_words(std::uint32_t hash, const void* words, std::size_t bytes) {
@@ -30,24 +30,25 @@ std::uint32_t check_of(const BlackBoxNotes::Cause& cause) {
   return hash_words(hash_basis, &cause, offsetof(BlackBoxNotes::Cause, check));
 }
 
-/// Of a row and its number, so that one that was left from an earlier run is not taken for a newer one.
+/// Checksum of a row and its number. The number distinguishes a new row from a row of an earlier run.
 std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
   return hash_words(hash_basis ^ number, &row, sizeof row);
 }
 
 bool is_sound(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
 
-/// Numbers of the rows from the fault on; those before it stay below.
+/// First number of the rows from the fault on. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
 
-/// The number after that of a row before the fault. After 24 days without a fault it falls, by whole rings, so that
-/// each row stays in its place. A reset within the next 100 ms costs the rows before that.
+/// Returns the number of the next row before the fault. After 24 days without a fault the number decreases by a
+/// multiple of the ring size, so that each row keeps its slot. A reset within the next 100 ms loses the rows before the
+/// decrease.
 std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
   const auto size = static_cast<std::uint32_t>(ring_size);
   return number + 1 < first_number_from_fault - size ? number + 1 : size + (number + 1) % size;
 }
 
-/// What is written before is in memory before what is written behind, if a reset comes between them.
+/// Compiler barrier. If a reset interrupts the writes, later writes are not in memory without the earlier ones.
 void in_this_order() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
 void write(BlackBoxPlace& place, std::uint32_t number, const Sample& sample) {
@@ -57,7 +58,7 @@ void write(BlackBoxPlace& place, std::uint32_t number, const Sample& sample) {
   in_this_order();
 }
 
-/// Rows of an image with other tables, or for another memory, mean nothing to this one.
+/// Identifies the tables and the memory layout. Rows of an image with another hash are ignored.
 std::uint32_t hash_of_tables(std::size_t before, std::size_t from_fault) {
   const auto& law = control::installed_force_law;
   std::uint32_t hash =
@@ -76,14 +77,14 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
   const bool is_kept = notes_.cause.check == check_of(notes_.cause);
   if (!is_kept && raised == Fault::none) return begin_anew();
 
-  // A reset may have come at any moment, so only what is sound counts: the newest rows before the fault, and the first
-  // ones from it on.
+  // A reset may have interrupted any write. Only consecutive valid rows count: the newest rows before the fault, and
+  // the first rows from the fault on.
   while (rows_before_ < std::min<std::size_t>(ring_.size(), notes_.rows_written)) {
     const std::uint32_t number = notes_.rows_written - 1 - rows_before_;
     if (!is_sound(before(number), number)) break;
     ++rows_before_;
   }
-  // The signals around the first fault stay; what the processor noted goes with them, as it is looked for there.
+  // The signals of the first fault are retained, together with the newest crash record.
   if (is_kept && crash.exception != 0) {
     ++notes_.cause.later_crashes;
     notes_.cause.crash = crash;
@@ -129,7 +130,7 @@ void BlackBox::begin_anew() {
   rows_before_ = rows_from_fault_ = 0;
   notes_.tables_hash = ~tables_hash_;
   in_this_order();
-  notes_.cause = {};  // no fault, and a check that is not right
+  notes_.cause = {};  // no fault, and an invalid checksum
   notes_.rows_written = notes_.rows_added = 0;
   in_this_order();
   notes_.tables_hash = tables_hash_;

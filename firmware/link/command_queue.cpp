@@ -70,7 +70,7 @@ bool CommandQueue::push(const protocol::CommandReport& command) {
 }
 
 bool CommandQueue::waiting(protocol::Command command) const {
-  // What the interrupt takes meanwhile may be reported as waiting; nothing that waits is missed.
+  // A command that the interrupt removes during the loop may be reported as waiting. No waiting command is missed.
   const std::uint32_t pushed = pushed_.load();
   for (std::uint32_t i = taken_.load(); i != pushed; ++i)
     if (commands_[i % capacity].command == command) return true;
@@ -88,13 +88,13 @@ INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::take() {
   if (host_gone_.load()) {
     host_gone_.store(false);
     taken_.store(forgotten_.load());
-    stop_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged
+    stop_.token = last_token_;  // repeats the last token, because this command is not from the host
     return &stop_;
   }
   if (taken == pushed_.load()) return nullptr;
   const protocol::CommandReport& command = commands_[taken % capacity];
   last_token_ = command.token;
-  // The main loop can not run, and so not reuse the place, before the interrupt returns.
+  // The main loop cannot reuse the slot before the interrupt returns.
   taken_.store(taken + 1);
   return &command;
 }

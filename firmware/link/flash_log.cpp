@@ -10,10 +10,10 @@ namespace {
 constexpr std::uint32_t erased = 0xFFFF'FFFF;
 constexpr std::uint32_t sector_magic = 0x5357'4B49, record_magic = 0x5257'4B49;  // "IKWS", "IKWR"
 constexpr std::size_t sector_head_words = 5;
-/// Kept free in each sector for notes of erases; each start that is cut off while it erases takes one.
+/// Space reserved in each sector for erase records. Each start whose erase is interrupted uses one.
 constexpr std::size_t words_for_notes = 8 * record_words(1);
 
-/// CRC-32 of IEEE 802.3, without its last inversion.
+/// CRC-32 of IEEE 802.3, without the final inversion.
 constexpr std::uint32_t check_begin = 0xFFFF'FFFF;
 std::uint32_t add_to_check(std::uint32_t check, std::uint32_t word) {
   static constexpr auto table = []() {
@@ -35,7 +35,7 @@ std::uint32_t check_of(std::span<const std::uint32_t> words) {
   return check;
 }
 
-/// The record at the begin of `words`, if it is whole.
+/// Returns the record at the beginning of `words` if the record is complete.
 std::optional<FlashLog::Record> record_at(std::span<const std::uint32_t> words) {
   if (words[0] != record_magic || words.size() < record_words(0)) return std::nullopt;
   FlashLog::Record record;
@@ -54,7 +54,7 @@ void FlashLog::start(FlashMemory& memory) {
   memory_ = &memory;
   for (std::size_t number = 0; number < sectors_.size(); ++number) scan(number);
   for (std::size_t number = 0; number < sectors_.size(); ++number)
-    // A sector that was begun after its erase was noted has been erased to the end.
+    // A sector whose header is newer than its erase record has been erased completely.
     if (erase_is_open_[number] && sectors_[number].is_begun)
       erase_is_open_[number] = memory.sector(number)[2] < erases_[number];
   choose_current();
@@ -71,7 +71,7 @@ void FlashLog::scan(std::size_t number) {
   sector.order = words[1];
   erases_[number] = std::max(erases_[number], words[2]);
   erases_[1 - number] = std::max(erases_[1 - number], words[3]);
-  sector.end = std::max(sector.end, sector_head_words);  // a CRC may look like an erased word
+  sector.end = std::max(sector.end, sector_head_words);  // a CRC may be equal to an erased word
   for (std::size_t at = sector_head_words; at < sector.end;) {
     const auto record = record_at(words.subspan(at));
     if (record) note(number, *record);
@@ -91,7 +91,7 @@ void FlashLog::note(std::size_t sector, const Record& record) {
   }
 }
 
-/// Where no record says it: the sector that was begun last, or one that is erased.
+/// Without a valid record, chooses the sector with the newest header, or an erased sector.
 void FlashLog::choose_current() {
   if (newest_) return;
   const bool second_is_newer = sectors_[1].is_begun && (!sectors_[0].is_begun || sectors_[1].order > sectors_[0].order);
@@ -99,7 +99,7 @@ void FlashLog::choose_current() {
   current_ = second_is_newer || (first_is_useless && is_usable(1)) ? 1 : 0;
 }
 
-/// Erased, and begun at most.
+/// True if the sector has no records: it is erased, with or without a sector header.
 bool FlashLog::is_usable(std::size_t number) const {
   const Sector& sector = sectors_[number];
   return !erase_is_open_[number] && sector.end <= (sector.is_begun ? sector_head_words : 0);
@@ -115,7 +115,7 @@ void FlashLog::make_room() {
   if (!is_usable(other())) erase(other());
 }
 
-// The note counts as begun even if the flash does not take it: the erase is needed in any case.
+// A failed write of the erase record is ignored, because the erase is necessary in any case.
 void FlashLog::erase(std::size_t number) {
   const std::uint32_t erases = ++erases_[number];
   const std::size_t place = 1 - number;
@@ -146,7 +146,7 @@ void FlashLog::prepare_sector(std::size_t number) {
   sector_head_.back() = check_of(std::span(sector_head_).first<sector_head_words - 1>());
 }
 
-/// Its next word.
+/// Programs the next word of the sector header.
 bool FlashLog::program_sector_head(std::size_t number) {
   Sector& sector = sectors_[number];
   const bool taken = program(number, sector_head_[sector.end]);

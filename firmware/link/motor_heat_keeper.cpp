@@ -7,12 +7,12 @@
 namespace inkwell::link {
 namespace {
 
-/// Nothing that is no number is.
+/// Returns false for NaN.
 bool is_plausible(const control::Triple& heat) {
   return std::ranges::all_of(heat, [](float value) { return value >= 0.0f && value <= MotorHeatKeeper::most; });
 }
 
-/// What is no number is taken for the most.
+/// Replaces NaN by the maximum.
 control::Triple within_range(control::Triple heat) {
   for (float& value : heat) value = value < MotorHeatKeeper::most ? std::max(value, 0.0f) : MotorHeatKeeper::most;
   return heat;
@@ -28,7 +28,7 @@ bool MotorHeatKeeper::is_sound(const Place& place) {
 std::optional<control::Warmth> MotorHeatKeeper::start(bool power_has_come) {
   const Place* newest = nullptr;
   for (Place& place : places_) {
-    if (power_has_come) place.check = sum_of(place.left);  // so that no later start takes it for the last run's
+    if (power_has_come) place.check = sum_of(place.left);  // invalidates the slot for later starts
     if (is_sound(place) && (newest == nullptr || place.left.number - newest->left.number < 0x8000'0000))
       newest = &place;
   }

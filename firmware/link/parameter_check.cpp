@@ -19,7 +19,7 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// The columns of the table that a check needs; the texts stay out of the image.
+/// Columns of the parameter table that a check needs. The texts are not linked into the image.
 struct Limits {
   std::uint16_t id;
   bool whole;
@@ -50,7 +50,7 @@ Limits limits(std::size_t index) {
   return {id_of(index), false, false, range.minimum, range.maximum};
 }
 
-/// The table's ids rise.
+/// Binary search, because the ids of the table rise.
 std::optional<std::size_t> find(std::uint16_t id) {
   if (id >= protocol::force_law_first_id) {
     const std::size_t index = parameter_count + id - protocol::force_law_first_id;
@@ -68,7 +68,7 @@ std::optional<std::size_t> find(std::uint16_t id) {
   return std::nullopt;
 }
 
-/// The first pair of bounds that contradict each other, or null.
+/// Returns the first pair of contradicting bounds, or null.
 constexpr const Bounds* find_contradiction(const ParameterSet& set) {
   for (const Bounds& pair : protocol::parameter_bounds) {
     const float room = pair.hold_sphere ? 2.0f * set[Parameter::sphere_radius_m] : 0.0f;
@@ -84,7 +84,7 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
   const Limits row = limits(index);
   if (!std::isfinite(value)) return Refusal::not_finite;
   if (!(row.minimum <= value && value <= row.maximum)) return Refusal::out_of_range;
-  // Every whole parameter's range lies far inside that of an int32.
+  // The range of every whole parameter fits in an int32.
   if (row.whole && static_cast<float>(static_cast<std::int32_t>(value)) != value) return Refusal::not_whole;
   if (row.needs_force_off && force_is_on && value != current) return Refusal::force_is_on;
   return Refusal::accepted;
@@ -92,11 +92,11 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
 
 using Given = std::array<bool, parameter_count + protocol::force_law_parameters_maximum>;
 
-/// Which of the parameters in a contradiction the transaction is to blame for.
+/// Returns the parameter of the transaction that caused the contradiction.
 Parameter blamed(const Bounds& pair, const Given& given) {
   if (given[static_cast<std::size_t>(pair.lower)]) return pair.lower;
   if (given[static_cast<std::size_t>(pair.upper)]) return pair.upper;
-  return Parameter::sphere_radius_m;  // what was accepted before had no contradiction
+  return Parameter::sphere_radius_m;  // the previous set had no contradiction
 }
 
 ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
@@ -107,7 +107,7 @@ ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
   return {Refusal::accepted, 0, 0.0f, set};
 }
 
-/// To the defaults, or to what is stored.
+/// Restores the defaults or the stored parameters.
 ParameterCheck restore(const ParameterSet& wanted, const ParameterSet& current, bool force_is_on) {
   if (force_is_on)
     for (std::size_t i = 0; i < parameter_count; ++i)

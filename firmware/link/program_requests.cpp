@@ -14,7 +14,7 @@ using control::Vector3;
 using protocol::ForceMode;
 using protocol::Parameter;
 
-/// NaN is not within.
+/// False for NaN.
 bool within(float value, float low, float high) { return value >= low && value <= high; }
 
 bool sound(const float (&coordinates)[3], float limit) {
@@ -26,7 +26,7 @@ Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coord
 
 constexpr std::size_t longest_output_report = protocol::longest_report(protocol::ReportKind::output);
 
-/// As long as it takes that the squares of what comes stay finite.
+/// Largest force whose square is still finite in the following computations.
 constexpr float longest_force_N = 1e6f;
 
 Vector3 shortened(const Vector3& force_N) {
@@ -38,7 +38,7 @@ Vector3 shortened(const Vector3& force_N) {
 
 bool decode_surface(const protocol::SurfaceEntry& entry, control::Surface& surface, std::uint32_t& life_periods) {
   life_periods = 0;
-  if (entry.life_s == 0.0f) return true;  // not there, whatever else it says
+  if (entry.life_s == 0.0f) return true;  // no shape; other members are ignored
   const bool lasts = std::isinf(entry.life_s) && entry.life_s > 0.0f;
   const bool is_sound = entry.stiffness_N_per_m > 0.0f &&
                         entry.stiffness_N_per_m <= info(Parameter::wall_stiffness_N_per_m).maximum &&
@@ -136,7 +136,7 @@ bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of
     return false;
   }
   const std::uint32_t sequence = word_at(report, offsetof(protocol::ForceReport, sequence));
-  // Another program starts with a sequence of its own: only what goes on counts.
+  // Another program starts with another sequence. Only a gap in a continued sequence counts as lost.
   constexpr std::uint32_t longest_gap = 1000;
   if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)
     forces_lost_ += sequence - *newest_sequence_ - 1;

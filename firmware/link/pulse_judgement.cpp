@@ -12,21 +12,21 @@ using Found = PulseJudgement::Found;
 
 constexpr float levels_s = PulseRound::levels * control::SelfTestPulses::level_periods * protocol::servo_period_s;
 
-/// What is known of a motor before it is looked at.
+/// Expected values of a motor.
 struct Expected {
   float resistance_ohm;
   float back_emf_Vs_per_count;
   float dead_V;
 };
 
-/// By one sign of the pulses; a current that does not rise gives the resistance that is shown at most.
+/// Resistance from the pulses of one sign. The result is limited to the largest reported resistance.
 float resistance_ohm(const PulseRound::Motor& motor, float low_A, float high_A, float shown_maximum_ohm) {
   const float step_V = motor.high_V - motor.low_V;
   const float step_A = high_A - low_A;
   return step_A * shown_maximum_ohm > step_V ? step_V / step_A : shown_maximum_ohm;
 }
 
-/// How many times one is the other, whichever is larger.
+/// Ratio of the larger value to the smaller value.
 float apart(float a, float b) { return a > b ? a / b : b / a; }
 
 float mean_back_emf_V(const PulseRound::Motor& motor, const Expected& expected) {
@@ -54,7 +54,8 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   const float part = worse_ohm / expected.resistance_ohm;
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
     return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
-  // What is left of the voltage at no current; a back EMF adds to one sign what it takes from the other.
+  // Voltage loss extrapolated to zero current. A back EMF raises the current of one sign and lowers the current of the
+  // other, so it cancels out.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
   const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&
@@ -64,7 +65,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
           is_kept ? 0.5f * (forward_ohm + backward_ohm) : 0.0f};
 }
 
-/// The pulses of one motor in the sensors of the others.
+/// Evaluates the pulses of one motor in the sensors of the other motors.
 Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
   if (!motor.takes_part) return {Result::no_part};
   float foreign_A = 0.0f;
@@ -75,7 +76,7 @@ Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expecte
   return {is_sound ? Result::passed : failed_or_moved(motor, expected), foreign_A};
 }
 
-/// Of two that stand for one item: the failure, else what could not be told, else the larger figure.
+/// Combines two results of one item. A failure has precedence, then `moved`, then the larger figure.
 Found worse(const Found& a, const Found& b) {
   const auto rank = [](Result result) {
     return result == Result::failed ? 3 : result == Result::moved ? 2 : result == Result::passed ? 1 : 0;

@@ -7,17 +7,17 @@ namespace inkwell::link {
 
 namespace {
 
-/// Nearest step, saturated; a value that is not a number becomes the lowest step.
+/// Rounds to the nearest step and saturates. NaN becomes the lowest step.
 std::int16_t to_steps(float value, float steps_per_unit) {
   const float steps = value * steps_per_unit;
   if (!(std::fabs(steps) <= 32767.0f)) [[unlikely]]
     return steps > 0.0f ? std::int16_t{32767} : std::int16_t{-32768};
-  // Made positive first, so that the conversion's cut towards zero rounds to the nearest.
+  // The offset makes the value positive, so that truncation toward zero rounds to the nearest step.
   return static_cast<std::int16_t>(static_cast<std::int32_t>(steps + 32768.5f) - 32768);
 }
 
-/// What `previous_` holds before the first sample of a frame, so that every signal differs from it: a
-/// signalling NaN, which no arithmetic makes, and no 16-bit number with its sign extended.
+/// Initial value of `previous_` in each frame. It differs from every signal: a signaling NaN is not the result of any
+/// computation, and it is not a sign-extended 16-bit integer.
 constexpr std::uint32_t bits_of_no_value = 0x7F80'0001;
 
 template <class Value>
@@ -45,7 +45,7 @@ void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint
   if (sample_count_ != 0) finish_frame();
   plan_ = prepare(selection, token);
   if (plan_.count == 0) return;
-  // Nobody waits for the samples of the selection before.
+  // The host does not expect samples of the previous selection.
   while (finished_count_ != 0) free_[free_count_++] = take_finished();
   sequence_ = 0;
 }
@@ -76,7 +76,7 @@ void ScopeRecorder::release() {
   shown_.reset();
 }
 
-/// The periods of a frame follow on each other, so what was skipped ends the one that was begun.
+/// Periods of a frame are consecutive. Skipped samples therefore end the current frame.
 void ScopeRecorder::skip_overwritten(std::uint32_t recorded) {
   if (sample_count_ != 0) finish_frame();
   samples_dropped_ += recorded - SampleRing::readable - packed_;
@@ -96,8 +96,8 @@ void ScopeRecorder::pack_oldest() {
     finish_frame();
 }
 
-// Both go through the plan run by run, so that the loop over floats, where most of the time of recording
-// goes, has nothing to decide but what it writes.
+// Both functions process the plan run by run. The loop over floats, which takes most of the recording time, then has no
+// branch for the encoding.
 
 void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;
@@ -178,7 +178,7 @@ std::uint8_t ScopeRecorder::take_finished() {
 }
 
 std::uint8_t ScopeRecorder::drop_oldest() {
-  // There is one: of all frames only one is written and one is shown.
+  // A finished frame exists, because only one frame is being written and at most one is being sent.
   const std::uint8_t frame = take_finished();
   protocol::ScopeFrameHeader header;
   std::memcpy(&header, frames_[frame].data(), sizeof header);

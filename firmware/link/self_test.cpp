@@ -8,12 +8,12 @@ namespace {
 using Item = protocol::SelfTestItem;
 using Result = protocol::SelfTestResult;
 
-/// In the order in which they are looked at.
+/// Wires in test order.
 constexpr Item looked_at_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,      Item::encoder_2_a,
                                     Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
                                     Item::bridge_fault_tim1, Item::bridge_fault_tim8};
 
-/// What start-up looks at once is all before them.
+/// First item that every self-test repeats. Items before it are tested only at start-up.
 constexpr Item first_of_each_test = Item::current_offsets;
 
 constexpr std::uint32_t orders = 4;
@@ -67,7 +67,7 @@ void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) 
   phase_ = Phase::wires;
 }
 
-/// As the sensors read now. What they read as the board started is taken off already.
+/// Measures the sensor offsets. The samples are relative to the offsets at start-up, so these are added again.
 void SelfTest::note_offsets() {
   const std::uint32_t recorded = samples_.recorded();
   float largest_A = 0.0f;
@@ -130,7 +130,7 @@ void SelfTest::note_pulses(const PulseJudgement& judgement) {
   note(Item::current_wires, judgement.wires.result, judgement.wires.figure);
 }
 
-/// What cannot be told anew stays as it was told.
+/// Stores the new measurements. Values without a new measurement do not change.
 void SelfTest::keep(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (judgement.bridges[i].result == Result::passed) measured_.bridge_loss_part[i] = judgement.bridge_loss_part[i];
@@ -160,7 +160,7 @@ protocol::SelfTestReport SelfTest::report() const {
   for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
   const Sample* const newest = samples_.newest();
   if (newest == nullptr) return report;
-  // What is watched all the time tells more than a look did.
+  // A fault from continuous monitoring has precedence over the result of a single test.
   const protocol::Fault told = newest->summary.fault;
   const auto fail = [&report](Item item) { report.entries[static_cast<std::size_t>(item)].result = Result::failed; };
   if (told == protocol::Fault::current_sensor) fail(Item::current_offsets);

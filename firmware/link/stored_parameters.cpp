@@ -16,7 +16,7 @@ using protocol::StoreResult;
 
 namespace {
 
-/// The law's name stands behind the head of its report.
+/// The name of the force law follows the header of its report.
 std::uint32_t own_force_law_hash() {
   const auto* name =
       reinterpret_cast<const char*>(control::installed_force_law.report) + sizeof(protocol::ForceLawReport);
@@ -33,7 +33,8 @@ bool are_equal(const ParameterSet& one, const ParameterSet& other) {
 
 bool belongs_to_a_law(std::uint32_t id) { return id >= protocol::force_law_first_id; }
 
-/// Index of a stored entry's parameter in this image. An entry of another law has none, whatever its id.
+/// Returns the index of a stored entry's parameter in this image. A parameter of another force law has no index, even
+/// if its id is known.
 std::optional<std::size_t> known_index(std::uint32_t id, bool same_law) {
   if (id > 0xFFFF || (!same_law && belongs_to_a_law(id))) return std::nullopt;
   return image_parameter_index(static_cast<std::uint16_t>(id));
@@ -113,7 +114,7 @@ void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std:
   if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
 }
 
-// What stands in the flash by then is not whole and does not count, or is a factory reset that the next start carries
+// The flash then has either an incomplete record, which is ignored, or a factory reset, which the next start carries
 // out.
 void StoredParameters::give_up() {
   wanted_ = Wanted::nothing;
@@ -152,8 +153,8 @@ RecordHead StoredParameters::head(RecordKind kind) const {
           .force_law_hash = own_force_law_hash()};
 }
 
-/// Those of this image, then what it does not know of the newest record. What belongs to another force law is left out,
-/// because this one's parameters have the same ids.
+/// Writes the parameters of this image, followed by the unknown entries of the newest record. Entries of another force
+/// law are omitted, because the ids of the two force laws overlap.
 std::size_t StoredParameters::put_entries(const ParameterSet& held) {
   std::size_t count = 0;
   auto& payload = payload_.open();

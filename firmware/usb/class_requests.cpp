@@ -1,4 +1,4 @@
-// Requests of the HID class (HID 1.11, section 7.2), of the class for firmware updates (DFU 1.1) and of Windows.
+// Requests of the HID class (HID 1.11, section 7.2), the firmware update class (DFU 1.1) and Windows.
 #include <algorithm>
 #include <cstring>
 #include <new>
@@ -32,7 +32,7 @@ constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, ve
 
 constexpr std::uint16_t controller_value = static_cast<std::uint16_t>(protocol::ReportKind::input) << 8;  // no id
 
-/// The report that wValue of GET_REPORT or SET_REPORT names; null if there is none.
+/// Returns the report that wValue of GET_REPORT or SET_REPORT names, or null.
 const protocol::ReportInfo* report_in(const SetupPacket& setup) {
   return protocol::find_report(static_cast<protocol::ReportKind>(setup.value_high()),
                                static_cast<ReportId>(setup.value_low()));
@@ -62,11 +62,11 @@ Answer Device::hid_request(const SetupPacket& setup) {
       return is_accepted ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
-      idle_rates_[setup.index] = setup.value_high();  // reports are always new: there is never an idle time to fill
+      idle_rates_[setup.index] = setup.value_high();  // not used: every report is new, so there is no idle time
       return Answer::done();
     }
   }
-  return Answer::stall();  // SET_PROTOCOL and GET_PROTOCOL are for boot devices
+  return Answer::stall();  // SET_PROTOCOL and GET_PROTOCOL are only for boot devices
 }
 
 Answer Device::get_report(const SetupPacket& setup) {
@@ -106,7 +106,7 @@ std::span<const std::byte> Device::compose(ReportId id) {
     case ReportId::black_box_rows: return put(link_.black_box.rows());
     case ReportId::command:
     case ReportId::force:
-    case ReportId::shapes: break;  // cannot be read
+    case ReportId::shapes: break;  // not readable
   }
   return {};
 }
@@ -118,7 +118,8 @@ Answer Device::get_controller_report(const SetupPacket& setup) {
   return Answer::send(control_.buffer().first(sizeof report));
 }
 
-// GET_REPORT of an input report is mandatory (HID 1.11, section 7.2.1), so there is an answer before the first period.
+// GET_REPORT of an input report is mandatory (HID 1.11, section 7.2.1), so the device must answer before the first
+// period.
 protocol::PoseReport Device::newest_pose() {
   protocol::PoseReport pose{};
   if (!link_.poses.read(pose)) pose.state = link_.status.state();
@@ -128,7 +129,7 @@ protocol::PoseReport Device::newest_pose() {
 }
 
 bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> data) {
-  if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the report's id, once more
+  if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the data repeats the report id
   switch (static_cast<ReportId>(setup.value_low())) {
     case ReportId::command: {
       const auto command = read_command(data);
@@ -152,7 +153,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
 }
 
 bool Device::force_is_on() const {
-  // In this order: were the state read first, the interrupt could take the command in between.
+  // The queue must be checked first. Otherwise the interrupt could carry out the command between the two checks.
   return link_.commands.waiting(protocol::Command::enable_force) || protocol::force_is_on(link_.status.state());
 }
 
@@ -163,9 +164,9 @@ bool Device::may_store() const {
   return protocol::may_store(link_.status.state());
 }
 
-// DFU 1.1, section 5.1 and appendix A.2: idle, then detaching as soon as the status stage is over. Not while the hand
-// feels a force, which would end without the user's consent. Such a request is completed without effect, and GETSTATUS
-// reports errVENDOR (section 6.1.2) until a request is accepted.
+// DFU 1.1, section 5.1 and appendix A.2. The state changes from idle to detaching after the status stage. A detach
+// request while the hand feels a force has no effect, because it would remove the force without the user's consent. Its
+// status stage still succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
   constexpr std::byte no_error{0}, vendor_error{0x0B};
@@ -185,7 +186,7 @@ Answer Device::firmware_update_request(const SetupPacket& setup) {
     return Answer::send(buffer.first(1));
   }
   if (setup.request == get_update_status_request) {
-    const auto status = buffer.first<6>();  // the status, no time to wait, the state, no text
+    const auto status = buffer.first<6>();  // status, poll timeout of 0, state, no text
     std::ranges::fill(status, std::byte{0});
     status[0] = detach_was_refused_ ? vendor_error : no_error;
     status[4] = state;

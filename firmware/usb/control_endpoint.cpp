@@ -13,7 +13,7 @@ constexpr std::uint8_t control_in = 0x80;
 }  // namespace
 
 void ControlEndpoint::setup(std::span<const std::byte> packet) {
-  // A SETUP ends whatever was going on (USB 2.0, section 5.5.5).
+  // A SETUP ends the transfer in progress (USB 2.0, section 5.5.5).
   if (stage_ == Stage::data_in || stage_ == Stage::status_in) port_.cancel(control_in);
   stage_ = Stage::idle;
   if (packet.size() != sizeof setup_) return;
@@ -24,7 +24,7 @@ void ControlEndpoint::setup(std::span<const std::byte> packet) {
     case Answer::Kind::stall: stall(); break;
     case Answer::Kind::done: send_status(); break;
     case Answer::Kind::send:
-      // Without a data stage the status stage goes to the host, whatever the direction bit says.
+      // Without a data stage the status stage is IN, for either direction bit.
       if (setup_.length == 0)
         send_status();
       else
@@ -45,7 +45,7 @@ void ControlEndpoint::setup(std::span<const std::byte> packet) {
 void ControlEndpoint::received(std::span<const std::byte> packet) {
   switch (stage_) {
     case Stage::data_out: collect(packet); break;
-    case Stage::data_in:  // the host has seen enough and goes on to the status stage
+    case Stage::data_in:  // the host starts the status stage early
       port_.cancel(control_in);
       stage_ = Stage::idle;
       break;
@@ -68,7 +68,8 @@ void ControlEndpoint::sent() {
 
 void ControlEndpoint::begin_data_in(const Answer& answer) {
   const std::size_t size = std::min<std::size_t>(std::max(answer.data.size(), answer.padded_size), setup_.length);
-  // Less than was asked for ends with a short packet, an empty one if need be (USB 2.0, section 8.5.3.2).
+  // A short packet ends a transfer that is shorter than wLength. It is empty if the length is a multiple of 64 (USB
+  // 2.0, section 8.5.3.2).
   end_with_empty_packet_ = size < setup_.length && size % packet_size_maximum == 0;
   remaining_ = answer.data.first(std::min(answer.data.size(), size));
   zeros_ = size - remaining_.size();
@@ -103,7 +104,7 @@ void ControlEndpoint::collect(std::span<const std::byte> packet) {
     else
       stall();
   } else if (packet.size() < packet_size_maximum) {
-    stall();  // the data ended before wLength
+    stall();  // shorter than wLength
   } else {
     port_.receive(control_out);
   }

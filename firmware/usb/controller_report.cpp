@@ -4,7 +4,7 @@ namespace inkwell::usb {
 
 namespace {
 
-/// To the nearest step, within the range; what is no number, at its upper end.
+/// Rounds to the nearest step and limits to the range. NaN becomes the upper limit.
 std::int16_t steps(float value, float per_unit) {
   const float wanted = value * per_unit;
   const float bounded = wanted < protocol::controller_steps_maximum ? wanted : protocol::controller_steps_maximum;

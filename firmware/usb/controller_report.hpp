@@ -1,4 +1,4 @@
-// The pose as a multi-axis controller reports it: in the middle of its axes while nobody knows where the arm is.
+// Converts a pose to a multi-axis controller report. The axes are centered while the position of the arm is unknown.
 #pragma once
 
 #include <protocol/reports.hpp>

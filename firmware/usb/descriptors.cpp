@@ -35,7 +35,7 @@ constexpr std::array<std::uint8_t, sizeof...(Numbers)> bytes(Numbers... numbers)
 constexpr std::uint8_t low(std::size_t number) { return static_cast<std::uint8_t>(number); }
 constexpr std::uint8_t high(std::size_t number) { return static_cast<std::uint8_t>(number >> 8); }
 
-/// Text as UTF-16, with `zeros` zero characters behind it.
+/// Text as UTF-16, followed by `zeros` zero characters.
 template <std::size_t zeros, std::size_t size>
 constexpr auto utf16(const char (&text)[size]) {
   std::array<std::uint8_t, 2 * (size - 1 + zeros)> wide{};
@@ -48,7 +48,7 @@ constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8
 
 // ---- HID report descriptor (HID 1.11, section 6.2.2) -----------------------------------------------
 //
-// Every report is a row of bytes of a vendor's own usage page: what they mean is in protocol/reports.hpp.
+// Every report is an array of bytes on a vendor usage page. protocol/reports.hpp defines their meaning.
 
 constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
 constexpr std::uint8_t data_variable_absolute = 0x02;
@@ -62,7 +62,7 @@ constexpr std::uint8_t item_of(protocol::ReportKind kind) {
   return 0;
 }
 
-/// A report with its id and the bytes after it.
+/// Report id and the bytes after it.
 constexpr auto items_of(const protocol::ReportInfo& row) {
   const std::size_t count = row.bytes - 1;
   return bytes(0x85, static_cast<std::uint8_t>(row.id),  // report id
@@ -88,9 +88,9 @@ constexpr auto report_descriptor = join(bytes(0x06, 0x00, 0xFF,  // usage page: 
                                         reports,
                                         bytes(0xC0));  // end of the collection
 
-// ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------
+// ---- HID report descriptor of the controller (HID usage tables 1.12, section 4) -----------------------
 
-/// Three axes of 16 bits. What an axis counts is `unit` times ten to the power of `exponent`.
+/// Three axes of 16 bits. One step of an axis is `unit` times ten to the power of `exponent`.
 constexpr auto three_axes(std::uint8_t first_usage, std::uint8_t unit, std::uint8_t exponent) {
   return bytes(0x65, unit, 0x55, exponent & 0x0F,                                //
                0x09, first_usage, 0x09, first_usage + 1, 0x09, first_usage + 2,  // usages
@@ -99,7 +99,7 @@ constexpr auto three_axes(std::uint8_t first_usage, std::uint8_t unit, std::uint
 
 constexpr std::uint8_t usage_x = 0x30, usage_rx = 0x33;
 constexpr std::uint8_t centimetre = 0x11, radian = 0x12;
-// The table of the reports says it in metres and radians.
+// Exponents for centimeters and radians. The protocol states the steps in meters and radians.
 constexpr std::uint8_t thousandths = 0xFD, ten_thousandths = 0xFC;
 static_assert(protocol::controller_position_step_m == 1e-5f && protocol::controller_angle_step_rad == 1e-4f);
 
@@ -107,32 +107,32 @@ constexpr auto controller_report_descriptor = join(
     bytes(0x05, 0x01,                           // usage page: generic desktop
           0x09, 0x08,                           // usage: multi-axis controller
           0xA1, 0x01,                           // application collection
-          0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F,   // logical -32767 to 32767
-          0x36, 0x01, 0x80, 0x46, 0xFF, 0x7F),  // physical as well
+          0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F,   // logical range -32767 to 32767
+          0x36, 0x01, 0x80, 0x46, 0xFF, 0x7F),  // same physical range
     three_axes(usage_x, centimetre, thousandths), three_axes(usage_rx, radian, ten_thousandths),
-    bytes(0x65, 0, 0x55, 0, 0x35, 0, 0x45, 0,  // no unit any more
+    bytes(0x65, 0, 0x55, 0, 0x35, 0, 0x45, 0,  // no unit
           0x05, 0x09, 0x19, 1, 0x29, 2,        // usage page: buttons 1 and 2
-          0x15, 0, 0x25, 1,                    // logical 0 to 1
+          0x15, 0, 0x25, 1,                    // logical range 0 to 1
           0x75, 1, 0x95, 2, input_item, data_variable_absolute, 0x95, 14, input_item, 0x03,  // constant: fills the word
           0xC0));
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------
 
-/// 2.01 tells that there is a binary object store.
+/// Version 2.01 announces a binary object store.
 constexpr std::size_t usb_version = 0x0201;
-/// Where bcdDevice stands in the device descriptor: it belongs to the firmware, not to the tables here.
+/// Position of bcdDevice in the device descriptor. device_descriptor() sets it, because it is the firmware version.
 constexpr std::size_t device_version_at = 12;
 
 constexpr auto device =
     bytes(18, type(DescriptorType::device), low(usb_version), high(usb_version), 0, 0,
-          0,  // class, subclass and protocol stand in the interfaces
+          0,  // class, subclass and protocol are in the interfaces
           packet_size_maximum, low(identity::vendor_id), high(identity::vendor_id), low(identity::product_id),
           high(identity::product_id), 0, 0, string(StringIndex::manufacturer), string(StringIndex::product),
           string(StringIndex::serial_number), 1);
 
 constexpr auto hid_with(std::size_t report_descriptor_size) {
   return bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
-               0, 1,                                      // no country; one descriptor follows
+               0, 1,                                      // no country code; one descriptor follows
                type(DescriptorType::hid_report), low(report_descriptor_size), high(report_descriptor_size));
 }
 constexpr auto hid = hid_with(report_descriptor.size());
@@ -151,7 +151,8 @@ constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::u
 constexpr std::uint8_t hid_class = 0x03, application_class = 0xFE, vendor_class = 0xFF;
 constexpr std::uint8_t firmware_update_subclass = 1, run_time_protocol = 1;
 
-/// DFU 1.1, section 4.1.3: the board leaves the bus by itself; the boot loader that then comes says how much it takes.
+/// DFU 1.1, section 4.1.3. The board detaches from the bus without a bus reset. The boot loader then reports its
+/// transfer size.
 constexpr auto firmware_update = []() {
   constexpr std::uint8_t can_download = 1, can_upload = 2, will_detach = 8;
   constexpr std::size_t detach_timeout_ms = 255, transfer_size = 2048;
@@ -174,20 +175,20 @@ constexpr auto interfaces =
 
 constexpr std::size_t configuration_size = 9 + interfaces.size();
 constexpr std::uint8_t self_powered = 0xC0;
-constexpr std::uint8_t bus_current_2mA = 0;  ///< the board has a supply of its own, which feeds its logic too
+constexpr std::uint8_t bus_current_2mA = 0;  ///< none, because the board has a separate supply, also for its logic
 
 constexpr auto configuration =
     join(bytes(9, type(DescriptorType::configuration), low(configuration_size), high(configuration_size),
                identity::interface_count, configuration_value, 0, self_powered, bus_current_2mA),
          interfaces);
 
-// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the interfaces that are not HID ----------
+// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the interfaces other than HID -------------
 
 constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
 
 constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
 
-/// The property under which programs find an interface; each interface needs a GUID of its own.
+/// Property by which programs find an interface. Each interface needs a different GUID.
 template <std::size_t size>
 constexpr auto interface_guid(const char (&guid)[size]) {
   constexpr std::size_t value_size = 2 * (size - 1 + 2);
@@ -219,10 +220,11 @@ constexpr auto microsoft_set = []() {
 
 // ---- Binary object store (USB 2.0 ECN "Link Power Management", USB 3.2 section 9.6.2) ------------------
 
-/// A device of version 2.01 has to have it. No attribute is set: there is no link power management.
+/// Mandatory for a device of version 2.01. No attribute is set, because the device does not support link power
+/// management.
 constexpr auto usb_2_0_extension = bytes(7, type(DescriptorType::device_capability), 2, 0, 0, 0, 0);
 
-/// Platform capability with the identifier that Microsoft gave to its OS 2.0 descriptors.
+/// Platform capability with the UUID of the Microsoft OS 2.0 descriptors.
 constexpr auto microsoft_capability = []() {
   constexpr std::uint8_t capability_size = 28, platform = 5;
   return join(bytes(capability_size, type(DescriptorType::device_capability), platform, 0),

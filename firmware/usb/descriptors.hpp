@@ -1,4 +1,4 @@
-// What the device says about itself: USB 2.0 section 9.6, HID 1.11 section 6.2, Microsoft OS 2.0 descriptors.
+// Descriptors of the device: USB 2.0 section 9.6, HID 1.11 section 6.2, Microsoft OS 2.0 descriptors.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ enum class DescriptorType : std::uint8_t {
   binary_object_store = 15,
   device_capability = 16,
   hid = 0x21,
-  firmware_update = 0x21,  ///< of an interface of the other class
+  firmware_update = 0x21,  ///< same value as `hid`, but used by the firmware update class
   hid_report = 0x22,
 };
 
@@ -33,18 +33,18 @@ enum class StringIndex : std::uint8_t {
 
 inline constexpr std::uint8_t configuration_value = 1;
 
-/// bRequest with which Windows asks for the Microsoft OS 2.0 descriptor set; ours to choose.
+/// bRequest of Windows' request for the Microsoft OS 2.0 descriptor set. The device may choose the value.
 inline constexpr std::uint8_t microsoft_request = 0x20;
 /// wIndex of that request.
 inline constexpr std::uint16_t microsoft_descriptor_index = 7;
 
-/// Made in `buffer`. bcdDevice is the firmware's version, 1.2.3 as 0x0123 (numbers above 9 as 9): a host that keeps
-/// what it has learnt of a device keeps it for that version.
+/// Writes the descriptor to `buffer`. bcdDevice is the firmware version, for example 0x0123 for 1.2.3. A minor or patch
+/// number above 9 becomes 9. Hosts cache the properties of a device per bcdDevice.
 std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
                                              const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();
 std::span<const std::byte> binary_object_store();
-/// Empty for an interface that is no HID.
+/// Empty for an interface that is not HID.
 std::span<const std::byte> hid_descriptor(std::uint8_t interface_number);
 std::span<const std::byte> hid_report_descriptor(std::uint8_t interface_number);
 std::span<const std::byte> microsoft_descriptor_set();

@@ -12,26 +12,25 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// More than the bus can bring in 50 us, so that nothing is left behind, yet a bound.
+/// More events than the bus can produce in 50 us, so that no event is delayed, but bounded.
 constexpr int events_per_poll = 8;
 
-constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // places in endpoints_
+constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // indices in endpoints_
 
-/// To take a report back from its endpoint and to load a newer one. Were there a control interrupt in it, or the next
-/// start of frame, the host might ask while there is neither.
+/// Time to cancel a report on its endpoint and to load a newer report. This time must not contain a control interrupt
+/// or a start of frame. Otherwise the host might poll while no report is loaded.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// For the main loop, which also fills the scope's FIFO, to come to a pose whose control interrupt is over, and to load
-/// it. The lead of a pose before the start of frame is a period, the longest interrupt and this: the one after it would
-/// begin a period later and come too late.
+/// Time in which the main loop, which also fills the scope FIFO, finds a new pose and loads it. The lead before the
+/// start of frame is one period, the longest interrupt and this time. A pose of the next period would be too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// A spare one goes out so much before the lead, and that of the lead replaces it: should the main loop be held up just
-/// then, the host still finds a pose. What holds it up longest is a set of all parameters, for 0.3 ms with the control
-/// interrupts.
+/// Additional lead of the spare pose, which the final pose replaces. If the main loop is delayed at that moment, the
+/// host still reads a pose. The longest delay is a transaction of all parameters: 0.3 ms including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
-/// A host that left so many reports in a row did not listen, so it lost none: 0.1 s.
+/// Number of consecutive unread reports (0.1 s) after which the host counts as not polling. Its unread reports then do
+/// not count as dropped.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
 
 constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
@@ -106,7 +105,7 @@ void Device::handle(const Event& event) {
 void Device::bus_reset() {
   for (Endpoint& endpoint : endpoints_) endpoint.busy = endpoint.halted = false;
   scope_frame_open_ = scope_wants_end_ = false;
-  configuration_ = 0;  // before host_gone(): no endpoint but 0 takes anything any more
+  configuration_ = 0;  // before host_gone(), because only endpoint 0 is open
   idle_rates_ = {};
   detach_asked_ = detach_was_refused_ = false;
   link_.update_asked.store(false);
@@ -181,7 +180,7 @@ void Device::restart(Endpoint& endpoint) {
   if (&endpoint == &endpoints_[hid_out]) {
     if (!held_command_) port_.receive(endpoint.address);
   } else if (&endpoint == &endpoints_[scope_in]) {
-    scope_frame_open_ = scope_wants_end_ = false;  // the frame starts again from its first byte
+    scope_frame_open_ = scope_wants_end_ = false;  // the frame restarts from its first byte
   } else if (was_busy) {
     if (&endpoint == &endpoints_[hid_in])
       send(endpoint, pose_);
@@ -190,8 +189,8 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may ask right after each start of frame. So the report is made ready once in a frame, near its end, from the
-// first control period of which it is sure that a newer one would come too late; and, for fear of that, a spare before.
+// The host may poll directly after each start of frame. The pose is therefore loaded once per bus frame, near its end:
+// the first pose whose successor would be too late. A spare pose is loaded earlier, in case the main loop is delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
@@ -227,7 +226,7 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// Every millisecond anew from the one before the host's turn on, so it is as fresh as the pose.
+// From the bus frame before the next poll on, the report is replaced in every bus frame. It is then as new as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;
@@ -309,12 +308,12 @@ bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
     link_.request_results.note_dropped(*command, protocol::RequestResult::not_the_driver);
     return true;
   }
-  // While a program drives, its sign of life alone keeps the force on.
+  // While there is a driver, only the driver's sign of life keeps the force on.
   if (command->command == protocol::Command::heartbeat && !note_heard(command->claim)) return true;
   if (!link_.commands.has_room()) return false;
-  // Selected before the command is queued, so that its acknowledgement never comes too early.
+  // The selection must precede the queued command, so that the acknowledgment is not early.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
-  // Likewise, so that who has the acknowledgement finds the command counted.
+  // The request must precede the queued command, so that the command is counted before its acknowledgment.
   if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
     link_.stored.ask(command->command, may_store());
   const bool was_pushed = link_.commands.push(*command);

@@ -43,7 +43,7 @@ Answer Device::request(const SetupPacket& setup) {
 Answer Device::standard_request(const SetupPacket& setup) {
   const auto recipient = static_cast<Recipient>(setup.request_type & 0x1Fu);
   const bool to_host = setup.device_to_host();
-  // Requests whose direction or wLength contradicts them are refused in one place.
+  // Refuses requests with a wrong direction or wLength.
   const auto is = [&](Request request, bool direction_to_host) {
     return setup.request == request && to_host == direction_to_host && (direction_to_host || setup.length == 0);
   };
@@ -67,7 +67,7 @@ Answer Device::standard_request(const SetupPacket& setup) {
       setup.value == 0) {
     if (is(get_interface_request, true)) return send_byte(0);
     if (is(set_interface_request, false)) {
-      // The one setting there is: its endpoints start again (USB 2.0, section 9.1.1.5).
+      // The interface has only one setting. Its endpoints restart (USB 2.0, section 9.1.1.5).
       for (Endpoint& endpoint : endpoints_)
         if (endpoint.interface_number == setup.index) restart(endpoint);
       return Answer::done();
@@ -103,7 +103,7 @@ Answer Device::get_status(const SetupPacket& setup) {
 }
 
 Answer Device::change_halt(const SetupPacket& setup, bool halted) {
-  if ((setup.index & 0xFF7Fu) == 0) return Answer::done();  // endpoint 0 never stays halted
+  if ((setup.index & 0xFF7Fu) == 0) return Answer::done();  // endpoint 0 has no persistent halt
   Endpoint* endpoint = find_endpoint(setup.index);
   if (endpoint == nullptr) return Answer::stall();
   if (halted) {
@@ -148,7 +148,7 @@ Answer Device::get_descriptor(const SetupPacket& setup) {
     case DescriptorType::device: return Answer::send(device_descriptor(control_.buffer(), identity_.firmware_version));
     case DescriptorType::configuration: return Answer::send(configuration_descriptor());
     case DescriptorType::binary_object_store: return Answer::send(binary_object_store());
-    default: return Answer::stall();  // a device qualifier too: there is no high speed
+    default: return Answer::stall();  // including a device qualifier, because the device has no high speed
   }
 }
 

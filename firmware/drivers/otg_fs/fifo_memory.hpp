@@ -1,5 +1,4 @@
-// How the 320 words of FIFO memory are divided, and how FIFOs are flushed (RM0090, "Peripheral FIFO
-// architecture").
+// Layout of the 320 words of FIFO memory, and flushing of FIFOs (RM0090, "Peripheral FIFO architecture").
 //
 //   word   0 +----------------------------------+
 //            | receive             56           |  SETUP packets 13 (4 each for three, 1 for control), global
@@ -11,7 +10,7 @@
 //            | endpoint 1 IN, HID  16           |  one report
 //         88 +----------------------------------+
 //            | endpoint 2 IN, scope 128         |  8 packets, 0.4 ms of the bus: the core counts the packets in a
-//            |                                  |  FIFO with three bits, and a ninth would be lost to the count
+//            |                                  |  FIFO with three bits, so it would not count a ninth packet
 //        216 +----------------------------------+
 //            | endpoint 3 IN       16           |  controller: one report
 //        232 +----------------------------------+
@@ -32,18 +31,18 @@ inline constexpr std::uint32_t hid_words = 16;
 inline constexpr std::uint32_t control_start = receive_words;
 inline constexpr std::uint32_t hid_start = control_start + control_words;
 inline constexpr std::uint32_t scope_start = hid_start + hid_words;
-/// RM0090, section 34.17.6. Within a transfer only the last packet is shorter than the others, and a transfer begins
-/// when the one before has left the FIFO: so what bounds the words bounds the packets.
+/// RM0090, section 34.17.6. Only the last packet of a transfer is shorter than the others, and a transfer begins when
+/// the previous one has left the FIFO. The bound on words is therefore also a bound on packets.
 inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
 inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;
 inline constexpr std::uint32_t scope_words = packets_in_fifo_maximum * packet_words;
 inline constexpr std::uint32_t controller_start = scope_start + scope_words;
-inline constexpr std::uint32_t controller_words = 16;  ///< the least there may be
+inline constexpr std::uint32_t controller_words = 16;  ///< smallest allowed size
 static_assert(control_words == packet_words && hid_words == packet_words);
 static_assert(scope_words / packet_words <= packets_in_fifo_maximum, "the core's count of packets would wrap");
 static_assert(controller_start + controller_words <= memory_words);
 
-/// TXFNUM that means every transmit FIFO.
+/// TXFNUM value for all transmit FIFOs.
 inline constexpr std::uint32_t all_transmit_fifos = 0x10;
 
 void lay_out();

@@ -16,9 +16,9 @@ constexpr std::uint32_t cycles_per_count = board::processor_Hz / board::timer_ap
 static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
 
 constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
-/// Ten times what host and board may be apart (USB 2.0, section 7.1.11; the crystal is better still).
+/// Ten times the allowed difference between host and board (USB 2.0, section 7.1.11; the crystal is more accurate).
 constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
-/// A bus without a start of frame for so long is about to be suspended, at 3 ms.
+/// Time without a start of frame after which the bus counts as silent: 3 ms, when a suspend begins.
 constexpr std::uint32_t silence = 3 * nominal_length;
 
 }  // namespace
@@ -34,9 +34,9 @@ void FrameClock::start() {
 }
 
 void FrameClock::note_capture() {
-  const std::uint32_t captured = TIM2::CCR1::read();  // which clears the flag
+  const std::uint32_t captured = TIM2::CCR1::read();  // this read clears the flag
   const std::uint32_t passed = captured - captured_;
-  // A start of frame that was damaged, or that this came too late for, leaves a gap of some lengths.
+  // A damaged or missed start of frame results in a gap of several frame lengths.
   count_ += is_known_ ? (passed + nominal_length / 2) / nominal_length : 1;
   if (is_known_ && passed - (nominal_length - length_tolerance) <= 2 * length_tolerance) length_ = passed;
   captured_ = captured;
@@ -47,7 +47,8 @@ void FrameClock::note_capture() {
 std::optional<usb::BusFrame> FrameClock::newest() {
   if (TIM2::SR::CC1IF::is_set()) note_capture();
   if (!is_known_) return std::nullopt;
-  // An interrupt between the two reads would part them; the control interrupt does not come twice in a row.
+  // The two reads are repeated if an interrupt separates them. The control interrupt cannot separate the reads twice in
+  // succession.
   constexpr std::uint32_t both_reads_cycles = 60;
   constexpr int tries = 4;
   std::uint32_t cycles = 0, count = 0;

@@ -25,8 +25,8 @@ constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 /// PKTSTS of a word in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// The words of one packet follow each other with no other access to the core in between: one such access
-/// has been seen to spoil the packet and the endpoint with it. Nothing that interrupts touches the core.
+/// The words of one packet are written without other accesses to the core in between. An access in between was observed
+/// to corrupt the packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
   std::size_t left = packet.size();
@@ -42,7 +42,7 @@ void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   }
 }
 
-/// Takes a packet of `size` bytes out of the receive FIFO and keeps what fits into `target`.
+/// Reads a packet of `size` bytes from the receive FIFO and stores the part that fits into `target`.
 void read_packet(std::span<std::byte> target, std::size_t size) {
   for (std::size_t i = 0; i < size; i += 4) {
     const std::uint32_t word = Fifo::DFIFO::read(0);
@@ -51,14 +51,14 @@ void read_packet(std::span<std::byte> target, std::size_t size) {
   }
 }
 
-/// A transfer may end while its control register is changed: EPENA that was read as one and is written back would begin
-/// another one.
+/// A transfer may complete while its control register is changed. If EPENA was read as one and is written back, the
+/// write starts another transfer.
 template <class Control, class... Fields>
 void change(unsigned endpoint, Fields... fields) {
   Control::modify(endpoint, typename Control::EPENA(0), fields...);
 }
 
-/// Makes endpoint 0 ready for three SETUP packets in a row and one OUT packet.
+/// Prepares endpoint 0 for three consecutive SETUP packets and one OUT packet.
 void write_control_out_size() {
   using Size = Device::DOEPTSIZ;
   Size::write(0, Size::STUPCNT(3), Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
@@ -76,15 +76,15 @@ bool OtgFs::next_event(Event& event) {
     event.length = 0;
     return true;
   }
-  // At the end of a reset (ENUMDNE) nothing is left to do: there is one speed, and a core that was reset takes packets
-  // of 64 bytes on endpoint 0. What was sent comes before what was received: the host goes on only after it has the
-  // packet.
+  // The end of a reset (ENUMDNE) needs no action. There is one speed, and after a reset the core accepts packets of 64
+  // bytes on endpoint 0. Sent packets are reported before received ones, because the host continues only after it has
+  // the packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event)) return true;
   answer_control();
   return false;
 }
 
-// A device that lives from its own supply pulls D+ up only while VBUS is there (USB 2.0, section 7.1.5).
+// A self-powered device pulls D+ up only while VBUS is present (USB 2.0, section 7.1.5).
 void OtgFs::follow_cable() {
   const bool plugged = UsbSupply::is_high();
   if (plugged == pulled_up_) return;
@@ -92,8 +92,8 @@ void OtgFs::follow_cable() {
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
 }
 
-// The core itself only deactivates the endpoints: what was enabled still is, and packets of before may stand in the
-// receive FIFO. An OUT endpoint may stay enabled, behind its NAK: begin_receive() goes on with it.
+// The core itself only deactivates the endpoints. The endpoints stay enabled, and old packets may be in the receive
+// FIFO. An OUT endpoint may stay enabled with NAK set; begin_receive() continues with it.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
@@ -126,7 +126,7 @@ bool OtgFs::next_sent(Event& event) {
 }
 
 bool OtgFs::next_received(Event& event) {
-  // Three SETUP packets, their end, and an OUT packet with its end are what can wait here.
+  // At most three SETUP packets, their end, and an OUT packet with its end can be in the FIFO.
   constexpr int words_at_once = 8;
   for (int i = 0; i < words_at_once && Core::GINTSTS::RXFLVL::is_set(); ++i)
     if (take_received_word(event)) return true;
@@ -146,12 +146,12 @@ bool OtgFs::take_received_word(Event& event) {
       pass_on_setup(event);
       return true;
     case setup_done:
-      // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
+      // Only now it is certain that no other SETUP packet follows, and only now NAK may be cleared again.
       if (!setup_waits_) return false;
       pass_on_setup(event);
       return true;
     case out_data:
-      if (endpoint >= out_endpoints) {  // the core has been seen to name endpoints that it does not have
+      if (endpoint >= out_endpoints) {  // the core was observed to report endpoints that it does not have
         read_packet({}, size);
         return false;
       }
@@ -178,7 +178,7 @@ void OtgFs::pass_on_setup(Event& event) {
   std::copy(setup_.begin(), setup_.end(), event.data.begin());
 }
 
-// A cable that is pulled is a bus that has fallen silent.
+// An unplugged cable is handled as a silent bus.
 bool OtgFs::next_suspend_or_resume(Event& event) {
   const bool silent = !pulled_up_ || Device::DSTS::SUSPSTS::is_set();
   if (silent == suspended_) return false;
@@ -191,7 +191,7 @@ bool OtgFs::next_suspend_or_resume(Event& event) {
 
 // ---- transfers ---------------------------------------------------------------------------------------
 
-// DAD has been seen to read back wrong, so the whole register is written.
+// DAD was observed to read back wrong, so the whole register is written.
 void OtgFs::set_address(std::uint8_t address) {
   constexpr std::uint32_t full_speed_internal_phy = 3;
   Device::DCFG::write(Device::DCFG::DSPD(full_speed_internal_phy), Device::DCFG::DAD(address));
@@ -219,19 +219,21 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   }
 }
 
-// Endpoint 0 is not touched between a SETUP packet, which makes this answer stale, and the end of its stage: clearing
-// NAK before the setup-done word is popped loses that word. What waits in the receive FIFO may be one.
+// A SETUP packet makes this answer stale. Endpoint 0 is not changed until the end of its stage. If NAK is cleared
+// before the setup-done word is read, this word is lost. Any word in the receive FIFO may belong to a SETUP packet.
 void OtgFs::answer_control() {
   const bool sends = control_send_waits_;
   if ((sends || control_receive_waits_ || control_stall_waits_) && arm_control() && sends) fill(0);
 }
 
-// A SETUP may come between the look at the receive FIFO and the write that clears NAK, which then opens the endpoint
-// for the data stage of a request that this does not answer. No interrupt makes that gap longer, and a second look
-// finds what came in it. The host's next token ends 4 us after the SETUP at the earliest: NAK stands again before.
+// A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. The write then opens
+// the endpoint for the data stage of a request to which this answer does not belong. Interrupts are disabled to keep
+// this gap short, and a second check detects a packet that arrived in it. NAK is set again before the host's next token
+// ends, which is at least 4 us after the SETUP packet.
 //
-// Each SETUP sets NAK. So NAK tells whether it came before the write, which then took its setup-done word away, or
-// behind it: then its word comes as ever.
+// Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before the write or after it. If the
+// packet arrived before the write, the write has removed its setup-done word. If the packet arrived after the write,
+// its setup-done word follows as usual.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;
@@ -279,15 +281,15 @@ void OtgFs::begin_receive(unsigned endpoint) {
   } else if (!Control::EPENA::from(Control::read(endpoint))) {
     Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
-    return;  // its packet waits in the receive FIFO, and who takes it receives again
+    return;  // the packet is in the receive FIFO, and its reader calls receive() again
   }
-  // Otherwise it was stalled or reopened, and its size stands.
+  // Otherwise the endpoint was stalled or reopened, and its size is still set.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// NAK stands on every OUT endpoint. The words end transfers, and their packets are lost with them.
+// NAK is set on every OUT endpoint. Removing the words ends the transfers, and their packets are lost.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());
@@ -306,7 +308,7 @@ bool OtgFs::stop_in(unsigned endpoint) {
   if (Control::EPENA::from(Control::read(endpoint))) {
     change<Control>(endpoint, Control::SNAK(1));
     static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
-    // A packet that was on its way may have ended the transfer meanwhile: what is off already never says that it is.
+    // A packet in progress may have completed the transfer. An endpoint that is already disabled does not set EPDISD.
     was_left = Control::EPENA::from(Control::read(endpoint)) != 0;
     if (was_left) {
       Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
@@ -314,7 +316,7 @@ bool OtgFs::stop_in(unsigned endpoint) {
     }
   }
   fifo_memory::flush_transmit(endpoint);
-  // INEPNE goes when NAK is cleared again.
+  // INEPNE is cleared when NAK is cleared again.
   Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1));
   return was_left;
 }

@@ -1,4 +1,4 @@
-// Start of the core and the FIFO memory (RM0090, "OTG_FS programming model": core and device initialization).
+// Start-up of the core and the FIFO memory (RM0090, "OTG_FS programming model": core and device initialization).
 #include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/otg_fs.hpp>
@@ -17,14 +17,14 @@ namespace {
 constexpr std::uint32_t turnaround_clocks = 6;
 static_assert(board::processor_Hz >= 32'000'000);
 
-/// 25 ms (RM0090, GUSBCFG: FDMOD), and one more for a crystal that is fast.
+/// 25 ms (RM0090, GUSBCFG: FDMOD), plus 1 ms for a fast crystal.
 constexpr std::uint32_t mode_change_cycles = board::processor_Hz / 1000 * 26;
 
 bool reset_core() {
   if (!wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;
   Core::GRSTCTL::modify(Core::GRSTCTL::CSRST(1));
   if (!wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::CSRST::is_set(); })) return false;
-  // The PHY's clock domain needs three of its clocks, 11 processor cycles, before the next access.
+  // The clock domain of the PHY needs three of its clocks, 11 processor cycles, before the next access.
   wait(32);
   return wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); });
 }
@@ -44,11 +44,11 @@ bool OtgFs::start() {
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
   wait(mode_change_cycles);
 
-  // PA9 drives a bridge, so the core may not sense VBUS there and takes it to be present. D+ would rise, so the soft
-  // disconnection comes first, and follow_cable() ends it.
+  // PA9 drives a bridge, so the core cannot sense VBUS there and assumes that it is present. D+ would rise, so the soft
+  // disconnect comes first. The function follow_cable() ends the soft disconnect.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
-  // A core reset leaves the PHY's clock stopped if a boot loader's suspend has (RM0090, GRSTCTL: CSRST).
+  // A core reset does not restart the PHY clock after a suspend in the boot loader (RM0090, GRSTCTL: CSRST).
   Power::PCGCCTL::write(0);
   set_address(0);
   fifo_memory::lay_out();

@@ -1,4 +1,4 @@
-/* A mass on a spring and a damper, carried by the probe. */
+/* A mass that the probe carries on a spring and a damper. */
 #include "virtual_mass.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* A step function in C as MATLAB Coder, Simulink or Octave users write it: inputs, parameters, state and outputs are
- * structs, and nothing is allocated. */
+/* A step function in C, in the form that MATLAB Coder, Simulink and Octave users write: inputs, parameters, state and
+ * outputs are structs, and no memory is allocated. */
 #ifndef VIRTUAL_MASS_H
 #define VIRTUAL_MASS_H
 

@@ -1,4 +1,4 @@
-// Making raw samples trustworthy: offsets of the current sensors, supply filter, switches, inkwell reference.
+// Conditioning of raw samples: current sensor offsets, supply filter, switches, inkwell reference.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ constexpr std::uint32_t periods_in(float time_s) {
 /// Mean reading of the current sensors while the bridges are off.
 struct CurrentOffsets {
   static constexpr std::uint32_t duration_periods = periods_in(0.1f);
-  /// An amplifier with a reference of 1 % and its own offset stays within 0.1 A; more is a broken sensor.
+  /// An amplifier with a 1 % reference and its offset stays within 0.1 A. A larger offset means a broken sensor.
   static constexpr float plausible_A = 0.25f;
-  /// Longer than a current lasts in a winding whose bridge was switched off.
+  /// Longer than the current decay in a winding after its bridge was switched off.
   static constexpr std::uint32_t patience_periods = periods_in(0.01f);
 
   Triple sum_A{};
@@ -32,15 +32,16 @@ struct CurrentOffsets {
   bool measured() const { return periods >= duration_periods; }
 };
 
-/// Adds one reading; the offsets, and whether they are plausible, are valid once measured() is true.
+/// Adds one reading. The offsets and their plausibility are valid once measured() is true.
 [[gnu::cold]] void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
 
 // ---- supply --------------------------------------------------------------------------------------------
 
-/// First-order low-pass of 1.6 ms, and the reciprocal that turns volts into duty.
+/// First-order low-pass of 1.6 ms, and the reciprocal that converts volts to duty cycles.
 struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
-  /// Keeps the reciprocal finite when the supply is absent; far below any supply that is allowed to drive.
+  /// Lower bound of the voltage, so that the reciprocal is finite without a supply. The bound is far below any voltage
+  /// at which the bridges may be on.
   static constexpr float floor_V = 1.0f;
   static constexpr std::uint32_t stale_periods = periods_in(protocol::samples_stale_s);
 
@@ -53,44 +54,44 @@ void filter_supply(SupplyFilter& filter, float sample_V);
 
 // ---- switches ------------------------------------------------------------------------------------------
 
-/// Takes over what a switch has shown without change for 5 ms, whatever the others do. They take turns.
+/// Accepts a switch level that has not changed for 5 ms. The switches are filtered separately and take turns.
 struct SwitchFilter {
   static constexpr std::uint32_t settle_periods = periods_in(0.005f);
   static constexpr std::size_t count = protocol::switch_count;
 
   std::uint8_t closed = 0;
-  std::array<std::uint8_t, count> looks{};  ///< in a row in which a switch showed something else
+  std::array<std::uint8_t, count> looks{};  ///< consecutive readings that differ from `closed`
 };
 
-/// `turn`: whose turn it is, 0..SwitchFilter::count - 1.
+/// `turn` is the switch of this period, 0..SwitchFilter::count - 1.
 void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
 
 // ---- inkwell -------------------------------------------------------------------------------------------
 
-/// Counts of the encoders in the inkwell: what joint angles are measured from.
+/// Encoder counts in the inkwell, from which joint angles are measured.
 struct InkwellReference {
   static constexpr std::uint32_t still_periods = periods_in(0.1f);
-  /// An encoder may dither by this while the arm counts as still.
+  /// Largest encoder dither of a stationary arm.
   static constexpr std::int32_t still_counts = 1;
-  /// Farther from the inkwell, at the stylus, its switch is not closed by the stylus: it closes a little before the
-  /// stylus rests, and is believed 5 ms late when a hand pulls it out.
+  /// Beyond this distance from the inkwell, the stylus cannot close the inkwell switch. The switch closes shortly
+  /// before the stylus rests. The debouncing accepts an opened switch 5 ms late when a hand pulls the stylus out.
   static constexpr float play_m = 0.02f;
 
-  std::array<std::int32_t, 3> counts{};       ///< in the inkwell, since power-up
-  std::array<std::int32_t, 3> rest_counts{};  ///< where the arm has been still
+  std::array<std::int32_t, 3> counts{};       ///< encoder counts in the inkwell, since power-on
+  std::array<std::int32_t, 3> rest_counts{};  ///< encoder counts at the last rest position of the arm
   std::uint32_t rested_periods = 0;
   bool valid = false;
 };
 
-/// The stylus has to be put in once more; `switch_in_doubt`: the switch has to be seen open before that.
+/// Requires the stylus to be inserted again. With `switch_in_doubt` the switch must first be read as open.
 constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
   reference.counts = {};
   reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;
   reference.valid = false;
 }
 
-/// Takes the present counts as those of the inkwell once the switch has been closed and the arm still for
-/// 0.1 s; once for each time that the stylus is put in. Returns true in the period in which that happens.
+/// Stores the present counts as the inkwell reference after the switch has been closed and the arm stationary for 0.1
+/// s. Each insertion of the stylus stores one reference. Returns true in the period in which the reference is stored.
 bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
                       bool inkwell_closed);
 

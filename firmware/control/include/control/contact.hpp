@@ -1,11 +1,11 @@
-// Contact of a sphere with the inside of a box, and the walls' force (paper, sections 3.2 and 3.3).
+// Contact of a sphere with the inside of a box, and the wall force (paper, sections 3.2 and 3.3).
 #pragma once
 
 #include <control/vector.hpp>
 
 namespace inkwell::control {
 
-/// Where the sphere's centre moves freely: the box, smaller by the sphere's radius on every side.
+/// Free space of the sphere center: the box reduced by the sphere radius on every side.
 struct Box {
   Vector3 minimum_m;
   Vector3 maximum_m;
@@ -18,7 +18,7 @@ struct Wall {
 
 struct Contact {
   Vector3 proxy_m;        ///< nearest point of the free space; on the wall while in contact
-  Vector3 penetration_m;  ///< proxy minus probe: points out of the wall, zero in free space
+  Vector3 penetration_m;  ///< proxy minus probe; points out of the wall, zero in free space
 };
 
 struct Force {
@@ -26,10 +26,10 @@ struct Force {
   float magnitude_N;
 };
 
-/// Clamps the probe to the free space, axis by axis: an edge or a corner is contact on two or three axes.
+/// Clamps the probe to the free space on each axis: an edge or a corner is contact on two or three axes.
 Contact find_contact(const Vector3& probe_m, const Box& box);
 
-/// k d + c d' along one axis, signed; `penetration_m` points out of the wall.
+/// k d + c d' along one axis, signed. `penetration_m` points out of the wall.
 constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall wall) {
   if (penetration_m == 0.0f) return 0.0f;
   const float force_N = wall.stiffness_N_per_m * penetration_m - wall.damping_Ns_per_m * velocity_m_per_s;
@@ -37,18 +37,18 @@ constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall w
   return pulls ? 0.0f : force_N;
 }
 
-/// F = k d e + c d' e on each axis in contact, d' the rate of the penetration. A wall never pulls: where
-/// the damper would outweigh the spring on leaving, that axis gives nothing.
+/// F = k d e + c d' e on each axis in contact, where d' is the rate of the penetration. A wall never pulls: while the
+/// probe leaves, the force of an axis is zero if the damper force exceeds the spring force.
 constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, Wall wall) {
   const Vector3& out_m = contact.penetration_m;
   return {axis_force_N(out_m.x, velocity_m_per_s.x, wall), axis_force_N(out_m.y, velocity_m_per_s.y, wall),
           axis_force_N(out_m.z, velocity_m_per_s.z, wall)};
 }
 
-/// A force of at most `limit_N`, in its direction. By value, so that it comes in registers.
+/// Limits a force to `limit_N` and keeps its direction. The force is passed by value to stay in registers.
 Force bounded(Vector3 force_N, float limit_N);
 
-/// The force times a gain of 0..1, for ramping in.
+/// Force times a gain of 0..1, for the force ramp.
 constexpr Force scaled(const Force& force, float gain) { return {gain * force.force_N, gain * force.magnitude_N}; }
 
 }  // namespace inkwell::control

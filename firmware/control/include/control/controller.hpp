@@ -1,4 +1,4 @@
-// The signal path of the control interrupt, and what it remembers from one period to the next.
+// Signal path of the control interrupt and its state between periods.
 #pragma once
 
 #include <array>
@@ -24,24 +24,24 @@
 
 namespace inkwell::control {
 
-/// Everything between the samples and the duties. Single-threaded: all that changes it is called in the control
-/// interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes / leave_for_update /
-/// raise, self-test, step, finish; before that interrupt runs, the constructor, raise and start_warm.
+/// All functions that change the state run in the control interrupt. The order of the functions is settings_changed /
+/// carry_out / host_alive / drive / replace_shapes / leave_for_update / raise, self-test, step, finish. Only the
+/// constructor, raise and start_warm are called before that interrupt is enabled.
 class Controller {
  public:
-  /// `first_period` is the number of the first control period.
   explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
       : board_(board), periods_(first_period) {}
 
-  /// Before the control interrupt runs: the motors are as warm as that. Without it they are cold.
+  /// Sets the heat of the motors. Call this function before the control interrupt is enabled; otherwise the motors
+  /// count as cold.
   void start_warm(const Warmth& warmth) {
     heat_.heat = warmth.heat;
     heat_.housing = warmth.housing;
     heat_.too_hot = warmth.too_hot != 0;
   }
 
-  /// One control period. `clock.lap()` returns the processor cycles since the lap before as std::uint32_t;
-  /// its first lap in a period counts from the interrupt's entry.
+  /// Runs one control period. `clock.lap()` returns the processor cycles since the previous lap as std::uint32_t. The
+  /// first lap of a period counts from the interrupt entry.
   template <class StageClock>
   Drive step(const Samples& samples, const Settings& settings, StageClock& clock) {
     condition_samples(samples, settings);
@@ -59,7 +59,7 @@ class Controller {
     return drive_;
   }
 
-  /// Ends the period's measure of time: call it last, when the bridges are written and the records are made.
+  /// Completes the cycle measurement. Call this function last, after the bridges are written and the records are made.
   template <class StageClock>
   void finish(StageClock& clock) {
     cycles_[report] = clock.lap();
@@ -67,36 +67,37 @@ class Controller {
     for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
   }
 
-  /// The next step's settings are others than the last one's. What they do to walls, force law, shapes and force limit
-  /// is got over without a kick; a motor's own current limit holds at once.
+  /// Call this function when the settings have changed. Walls, force law, shapes and force limit blend over to the new
+  /// settings; motor current limits apply immediately.
   void settings_changed() { world_changed_ = true; }
-  /// Carries out a command that the link has validated, in the next step. Counts as a sign of life.
+  /// Executes a command in the next step. The link has validated the command. A command counts as a sign of life of the
+  /// host.
   [[gnu::cold]] void carry_out(const protocol::CommandReport& command);
-  /// The host was heard: any output report came in.
+  /// Resets the host timeout. Call this function for every output report.
   void host_alive() { host_silence_periods_ = 0; }
-  /// A program on the PC asks for a force.
+  /// Sets the force of a program on the PC.
   [[gnu::cold]] void drive(const ForceTarget& target, const Settings& settings);
-  /// A program on the PC has placed other shapes; they must stay as they are until the next call.
+  /// Sets the shapes of a program on the PC. `shapes` must not change until the next call.
   void replace_shapes(const Shapes& shapes);
-  /// The board is about to start its boot loader; called in each period in which it is.
+  /// Requests the state `update`. Call this function in each period until the boot loader starts.
   void leave_for_update() { asked_.events |= protocol::events(protocol::Event::update); }
-  /// Reports faults found outside the signal path; they switch the bridges off in the next step.
+  /// Reports faults found outside the signal path. The faults switch the bridges off in the next step.
   void raise(protocol::Watches found) { asked_.found |= found; }
   void raise(protocol::Fault fault) { raise(protocol::watch(fault)); }
 
-  // ---- while the state is `testing`, likewise before step ----
-  /// Sends a round of pulses to the motors.
+  // ---- while the state is `testing`, also before step ----
+  /// Starts a round of test pulses.
   void start_pulses() { pulses_.start(); }
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }
-  /// The self-test is over, and nothing has failed that takes the force away.
+  /// Call this function after a self-test without a fault that prevents the force.
   [[gnu::cold]] void pass_self_test(const MeasuredMotors& measured);
-  /// It has begun so many times since the start.
+  /// Number of self-tests since boot.
   std::uint32_t self_tests() const { return self_tests_; }
 
-  /// The signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of the
-  /// period before.
+  /// Writes the signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of
+  /// the previous period.
   void write_signals(protocol::SignalValues& signals) const;
   protocol::SignalValues signals() const {
     protocol::SignalValues signals;
@@ -108,14 +109,14 @@ class Controller {
   std::uint8_t switches() const { return switches_.closed; }                ///< bits of protocol::Switch, debounced
   std::uint8_t force_sources() const { return force_sources_; }             ///< bits of protocol::ForceSource
   std::uint8_t limits() const { return limits_; }                           ///< bits of protocol::Limit
-  bool is_referenced() const { return reference_.valid; }                   ///< it is known where the arm is
-  std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since the start
-  std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start; wraps
-  std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
-  const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
-  /// What start_warm() of the next run is to get.
+  bool is_referenced() const { return reference_.valid; }                   ///< whether the arm position is known
+  std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since boot
+  std::uint32_t periods() const { return periods_; }            ///< control periods completed since boot; wraps
+  std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< cycles of the last finished control interrupt
+  const Triple& motor_heat() const { return heat_.heat; }  ///< 1 is the steady-state heat at the continuous current
+  /// Value for start_warm() of the next run.
   Warmth warmth() const { return {heat_.heat, heat_.housing, heat_.too_hot ? 1u : 0u}; }
-  bool force_is_on() const { return force_is_on_; }  ///< whether the state says so
+  bool force_is_on() const { return force_is_on_; }  ///< according to the state
 
  private:
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };
@@ -125,7 +126,7 @@ class Controller {
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
   void give(Force asked, const Settings& settings);
-  // What is rare is compiled to be short: the interrupts' memory is small.
+  // Rare code is compiled for size, because the interrupt memory is small.
   [[gnu::cold]] Force less_driving(const Force& asked, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
   [[gnu::cold]] void know_resistance(const Settings& settings);
@@ -134,7 +135,7 @@ class Controller {
   void regulate_currents(const Settings& settings);
   [[gnu::cold]] void watch_idle_currents();
   [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
-  /// The largest current, of either sign, that its sensor surely shows.
+  /// Largest current magnitude that the sensor reliably measures.
   float known_A(std::size_t motor) const { return board_.current_measurable_A - std::fabs(offsets_.offset_A[motor]); }
   [[gnu::cold]] void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
@@ -145,48 +146,48 @@ class Controller {
   void change_state(const Supervisor& next);
 
   BoardLimits board_;
-  MeasuredMotors measured_;  ///< as pass_self_test() was told
+  MeasuredMotors measured_;  ///< from pass_self_test()
 
-  // Remembered from period to period.
+  // State between periods.
   std::uint32_t periods_;
   CurrentOffsets offsets_;
   SupplyFilter supply_;
   SwitchFilter switches_;
   InkwellReference reference_;
   std::array<SpeedEstimate, 3> speeds_{};
-  std::size_t turn_ = 0;  ///< of the joints, motors and gimbal angles, where one a period is enough
+  std::size_t turn_ = 0;  ///< joint, motor and gimbal angle to process in this period
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   std::array<Resistance, 3> resistances_{};
   MotorWatch motor_watch_;
-  std::array<VoltageRange, 3> voltage_ranges_{};  ///< of the loops
-  Triple over_current_A_{};                       ///< a measured current beyond it is a fault
-  Triple over_current_for_A_{};                   ///< the limits of the settings for which it is settled, else 0
-  std::uint32_t off_zero_periods_ = 0;            ///< in a row, while no bridge was on
+  std::array<VoltageRange, 3> voltage_ranges_{};
+  Triple over_current_A_{};             ///< bound of the over-current fault
+  Triple over_current_for_A_{};         ///< current limits that over_current_A_ has reached, else 0
+  std::uint32_t off_zero_periods_ = 0;  ///< consecutive periods with a current although no bridge was on
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
-  Situation asked_;                      ///< requests and faults from outside, since the period before
-  protocol::Events lasting_events_ = 0;  ///< what is asked in every period
+  Situation asked_;                      ///< external requests and faults since the previous period
+  protocol::Events lasting_events_ = 0;  ///< events requested in every period
   bool force_is_on_ = false;
   Brake brake_;
   float force_gain_ = 0.0f;
   float force_limit_N_ = 0.0f;
   ProgramForce program_;
-  bool world_changed_ = false;  ///< other shapes or settings than in the period before
-  bool law_rendered_ = true;    ///< not while a program asked for its force instead
-  Vector3 touched_N_;           ///< of law, shapes and transition, in the period before
+  bool world_changed_ = false;  ///< shapes or settings changed since the previous period
+  bool law_rendered_ = true;    ///< false while a program replaces the walls
+  Vector3 touched_N_;           ///< force of law, shapes and transition in the previous period
   Transition transition_;
   EnergyReserve reserve_;
   std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;
 
-  // Results of this period, in the order of the path.
-  std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-up
-  std::uint32_t jump_bits_ = 0;                   ///< 0 unless one of them moved by more than an arm can
+  // Results of this period, in path order.
+  std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-on
+  std::uint32_t jump_bits_ = 0;                   ///< not 0 if an encoder moved faster than an arm can
   std::array<std::int32_t, 3> counts_since_inkwell_{};
   Triple current_A_{};
-  Probe probe_;  ///< what the force law is given
+  Probe probe_;  ///< input of the force law
   Triple joint_speed_rad_per_s_{};
   Jacobian jacobian_{};
   Force force_{};
@@ -199,7 +200,7 @@ class Controller {
   std::array<std::uint32_t, stage_count> cycles_{};
   std::uint32_t servo_cycles_ = 0;
 
-  // The large ones at the end, so that an instruction reaches all that is before them.
+  // Large members come last, so that the other members are within the offset range of an instruction.
   TouchedShapes shapes_;
   FeltForceLaw law_;
   SelfTestPulses pulses_;

@@ -1,8 +1,8 @@
-// Current control of one motor: a PI controller with anti-windup (paper, section 3.5, after Eq. 15).
+// Current control of one motor: PI controller with anti-windup (paper, section 3.5, after Eq. 15).
 //
-// The controller's zero R/L cancels the motor's electrical pole when the integral gain is R times and the
-// proportional gain L times the wanted bandwidth. The integral is taken by the trapezoidal rule, because
-// at 50 us against L/R = 109 us either rectangle would put the discrete zero well beside the pole.
+// The controller zero R/L cancels the electrical pole of the motor. For this, the integral gain is R times and the
+// proportional gain L times the desired bandwidth. The integral uses the trapezoidal rule. At 50 us and L/R = 109 us,
+// either rectangular rule would move the discrete zero away from the pole.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace inkwell::control {
 
 struct CurrentLoopGains {
   float proportional_V_per_A;
-  float half_integral_V_per_A;  ///< integral gain times half a control period: the trapezoidal rule's weight
+  float half_integral_V_per_A;  ///< integral gain times half a control period: weight of the trapezoidal rule
   float voltage_limit_V;
 };
 
-/// What one loop remembers. Zero while its bridge is off.
+/// State of one loop. Zero while its bridge is off.
 struct CurrentLoop {
   float integral_V = 0.0f;
-  float error_A = 0.0f;  ///< of the period before
+  float error_A = 0.0f;  ///< of the previous period
 };
 
 struct CurrentLoopStep {
@@ -30,13 +30,13 @@ struct CurrentLoopStep {
   float voltage_V;
 };
 
-/// What a loop's voltage may be.
 struct VoltageRange {
   float least_V, most_V;
 };
 
-/// What of +-bound_V a motor needs at most for `most_A` to either side, while it turns with about `back_emf_V` and its
-/// bridge takes `bridge_V`. No voltage is always within, so that a speed that is wrong drives nothing.
+/// Voltage range, within +-bound_V, that a motor needs for currents up to +-`most_A`. `back_emf_V` is its approximate
+/// back EMF, and `bridge_V` is the voltage drop of its bridge. The range always contains 0 V, so that a wrong speed
+/// cannot drive the motor.
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =
@@ -45,8 +45,8 @@ inline VoltageRange voltage_range(float most_A, const Resistance& resistance, fl
           std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
 }
 
-/// One period: the voltage for the next period, within `range`. While the voltage is at its bound the integral does
-/// not grow further towards it.
+/// Computes the voltage for the next period, within `range`. While the voltage is at a bound, the integral does not
+/// grow further towards this bound.
 CurrentLoopStep regulate(const CurrentLoop& loop, float reference_A, float current_A, const CurrentLoopGains& gains,
                          const VoltageRange& range);
 

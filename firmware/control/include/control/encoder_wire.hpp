@@ -1,19 +1,22 @@
-// Whether an encoder has lost one of its two wires.
+// Detects the loss of one of the two wires of an encoder.
 //
-// A count needs an edge on each wire in turn. With one wire dead (broken, shorted, or a channel that stands) every edge
-// of the other one takes the count on by one and the next edge takes it back: it goes to and fro between two neighbours
-// however far the joint moves. An encoder that stands at an edge and is shaken looks the same, so what tells them apart
-// is how fast that goes.
+// Counting needs alternating edges on both wires. With one dead wire (broken, shorted or stuck), each edge of the other
+// wire changes the count by one. The next edge reverses this change. The count then alternates between two neighboring
+// values while the joint moves. A healthy encoder shows the same pattern if the arm vibrates at an edge. The rate of
+// the changes distinguishes the two cases.
 //
-// The bound is 120 changes in 0.1 s: an edge that is crossed to and fro 600 times a second. What may honestly shake the
-// arm there is slower. A program gives a force each millisecond, so it turns it round 500 times a second at most, which
-// makes 100 changes. A wall or a shape that buzzes does so at the arm's and the wall's own frequency: 3000 N/m and 45 g
-// make 41 Hz. A current loop could ring faster, but hardly moves anything: at 600 Hz the full 8 N move the probe by
-// 0.013 mm, a quarter of a count, and a hand's tremor takes the arm off an edge within 0.1 s. The inputs' filters and
-// Schmitt triggers keep an edge that stands from chattering by itself.
+// The bound is 120 changes in 0.1 s, which corresponds to a vibration of 600 Hz across an edge. Normal vibrations are
+// slower:
+// - A program sets one force per millisecond. The force of a program alternates at 500 Hz at most, which causes 100
+//   changes.
+// - A wall or a shape vibrates at the natural frequency of arm and wall: 41 Hz for 3000 N/m and 45 g.
+// - A current loop could oscillate faster, but with a small amplitude. At 600 Hz the full 8 N move the probe by
+//   0.013 mm, a quarter of a count. A hand tremor moves the arm away from an edge within 0.1 s.
 //
-// A dead wire leaves half of the edges. A joint that turns at 1 rad/s goes through some 2500 to 3000 counts a second
-// and so makes 125 to 150 changes in 0.1 s: a motion of the probe by 0.15 m/s is noticed.
+// The input filters and Schmitt triggers prevent chatter of a stationary edge.
+//
+// A dead wire leaves half of the edges. A joint at 1 rad/s passes 2500 to 3000 counts per second and causes 125 to 150
+// changes in 0.1 s. The check therefore detects a dead wire at probe speeds of 0.15 m/s or more.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +29,14 @@ struct EncoderWire {
   static constexpr std::uint32_t dead_changes = 120;
   static constexpr std::uint32_t within_periods = periods_in(0.1f);
 
-  std::uint16_t count = 0, before = 0;  ///< the timer's, and the one that it had before that
-  std::uint32_t changes = 0;            ///< between these two
+  std::uint16_t count = 0, before = 0;  ///< timer count, and the previous different count
+  std::uint32_t changes = 0;            ///< number of changes between these two counts
   std::uint32_t since_periods = 0;
 };
 
-/// One look, at `now_periods` of the control period's count, which may skip some and wraps. True when the count has
-/// changed so often between two neighbours, within that time; then it is counted anew. Edges that come closer together
-/// than the looks are seen in part, which is enough: the faster the joint turns, the more of them there are.
+/// Checks one reading at period `now_periods`. Period numbers may be skipped, and they wrap. Returns true after
+/// `dead_changes` changes between two neighboring counts within `within_periods`; counting then restarts. Some edges
+/// are missed if they are closer together than the readings. A fast joint makes enough edges for a detection.
 inline bool is_dead(EncoderWire& wire, std::uint16_t timer_count, std::uint32_t now_periods) {
   if (timer_count == wire.count) return false;
   const bool goes_back = timer_count == wire.before;

@@ -1,4 +1,4 @@
-// From timer counts to joint angles.
+// Conversion of timer counts to joint angles.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace inkwell::control {
 
-/// Goes on counting where a 16-bit or 32-bit timer wraps: the count nearest to `unwrapped` that agrees
-/// with `timer_count` in the timer's bits. Right while less than half the timer's range passes between
-/// two calls; for 16 bits in 50 us that is 100 times the fastest arm.
+/// Extends a wrapping 16-bit or 32-bit timer: returns the count nearest to `unwrapped` that agrees with `timer_count`
+/// in the timer's bits. Valid while less than half the timer range passes between two calls. For 16 bits and 50 us,
+/// this limit is 100 times the speed of the fastest arm.
 template <class TimerCount>
 constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   static_assert(std::is_unsigned_v<TimerCount> && sizeof(TimerCount) <= 4);
@@ -20,7 +20,7 @@ constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(unwrapped) + static_cast<std::uint32_t>(step));
 }
 
-/// Not 0 if one of them moved by `jump_counts` (EncoderScale) or more; backwards by one more.
+/// Not 0 if an encoder moved by `jump_counts` (EncoderScale) or more. The backward bound is one count higher.
 constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const std::array<std::int32_t, 3>& now,
                               std::uint32_t jump_counts) {
   std::uint32_t all = 0;
@@ -30,10 +30,10 @@ constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const s
 }
 
 struct EncoderScale {
-  Triple rad_per_count;  ///< negative where the encoder counts down when its joint turns forward
+  Triple rad_per_count;  ///< negative if the encoder counts down as its joint turns forward
   Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
-  /// An encoder that moves by so many in a control period did not count what its joint did: 100 rad/s at least. A power
-  /// of two, so that one look judges all three.
+  /// Smallest change per control period that a joint cannot cause: at least 100 rad/s. A power of two, so that one test
+  /// covers all three encoders.
   std::uint32_t jump_counts;
 };
 

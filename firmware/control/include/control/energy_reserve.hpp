@@ -1,10 +1,10 @@
-// What the arm may give the hand: a passivity observer on the whole device, and what gives way when it says so.
+// Passivity observer on the whole device. The observer limits the energy that the arm delivers by reducing the force.
 //
-// Walls, shapes and dampers give back less than the hand put into them, whatever they look like. A program that pushes
-// along with the motion, a law that is wrong, or a loop that rings gives more, for as long as it runs. The energy that
-// the force gave the hand is summed over the true way of the probe (Hannaford and Ryu, "Time-domain passivity control
-// of haptic interfaces", 2002); the sum is kept from growing without end on either side: a hand that pressed for long
-// gets no more back than the reserve, and a small power may be given for ever.
+// Walls, shapes and dampers return less energy than the hand puts into them. A program that pushes along the motion, a
+// wrong force law or an oscillating loop delivers more energy for as long as it runs. The observer integrates the
+// energy that the force delivers over the measured motion of the probe. The method is from Hannaford and Ryu,
+// "Time-domain passivity control of haptic interfaces", 2002. The sum is bounded on both sides. After a long press, the
+// force returns at most the reserve to the hand. A small power may be delivered continuously.
 #pragma once
 
 #include <control/vector.hpp>
@@ -12,26 +12,27 @@
 namespace inkwell::control {
 
 struct EnergyLimits {
-  float reserve_J;           ///< what may be given ahead
-  float given_J_per_period;  ///< what may be given for ever
-  float low_reserves_per_J;  ///< 1 over the energy below which the force gives way
+  float reserve_J;           ///< energy that may be delivered in advance
+  float given_J_per_period;  ///< energy that may be delivered in each period
+  float low_reserves_per_J;  ///< 1 / energy below which the force is reduced
 };
 
 struct EnergyReserve {
-  /// From this part of the reserve on, the part of the force that drives the motion gives way, all of it at none.
+  /// Below this part of the reserve, the driving component of the force is reduced. With an empty reserve this
+  /// component is removed.
   static constexpr float low_part = 0.25f;
-  /// A probe that is slower has no direction in which to give way.
+  /// Below this speed the motion of the probe has no reliable direction.
   static constexpr float slow_m_per_s = 0.02f;
 
   float left_J = 0.0f;
-  Vector3 position_m;  ///< of the probe, in the period before
+  Vector3 position_m;  ///< position of the probe in the previous period
 };
 
-/// One control period: takes out what `felt_N`, the force of the period before, gave on the way to `position_m`, and
-/// puts in what may be given for ever.
+/// Advances by one control period. Subtracts the work of `felt_N`, the force of the previous period, on the path to
+/// `position_m`. Adds the energy that may be delivered continuously.
 void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits);
 
-/// What is left, in parts of the energy below which the force gives way.
+/// Remaining energy divided by the energy below which the force is reduced.
 inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return reserve.left_J * limits.low_reserves_per_J;
 }
@@ -39,12 +40,12 @@ inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return part_left(reserve, limits) < 1.0f;
 }
 
-/// The part of what drives the motion that has to give way, 0..1.
+/// Part of the driving force component to remove, 0..1.
 inline float gives_way(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
 }
 
-/// The force without so large a part of what drives the motion.
+/// Removes `part` of the driving component from the force.
 [[gnu::cold]] Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part);
 
 }  // namespace inkwell::control

@@ -1,4 +1,4 @@
-// The installed force law from period to period: its time and its memory.
+// State and time of the installed force law between periods.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ class FeltForceLaw {
  public:
   FeltForceLaw() { reset_force_law(memory_); }
 
-  /// One period in which the law is felt; `probe` is given its time. What comes back may be any number or none.
+  /// Runs one period of the law and sets the time of `probe`. The force may be infinite or not a number.
   const Vector3& force_N(Probe& probe, const ForceLawValues& values) {
     probe.periods = periods_++;
     step_force_law(probe, values, memory_, force_N_);
     return force_N_;
   }
 
-  /// One period in which it is not felt: the next time it begins anew.
+  /// Call this function in each period without the law. The next step then starts from the initial state.
   void rest() {
     if (periods_ != 0) reset_force_law(memory_);
     periods_ = 0;
@@ -27,7 +27,7 @@ class FeltForceLaw {
   float signal(std::size_t place) const { return memory_.signals[place]; }
 
  private:
-  std::uint32_t periods_ = 0;  ///< since it is felt
+  std::uint32_t periods_ = 0;  ///< number of periods since the law became active
   Vector3 force_N_;
   ForceLawMemory memory_;
 };

@@ -1,13 +1,13 @@
-// What a force law of one's own is made of. docs/force-laws.md is the way to the first one; the paper's box, in
-// firmware/force_laws/box.hpp, is the one that an image has unless it is told otherwise.
+// Interface of custom force laws. The page docs/force-laws.md describes how to write a law. The default law of an image
+// is the paper's box in firmware/force_laws/box.hpp.
 //
-// A law is a struct named like its file, in inkwell::force_laws, with
+// A law is a struct in inkwell::force_laws. The struct has the name of its file and contains
 //
 //   Parameters, Signals   structs of floats, whose rows are in `parameter_rows` and `signal_rows`; both may be empty
-//   State                 what it remembers from one control period to the next
-//   force_N               the function: the force on the hand, 20 000 times a second while the force is on
+//   State                 its state between control periods
+//   force_N               the function: force on the hand, called 20 000 times per second while the force is on
 //
-// It is pure: what it knows it is given, so it runs in a test on the PC as it does in the control interrupt.
+// A law uses only its arguments, so a test on the PC can run the same code as the control interrupt.
 #pragma once
 
 #include <array>
@@ -22,25 +22,25 @@
 
 namespace inkwell::control {
 
-/// What a force law is given in each control period.
+/// Input of a force law in each control period.
 struct Probe {
   Vector3 position_m;        ///< workspace axes
   Vector3 velocity_m_per_s;  ///< from the adaptive window
   Triple joint_rad{};
-  Triple gimbal_rad{};        ///< yaw, pitch and roll of the stylus; one of them new in each period
+  Triple gimbal_rad{};        ///< yaw, pitch and roll of the stylus; one angle is updated per period
   std::uint8_t switches = 0;  ///< bits of protocol::Switch
-  Contact contact{};          ///< with the walls of the box, by the parameters of the table
-  Wall wall{};                ///< how these walls feel
-  std::uint32_t periods = 0;  ///< control periods since the law's force is felt, at which its state was new
+  Contact contact{};          ///< contact with the box walls that the parameters set
+  Wall wall{};                ///< stiffness and damping of these walls
+  std::uint32_t periods = 0;  ///< control periods since the law became active with a new state
 
   constexpr float time_s() const { return protocol::servo_period_s * static_cast<float>(periods); }
 };
 
-/// A row of a law's `parameter_rows`: what moves the slider, and where the law finds its value.
+/// Row of a law's `parameter_rows`: one parameter and the struct member for its value.
 template <class Parameters>
 struct ForceParameter {
   float Parameters::*value;
-  std::string_view name;  ///< ends in its unit, as rows of the table do
+  std::string_view name;  ///< ends with its unit, as in the parameter table
   std::string_view unit;  ///< empty for a pure number
   float minimum;
   float maximum;
@@ -48,7 +48,7 @@ struct ForceParameter {
   std::string_view help;
 };
 
-/// A row of a law's `signal_rows`: what the scope and recordings take from it.
+/// Row of a law's `signal_rows`: one signal for the scope and for recordings.
 template <class Signals>
 struct ForceSignal {
   float Signals::*value;
@@ -57,7 +57,7 @@ struct ForceSignal {
   std::string_view help;
 };
 
-/// What the walls of the box give: for a law that keeps them.
+/// Force of the box walls, for laws that include these walls.
 inline Vector3 wall_force_N(const Probe& probe) {
   return wall_force_N(probe.contact, probe.velocity_m_per_s, probe.wall);
 }

@@ -1,4 +1,4 @@
-// The force law that this image was built with (-DINKWELL_FORCE), as the rest of the firmware sees it.
+// Interface of the force law that this image was built with (-DINKWELL_FORCE).
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace inkwell::control {
 
-/// Values of the law's parameters, in the order of its rows.
+/// Values of the law's parameters, in row order.
 using ForceLawValues = std::array<float, protocol::force_law_parameters_maximum>;
 
-/// What the law remembers, and its signals of the last period.
+/// State of the law, and its signals of the last period.
 struct ForceLawMemory {
   static constexpr std::size_t state_bytes = 256;
 
@@ -24,14 +24,14 @@ struct ForceLawMemory {
 
 // ---- control interrupt ----
 
-/// Makes state and signals as new. Before the first step, and not in the same period as one.
+/// Resets state and signals. Call this function before the first step, and not in the same period as a step.
 void reset_force_law(ForceLawMemory& memory);
 
-/// One control period of the law: the force on the hand, which may be any number or none. Given to a place in memory,
-/// which the compiler does for fewer cycles than to return it.
+/// Runs one control period of the law. The force on the hand may be infinite or not a number. An output argument needs
+/// fewer cycles than a return value.
 void step_force_law(const Probe& probe, const ForceLawValues& values, ForceLawMemory& memory, Vector3& force_N);
 
-/// Entries of ForceLawMemory::signals that the law has.
+/// Number of signals of the law in ForceLawMemory::signals.
 extern constinit const std::size_t force_law_signal_count;
 
 // ---- main loop ----
@@ -42,12 +42,12 @@ struct ForceLawRange {
   float default_value;
 };
 
-/// Lies in the flash, which interrupts must not read.
+/// Stored in flash, which interrupts must not read.
 struct InstalledForceLaw {
   std::size_t parameter_count;
   std::size_t signal_count;
   std::array<ForceLawRange, protocol::force_law_parameters_maximum> ranges;
-  const std::byte* report;  ///< a protocol::ForceLawReport with all that follows it
+  const std::byte* report;  ///< protocol::ForceLawReport including its variable part
   std::size_t report_size;
 };
 extern constinit const InstalledForceLaw installed_force_law;

@@ -1,14 +1,14 @@
-// Whether a motor's voltage, current and speed fit together.
+// Checks that voltage, current and speed of a motor are consistent.
 //
-// A motor takes the voltage R i + k w: its resistance times its current, and its back EMF. The voltage is the one that
-// its bridge was told, the current comes from the shunt, the speed from the encoder. A current reading that stands
-// still, is another motor's or is too small makes the current loop drive the motor with a voltage that the reading does
-// not explain; so does a motor that is open, or a leg of its bridge that does not follow. The force is then any. A
-// voltage that is too small for its current tells of a motor with shorted turns, or of a reading that is too large.
+// The motor equation is u = R i + k w: the voltage is resistance times current plus back EMF. The voltage is the
+// command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
+// be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
+// explain. An open motor and a stuck bridge leg have the same effect. The force is then undefined. A voltage that is
+// too small for its current indicates shorted turns or a current reading that is too large.
 //
-// Both sides are compared as long as the bridges drive by their current loops. What they differ by beyond what a sound
-// motor may is summed over time, to a flux: an inductance that is left out of the equation adds no more than its own
-// L di to it, and a large difference is noticed sooner than a small one.
+// Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
+// of a healthy motor are integrated over time, which results in a flux. The equation neglects the inductance, which
+// adds at most L di to this flux. A large difference is detected sooner than a small one.
 #pragma once
 
 #include <array>
@@ -20,81 +20,84 @@
 
 namespace inkwell::control {
 
-/// What a sound motor's voltage goes into.
+/// Voltage model of a healthy motor.
 struct MotorModel {
-  Triple resistance_ohm;  ///< as the parameters say
-  /// Of the joint's speed: gear ratio times torque constant, negative for a reversed motor.
+  Triple resistance_ohm;  ///< from the parameters
+  /// Per joint speed: gear ratio times torque constant, negative for a reversed motor.
   Triple back_emf_Vs_per_rad;
 };
 
-/// What a bridge takes from its motor's voltage, always against the current. With little or no current it may give as
-/// much.
+/// Voltage drop of a bridge, always against the current. At small currents the bridge may instead add this voltage.
 struct BridgeLoss {
-  float measured_V;  ///< by the self-test, brushes included; 0 where it could not tell
-  float most_V;      ///< by its dead time
+  float measured_V;  ///< from the self-test, including brushes; 0 if unknown
+  float most_V;      ///< from the dead time of the bridge
 
   constexpr float least_V() const { return measured_V < most_V ? measured_V : most_V; }
   constexpr float expected_V() const { return measured_V > 0.0f ? measured_V : most_V; }
 };
 
-/// What the self-test has measured of motors and bridges, each by the last test that could tell.
+/// Self-test measurements of motors and bridges. Each value comes from the last conclusive test.
 struct MeasuredMotors {
-  Triple bridge_loss_part{};  ///< of the supply: what a bridge takes, and brushes with it; 0 if unknown
-  Triple resistance_ohm{};    ///< 0 if unknown
-  Triple heat{};              ///< at which the resistance was measured (MotorHeat)
+  Triple bridge_loss_part{};  ///< voltage drop of bridge and brushes, as a part of the supply; 0 if unknown
+  Triple resistance_ohm{};    ///< measured resistance; 0 if unknown
+  Triple heat{};              ///< heat at the resistance measurement (MotorHeat)
 };
 
-/// What a motor's resistance is taken for.
+/// Assumed resistance of a motor.
 struct Resistance {
-  /// How much more a motor may have that was measured: a model that is 50 K wrong about the heat since then is borne.
+  /// Tolerated excess of a measured motor. The tolerance covers an error of 50 K in the heat model since the
+  /// measurement.
   static constexpr float bearable_more_if_measured = 0.2f;
-  /// One of which only the parameters tell. Copper that is 100 K hotter has 39 % more; switches and shunt add 4 %.
+  /// Tolerated excess without a measurement. Copper that is 100 K hotter has 39 % more resistance; switches and shunt
+  /// add 4 %.
   static constexpr float bearable_more_else = 0.43f;
-  /// A current loop's voltage has room for so much of that: 5 % of a motor that was measured. A sound one may well have
-  /// more, by its angle or its heat: it then gets less current at the force limit, and no fault.
+  /// Part of the tolerance that the voltage range of a current loop includes: 5 % for a measured motor. The resistance
+  /// of a healthy motor may be higher, depending on angle or heat. A healthy motor above this tolerance gets less
+  /// current at the force limit, and no fault is raised.
   static constexpr float room_part = 0.25f;
-  /// What the rise that the continuous current leads to, 100 K, adds to copper's.
+  /// Increase of copper resistance at the steady-state rise of the continuous current, 100 K.
   static constexpr float part_per_heat = 0.39f;
 
   float value_ohm;
-  float bearable_more;  ///< part of it
+  float bearable_more;  ///< part of value_ohm
 
   constexpr float with_room_ohm() const { return value_ohm + room_part * bearable_more * value_ohm; }
 
-  /// `warmer` is the heat that was gained since it was measured.
+  /// `warmer` is the heat gained since the measurement.
   static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
     if (!(measured_ohm > 0.0f)) return {parameter_ohm, bearable_more_else};
-    // A motor that has cooled down since was hot, or was only taken for hot as its heat was kept over a restart.
+    // A motor that has cooled since the measurement keeps the measured resistance. After a restart, the heat at the
+    // measurement may have been overestimated.
     const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
     return {measured_ohm + measured_ohm * more, bearable_more_if_measured};
   }
 };
 
 struct MotorWatch {
-  /// For brushes, diodes and sensors that err, beside what the bridge takes. What ends by itself only adds to the sum:
-  /// the voltage that a change of current takes, and the speed of an arm that is being stopped, which is known a
-  /// millisecond late.
+  /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. Short effects need no tolerance
+  /// here, because the flux tolerance covers them. Examples are the voltage of a current change, and the speed of a
+  /// stopping arm, which is measured 1 ms late.
   static constexpr float bearable_V = 0.3f;
-  /// From here on a current keeps its sign all through the PWM's period, ripple and all, so that its bridge takes what
-  /// it takes from any.
+  /// Above this value, a current keeps its sign during the whole PWM period, including ripple. The bridge drop then
+  /// does not depend on the current.
   static constexpr float steady_A = 0.3f;
-  /// A motor has 28 % less resistance if it was measured 100 K hotter.
+  /// A motor that was measured 100 K hotter has 28 % less resistance.
   static constexpr float bearable_less_resistance = 0.28f;
-  /// Its magnets have then 20 % less.
+  /// Magnets that are 100 K hotter are 20 % weaker.
   static constexpr float bearable_part_of_back_emf = 0.25f;
-  /// A motor of 0.24 mH takes 1.2 mVs to turn its current round from one limit to the other.
+  /// A motor of 0.24 mH needs 1.2 mVs to change its current from one limit to the other.
   static constexpr float bearable_flux_Vs = 0.003f;
 
-  /// The motors take turns, so a reading stands for three periods.
+  /// The motors take turns, so each reading represents three periods.
   static constexpr float bearable_sum_V = bearable_flux_Vs / (3.0f * protocol::servo_period_s);
 
-  Triple beyond_V{};       ///< of each motor, the sum of what was beyond the bearable; 0 while its bridge is off
-  std::size_t motor = 0;   ///< whose turn it is, 0..2
-  float voltage_V = 0.0f;  ///< that its bridge had in the period that the present reading ends
-  BridgeLoss loss{};       ///< what the bridge took from it
+  Triple beyond_V{};       ///< sum of the voltages beyond the tolerance, per motor; 0 while its bridge is off
+  std::size_t motor = 0;   ///< motor of this period, 0..2
+  float voltage_V = 0.0f;  ///< bridge voltage in the period before the present reading
+  BridgeLoss loss{};       ///< voltage drop of the bridge in that period
 };
 
-/// What the model leaves unexplained of a motor's voltage, and how much a sound motor may leave.
+/// Voltage that the model does not explain, and its tolerance for a healthy motor.
 struct Unexplained {
   float voltage_V, bearable_V;
 };
@@ -105,25 +108,24 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const float left_V = voltage_V - ohmic_V - back_emf_V;
   const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance = is_more ? resistance.bearable_more : MotorWatch::bearable_less_resistance;
-  // A bridge only takes: a voltage that is too small for its current lacks that as well.
+  // The bridge drop only opposes the current. If the voltage is too small, the drop therefore reduces the tolerance.
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
   return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
-/// One control period: whether the motor whose turn it is still fits. Speed, resistance and back EMF (MotorModel)
-/// belong to it as well.
+/// Checks the motor of this period. Returns whether its voltage, current and speed are consistent.
 bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
           const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
 
-/// While the bridges do not drive by their loops: what was is forgotten.
+/// Clears the sums. Call this function while the current loops do not drive the bridges.
 inline void rest(MotorWatch& watch) {
   watch.beyond_V = {};
   watch.voltage_V = 0.0f;
 }
 
-/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then, of which it takes
-/// `loss`.
+/// Completes the period. fits() checks `motor`, 0..2, next. `voltage_V` is the bridge voltage of this motor until then,
+/// and `loss` is its bridge drop.
 inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;

@@ -1,4 +1,4 @@
-// The force that a program on the PC asks for: a report each few milliseconds becomes a line, not a staircase.
+// Force of a program on the PC. Reports arrive every few milliseconds and are interpolated linearly.
 #pragma once
 
 #include <cstdint>
@@ -8,44 +8,46 @@
 
 namespace inkwell::control {
 
-/// One report of the program, checked and prepared outside of the interrupt.
+/// One report of the program, validated and prepared outside the interrupt.
 struct ForceTarget {
   Vector3 force_N;  ///< on the hand, workspace axes; finite
   protocol::ForceMode mode = protocol::ForceMode::none;
-  std::uint32_t interval_periods = 1;  ///< from one report of the program to the next
+  std::uint32_t interval_periods = 1;  ///< time between two reports of the program
   float per_interval = 1.0f;           ///< 1 / interval_periods
 };
 
 struct ProgramForceLimits {
   float force_limit_N;           ///< bound of a report's magnitude
-  float change_N_per_period;     ///< bound of how fast the force changes, as a vector
+  float change_N_per_period;     ///< bound of the force change, as a vector
   float periods_per_N;           ///< 1 / change_N_per_period
-  std::uint32_t expiry_periods;  ///< silence after which the force fades
+  std::uint32_t expiry_periods;  ///< time without a report after which the force fades
 };
 
-/// What is felt of a program: moves towards the newest report and fades when no other comes.
+/// Part of the rendered force that comes from a program. This force moves towards the newest report and fades if no
+/// other report comes.
 struct ProgramForce {
-  /// From the expiry of the last report to no force: 10 ms.
+  /// Duration of the fade after the last report has expired: 10 ms.
   static constexpr std::uint32_t fade_periods = protocol::servo_rate_Hz / 100;
 
   Vector3 force_N;
-  Vector3 target_N;               ///< of the newest report
-  Vector3 step_N;                 ///< a period, while `steps` is not 0
-  std::uint32_t steps = 0;        ///< still to go to the newest report
-  Vector3 fading_N;               ///< what there was when the fading began
-  std::uint32_t fade_steps = 0;   ///< still to go to nothing
-  std::uint32_t age_periods = 0;  ///< since the newest report
+  Vector3 target_N;               ///< force of the newest report
+  Vector3 step_N;                 ///< change per period while `steps` is not 0
+  std::uint32_t steps = 0;        ///< remaining steps to the newest report
+  Vector3 fading_N;               ///< force at the start of the fade
+  std::uint32_t fade_steps = 0;   ///< remaining steps to zero force
+  std::uint32_t age_periods = 0;  ///< age of the newest report
   std::uint32_t interval_periods = 1;
   protocol::ForceMode mode = protocol::ForceMode::none;
 
   bool is_driven() const { return mode != protocol::ForceMode::none; }
 };
 
-/// Heads for a new report: a line to it in the program's interval, or for longer if the force would change too fast.
-/// A report that is too large keeps its direction. Returns whether the report came more than a millisecond late.
+/// Starts a linear transition to a new report. The transition lasts for the program's interval, or longer if the force
+/// would change too fast. A force above the limit keeps its direction. Returns whether the report came more than 1 ms
+/// late.
 [[gnu::cold]] bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
 
-/// One control period further. When the reports stay away the force fades and the program no longer drives.
+/// Advances by one control period. Without reports the force fades and the program is no longer a force source.
 void advance(ProgramForce& program, const ProgramForceLimits& limits);
 
 }  // namespace inkwell::control

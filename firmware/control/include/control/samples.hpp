@@ -1,4 +1,4 @@
-// What the control path takes from the board and gives back to it in every control period.
+// Inputs and outputs of the control path in every control period.
 #pragma once
 
 #include <array>
@@ -10,32 +10,32 @@ namespace inkwell::control {
 
 /// One reading of every sensor, scaled to SI units by the drivers.
 struct Samples {
-  std::array<std::int32_t, 3> encoder_counts;  ///< since power-up, wraps of the timers undone
-  Triple current_A;                ///< positive from leg A to leg B; the amplifiers' offsets are still inside
-  Triple gimbal_ratio;             ///< voltage of each potentiometer as a part of its supply, 0..1
-  bool currents_measured;          ///< all three of them, since the period before
-  float supply_V;                  ///< of the bridges
-  std::uint8_t switches;           ///< bits of protocol::Switch, 1 is closed, not debounced
-  bool bridge_fault;               ///< a bridge pulls the fault line
-  std::uint32_t slow_age_periods;  ///< since gimbal and supply were measured
+  std::array<std::int32_t, 3> encoder_counts;  ///< counts since power-on, with timer wraps removed
+  Triple current_A;                            ///< positive from leg A to leg B; includes the amplifier offsets
+  Triple gimbal_ratio;                         ///< voltage of each potentiometer as a part of its supply, 0..1
+  bool currents_measured;                      ///< all three currents were measured since the previous period
+  float supply_V;                              ///< supply of the bridges
+  std::uint8_t switches;                       ///< bits of protocol::Switch; 1 is closed, not debounced
+  bool bridge_fault;                           ///< a bridge pulls the fault line
+  std::uint32_t slow_age_periods;              ///< age of the last measurement of gimbal and supply
 };
 
-/// What the bridges are told.
+/// Commands to the bridges.
 struct Drive {
-  Triple duty{};         ///< mean voltage as a part of the supply, -1..1, positive drives leg A
+  Triple duty{};         ///< mean voltage as a part of the supply, -1..1; positive drives leg A
   bool enabled = false;  ///< false switches all bridges off
-  bool brake = false;    ///< not enabled, but all low sides on: the motors brake the arm (control/brake.hpp)
+  bool brake = false;    ///< all low sides on while not enabled: the motors brake the arm (control/brake.hpp)
 };
 
-/// What the board can bear and do. A fact of the board, so the application hands it in.
+/// Ratings of the board. The application provides these ratings.
 struct BoardLimits {
-  float supply_minimum_V;      ///< below it: fault supply_low
-  float supply_maximum_V;      ///< above it: fault supply_high
-  float duty_limit;            ///< largest magnitude of a duty, 0..1
-  float current_measurable_A;  ///< beyond it a sensor may show less than there is: fault over_current
-  float dead_time_part;        ///< of the supply: what the bridges' dead time takes from a motor's voltage
-  /// One reading beyond these is a fault at once, without the filter: no load makes a supply dip so far, and no arm
-  /// that is braked lifts it so far.
+  float supply_minimum_V;      ///< a lower supply is the fault supply_low
+  float supply_maximum_V;      ///< a higher supply is the fault supply_high
+  float duty_limit;            ///< largest magnitude of a duty cycle, 0..1
+  float current_measurable_A;  ///< above this current a sensor may read too low: fault over_current
+  float dead_time_part;        ///< voltage drop from the dead time of the bridges, as a part of the supply
+  /// A single unfiltered reading beyond these bounds is a fault. No load lowers a supply this far, and no braked arm
+  /// raises it this far.
   float supply_far_too_low_V = 0.5f * supply_minimum_V, supply_far_too_high_V = 1.1f * supply_maximum_V;
 };
 

@@ -1,4 +1,4 @@
-// Small pulses of voltage, one motor after the other, by which the self-test looks at motors, bridges and shunts.
+// Small voltage pulses, one motor after the other, for the self-test of motors, bridges and shunts.
 //
 //   high    +--+
 //   low  +--+  |
@@ -6,8 +6,8 @@
 //              |  +--+
 //              +--+
 //
-// From the low level to the high one the current rises by what the resistance asks for: dead time of the bridge and a
-// steady back EMF take the same from both. The pushes on the hand add up to none.
+// The current rise from the low level to the high level depends on the resistance. The dead time of the bridge and a
+// constant back EMF reduce both levels equally. The force impulses on the hand add up to zero.
 #pragma once
 
 #include <array>
@@ -20,45 +20,45 @@
 
 namespace inkwell::control {
 
-/// What the pulses have found, for the main loop to judge.
+/// Measurements of the pulses. The main loop evaluates these measurements.
 struct PulseRound {
   static constexpr std::size_t levels = 4;  ///< low, high, -high, -low
   struct Motor {
     std::array<Triple, levels> current_A{};  ///< mean at each level, of all three sensors
     float low_V = 0.0f, high_V = 0.0f;
-    std::int32_t moved_counts = 0;  ///< of its encoder, from the first level to the last
+    std::int32_t moved_counts = 0;  ///< motion of its encoder, from the first level to the last
     bool takes_part = false;
   };
   std::array<Motor, 3> motors{};
   float supply_V = 0.0f;
-  float dead_V = 0.0f;  ///< what the bridges' dead time takes
+  float dead_V = 0.0f;  ///< voltage drop from the dead time of the bridges
 };
 
-/// What the pulses are sized by.
+/// Values that determine the pulse voltages.
 struct PulseScale {
   const Triple& resistance_ohm;
-  const Triple& current_limit_A;  ///< a motor with 0 takes no part
+  const Triple& current_limit_A;  ///< a motor with limit 0 is not used
   float supply_V;
-  float dead_time_part;  ///< of the supply: what the bridges' dead time takes from a motor's voltage
+  float dead_time_part;  ///< voltage drop from the dead time of the bridges, as a part of the supply
 };
 
 class SelfTestPulses {
  public:
-  /// Nine times the time constant of a motor.
+  /// Nine times the electrical time constant of a motor.
   static constexpr std::uint32_t level_periods = periods_in(0.001f);
-  /// The last of them, by when the current has settled, are averaged.
+  /// The last periods of a level are averaged, because the current has settled by then.
   static constexpr std::uint32_t mean_periods = 8;
   static constexpr std::uint32_t rest_periods = 10;
   static constexpr std::uint32_t round_periods = 3 * (PulseRound::levels * level_periods + rest_periods);
-  /// Current at the high level, as far as the motor's resistance explains it: 1.4 N at the hand for a millisecond. The
-  /// low level has so large a part of it.
+  /// Current at the high level according to the motor resistance: 1.4 N at the hand for 1 ms. The low level has
+  /// `low_part` of this current.
   static constexpr float high_A = 0.7f, low_part = 0.4f;
-  /// A motor with a lower current limit gets pulses of this current all the same: less tells no resistance, and every
-  /// motor bears it for a millisecond.
+  /// Smallest pulse current, also for motors with a lower limit. A smaller current does not reveal the resistance, and
+  /// every motor tolerates this current for 1 ms.
   static constexpr float high_minimum_A = 0.3f;
-  /// What a motor's back EMF and the other motors' pulses add to it does not count as over-current.
+  /// Over-current bound during the pulses. The bound includes the back EMF and the effect of the other motors' pulses.
   static constexpr float bearable_A = 1.5f * high_A;
-  /// For windings with more resistance than that takes.
+  /// Voltage bound for windings with a higher resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
 
   void start() {
@@ -69,11 +69,11 @@ class SelfTestPulses {
   void stop() { runs_ = false; }
   bool runs() const { return runs_; }
 
-  /// One control period of a round: the voltage of each motor for the next one.
+  /// Runs one control period of a round. Returns the voltage of each motor for the next period.
   [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
                             const PulseScale& scale);
 
-  /// Whole once a round that was started runs no more.
+  /// Complete after a started round has finished.
   const PulseRound& round() const { return round_; }
 
  private:
@@ -82,7 +82,7 @@ class SelfTestPulses {
   PulseRound round_;
   std::size_t motor_ = 0;
   std::size_t level_ = 0;      ///< `levels` while the motor rests
-  std::uint32_t periods_ = 0;  ///< of this level
+  std::uint32_t periods_ = 0;  ///< number of periods of this level
   bool runs_ = false;
 };
 

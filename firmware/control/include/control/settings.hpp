@@ -1,4 +1,4 @@
-// The parameters as the control interrupt wants them: every product and reciprocal ready.
+// Parameters in the form that the control interrupt needs, with all products and reciprocals precomputed.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +25,14 @@ struct GimbalCurve {
   float offset_rad;
 };
 
-/// What makes the supervisor switch off.
+/// Bounds of the supervisor's fault checks.
 struct Limits {
-  Triple joint_minimum_rad;  ///< third entry: the elbow, relative to link 2 on every arm
+  Triple joint_minimum_rad;  ///< third entry: elbow, relative to link 2 on every arm
   Triple joint_maximum_rad;
-  Triple over_current_A;   ///< a measured current beyond it is a fault, once it had time to fall below
-  Triple moving_A;         ///< an encoder that stands while its motor's current changes by more is a fault
-  Triple brake_A;          ///< that the force limit takes: motors that brake are let go beyond it
-  float inkwell_play_rad;  ///< farther from the inkwell its switch is not closed by the stylus
+  Triple over_current_A;   ///< bound of a measured current, after the current had time to fall
+  Triple moving_A;         ///< current change that must move the encoder; otherwise the encoder is stuck
+  Triple brake_A;          ///< current of the force limit; braking motors are released above this current
+  float inkwell_play_rad;  ///< angle from the inkwell, beyond which the stylus cannot close its switch
   float speed_limit_squared_m2_per_s2;
   std::uint32_t host_timeout_periods;
 };
@@ -41,15 +41,15 @@ struct Settings {
   Arm arm;
   EncoderScale encoders;
   std::array<GimbalCurve, 3> gimbal;
-  Box box;  ///< already smaller by the sphere's radius
+  Box box;  ///< already reduced by the sphere radius
   Wall wall;
   ForceLawValues force_law;
-  float force_limit_N;          ///< bound of the magnitude of all that is rendered together
-  float recovery_N_per_period;  ///< how fast a force gets over a jump of what it is made of (Transition)
+  float force_limit_N;          ///< bound of the magnitude of the total force
+  float recovery_N_per_period;  ///< recovery rate after a jump of a force component (Transition)
   ProgramForceLimits program_force;
-  float ramp_per_period;     ///< rise of the force's gain in one control period
-  float landing_per_period;  ///< its fall in an orderly end
-  float change_squared_N2;   ///< square of the most by which the force changes in a period, whatever it comes from
+  float ramp_per_period;     ///< rise of the force gain per control period
+  float landing_per_period;  ///< fall of the force gain per control period in a regular stop
+  float change_squared_N2;   ///< square of the largest force change per period, from any cause
   EnergyLimits energy;
   SpeedLimit speed;
   Motors motors;
@@ -59,7 +59,7 @@ struct Settings {
   Limits limits;
 };
 
-/// Turns a checked set of parameters into settings. Divides and is not short: for the main loop only.
+/// Converts a validated set of parameters to settings. The conversion divides and is slow: for the main loop only.
 Settings prepare(const protocol::ParameterSet& parameters);
 
 }  // namespace inkwell::control

@@ -1,25 +1,26 @@
-// Whether an encoder stands still against its motor's current.
+// Detects an encoder that does not change although the current of its motor does.
 //
-// Nothing but its encoder says where a joint is, so one that is stuck looks like a joint that is held. What tells them
-// apart is that nothing holds an arm so well: a motor that presses otherwise than before turns the joint, if only by
-// what the arm's cables and links and a hand or a stop give way. The stiffness of an Omni at the stylus is 1 to 2 N/mm,
-// so a newton turns its joints by ten counts. Friction keeps a joint where it is as long as the force changes by no
-// more than twice the friction, 0.5 N on an Omni.
+// The encoder is the only sensor of a joint angle, so a stuck encoder looks like a held joint. A held joint, however,
+// is never rigid: a change of motor torque turns it slightly, because cables, links, stops and hands are elastic. The
+// stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten counts. Friction holds a joint as
+// long as the force changes by less than twice the friction, 0.5 N on an Omni.
 //
-// The bound is a change of 1.5 N at the end of the longer link with no more than a count to either side. An arm that
-// has twice an Omni's friction and twice its stiffness still turns by more. A count to either side is what an encoder
-// with one dead wire shows, too slowly for control/encoder_wire.hpp where the arm moves slowly.
+// A change of 1.5 N at the end of the longer link must move the encoder by more than one count. An arm with twice the
+// friction and twice the stiffness of an Omni still moves more. An encoder with one dead wire also moves by one count
+// in either direction. On a slow arm, the changes of such an encoder are too rare for control/encoder_wire.hpp to
+// detect.
 //
-// A sound joint bears one such change now and then: a hand that slides along a wall, or presses into it aslant, may
-// pull by just as much less or more as the wall's force falls or rises, and friction holds the joint to the count. In
-// an hour of random use on the virtual board no sound joint swung by 1 N more than twice in one standstill, and by 2 N
-// more than once. Three of the bound are told: pressed, let go and pressed again, or 4.5 N more.
+// A healthy joint occasionally does not move at one such change. A hand may slide along a wall or press into it at an
+// angle, and balance the change of the wall force. Friction then holds the joint. In one hour of random use on the
+// virtual board, no standstill of a healthy joint had more than two changes of 1 N. No standstill had more than one
+// change of 2 N. The fault is raised after three changes of 1.5 N: press, release and press again, or an increase of
+// 4.5 N.
 //
-// An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So
-// changes count from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
-// turns round faster than the arm can follow leaves no trace in it.
+// A reversing arm is stationary for a moment while the force of a wall may rise: 30 ms and 0.5 A were observed. Changes
+// therefore count only after the joint has been stationary for 0.1 s. The current is low-pass filtered over about 10
+// ms, so a force that alternates too fast for the arm has no effect on the filtered current.
 //
-// Only the inkwell holds better. While the stylus is in it nothing is compared.
+// Only the inkwell is more rigid. While the stylus is in the inkwell, nothing is compared.
 #pragma once
 
 #include <algorithm>
@@ -30,25 +31,25 @@
 namespace inkwell::control {
 
 struct StuckEncoder {
-  /// The change of force at the end of the longer link that turns every joint but by a coincidence.
+  /// Force change at the end of the longer link that almost always turns every joint.
   static constexpr float moving_force_N = 1.5f;
   static constexpr unsigned bearable_changes = 2;
   static constexpr std::uint32_t bearable_counts = 1;
   static constexpr std::uint32_t settle_periods = periods_in(0.1f);
-  /// Of a new reading, of which there is one in three periods at best: a low-pass of 9.6 ms.
+  /// Filter weight of a new reading. There is at most one reading in three periods: a low-pass of 9.6 ms.
   static constexpr float weight = 1.0f / 64.0f;
 
-  std::int32_t counts = 0;          ///< where it stands
-  std::uint32_t since_periods = 0;  ///< since when
-  float current_A = 0.0f;           ///< of its motor, filtered
-  float least_A = 0.0f;             ///< since the joint had settled, or since the last change
+  std::int32_t counts = 0;          ///< count at which the encoder is stationary
+  std::uint32_t since_periods = 0;  ///< start of the standstill
+  float current_A = 0.0f;           ///< filtered current of its motor
+  float least_A = 0.0f;             ///< least current since the joint settled, or since the last change
   float most_A = 0.0f;
-  unsigned changes = 0;  ///< in this standstill
+  unsigned changes = 0;  ///< number of changes in this standstill
 };
 
-/// One look at an encoder and its motor's current, at `now_periods` of the control period's count. True while it stands
-/// although the current has changed by more than `moving_A` more often than a sound joint bears. `held` says that the
-/// joint may stand: it is then looked at anew.
+/// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current changes
+/// of more than `moving_A` while the encoder was stationary. With `held`, the joint may be stationary for another
+/// reason, and the standstill restarts.
 inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
                      float moving_A) {
   encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);

@@ -1,14 +1,14 @@
-// What the device may do: one step through the tables of protocol/supervision.hpp.
+// State machine: one step through the tables of protocol/supervision.hpp.
 #pragma once
 
 #include <protocol/supervision.hpp>
 
 namespace inkwell::control {
 
-/// What is so in this period, and what was asked for since the one before.
+/// Conditions in this period, and requests since the previous period.
 struct Situation {
   protocol::Events events = 0;
-  protocol::Watches found = 0;  ///< also where nobody looks for it
+  protocol::Watches found = 0;  ///< includes faults that the state does not watch
 };
 
 struct Supervisor {
@@ -17,10 +17,10 @@ struct Supervisor {
   bool operator==(const Supervisor&) const = default;
 };
 
-/// Whether no fault is found and no way is open, for most of all periods; false means that nothing is known.
+/// Fast check for most periods: true if no fault is found and no transition is open. False means undecided.
 bool surely_stays(protocol::State state, const Situation& situation);
 
-/// The state in the next period. `Event::cause` is added here.
+/// Returns the state of the next period. This function adds `Event::cause`.
 [[gnu::cold]] Supervisor advance(const Supervisor& supervisor, const Situation& situation);
 
 }  // namespace inkwell::control

@@ -1,18 +1,18 @@
-// Whether the supply of the bridges swings up and down again and again: a bulk capacitor that is worn, a plug that is
-// loose, a supply that hunts or has lost a diode.
+// Detects an oscillating bridge supply: a worn bulk capacitor, a loose plug, or a supply that is unstable or has lost a
+// diode.
 //
-// A swing is told from what a sound supply does by how often it turns, not by how far it goes. A step, a sag or a spike
-// goes beyond the bound once, and its way back is the second time at most; the slow mean then follows. An arm that is
-// swung by a hand turns its motors' power round ten times a second. A program or a force law can turn a force round
-// faster, but the faster it is the less energy there is in a turn: 8 N, the largest force, move 45 g to and fro at 40
-// Hz with at most 1.1 m/s or 27 mJ, with which 2200 uF rise from 18 V by 0.7 V, and at 100 Hz by 0.1 V. What the
-// motors' resistance takes beside that, 41 W, pulls the supply down by 0.3 V. Together that is half of the bound to
-// either side; a test looks at it on the simulated board.
+// The frequency of an oscillation distinguishes a fault from normal operation; the amplitude does not. A step, a sag or
+// a spike exceeds the bound at most twice, at its start and at its return. The slow mean then follows. A hand that
+// swings the arm reverses the motor power ten times per second. A program or a force law can alternate a force faster,
+// but with less energy per cycle. The largest force, 8 N, moves 45 g back and forth at 40 Hz with at most 1.1 m/s or 27
+// mJ. This energy raises the voltage of 2200 uF from 18 V by 0.7 V; at 100 Hz the rise is 0.1 V. The losses in the
+// motor resistance, another 41 W, lower the supply by 0.3 V. Together these changes are half of the bound in either
+// direction. A test on the simulated board checks this sum.
 //
-// The reading comes through a divider with a capacitor, a low-pass of 0.9 ms, which leaves 98 % of a swing of 35 Hz and
-// 87 % of one of 100 Hz.
+// The reading passes through a divider with a capacitor, a low-pass of 0.9 ms. The low-pass leaves 98 % of the
+// amplitude at 35 Hz and 87 % at 100 Hz.
 //
-// Whole numbers only, for the main loop: each interrupt would save the floats of what it interrupts.
+// Integer arithmetic only: with floats in the main loop, every interrupt would save the floating-point registers.
 #pragma once
 
 #include <algorithm>
@@ -25,23 +25,23 @@
 namespace inkwell::control {
 
 struct SupplyRipple {
-  /// So many changes of the side within that time are a swing of 35 Hz or more.
+  /// Number of side changes within `within_periods` that indicates an oscillation of 35 Hz or more.
   static constexpr std::size_t alternations = 8;
   static constexpr std::uint32_t within_periods = periods_in(0.1f);
-  /// Of the mean: as long, so that it stays amid a swing and has followed a step before the next turn of a hand. A
-  /// power of two, by which a division is a shift.
+  /// Time constant of the mean, about `within_periods`. The mean stays in the middle of an oscillation and follows a
+  /// step before the next hand reversal. The value is a power of two, so that the division is a shift.
   static constexpr std::int32_t mean_periods = 2048;
 
-  std::int32_t bearable_counts;       ///< of the converter: protocol::supply_ripple_V from the mean, to either side
-  std::int32_t mean_counts = -1;      ///< times mean_periods; below 0 before the first look
-  bool above = false, below = false;  ///< where it was beyond the bound last
+  std::int32_t bearable_counts;   ///< protocol::supply_ripple_V in converter counts, in either direction from the mean
+  std::int32_t mean_counts = -1;  ///< mean times mean_periods; below 0 before the first reading
+  bool above = false, below = false;  ///< side of the last excursion beyond the bound
   std::uint32_t looked_at_periods = 0;
-  std::array<std::uint32_t, alternations> changed_at_periods{};  ///< the side; the newest times, in a ring
-  std::size_t next = 0, changes = 0;                             ///< place of the next one; how many of them count
+  std::array<std::uint32_t, alternations> changed_at_periods{};  ///< ring of the newest side changes
+  std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
 };
 
-/// One look, at `now_periods` of the control period's count, which may skip some and wraps. True while there were so
-/// many changes within that time.
+/// Checks one reading at period `now_periods`. Period numbers may be skipped, and they wrap. Returns true while
+/// `alternations` side changes are within `within_periods`.
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
   if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
   constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);
@@ -61,7 +61,7 @@ inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint
     ripple.below = below;
   }
   if (ripple.changes == 0) return false;
-  // The oldest of a full ring is the next to be written over.
+  // In a full ring the oldest entry is the next one to be overwritten.
   const std::size_t oldest = (ripple.next + SupplyRipple::alternations - ripple.changes) % SupplyRipple::alternations;
   if (now_periods - ripple.changed_at_periods[oldest] > SupplyRipple::within_periods) --ripple.changes;
   return ripple.changes == SupplyRipple::alternations;

@@ -13,7 +13,7 @@
 
 namespace inkwell::control {
 
-/// A pulse under way: `amplitude`, then zero for as long as it was asked to last, so that the decay is seen too.
+/// Active pulse: `amplitude`, then zero for the same time, so that recordings include the decay.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
@@ -21,18 +21,18 @@ struct TestPulse {
   std::uint8_t motor = 0;               ///< index 0..2
   float amplitude = 0.0f;               ///< A or V
   std::uint32_t pulse_periods = 0;      ///< length of the pulse, and of the rest after it
-  std::uint32_t remaining_periods = 0;  ///< of both together; 0 when no test runs
-  float moved_J = 0.0f;                 ///< between the motor and the arm, either way, so far
+  std::uint32_t remaining_periods = 0;  ///< remaining time of pulse and rest; 0 when no test runs
+  float moved_J = 0.0f;                 ///< energy exchanged between motor and arm so far, as a magnitude
 
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
-  /// The pulse is over, its rest is not: a host that asks for one after the other has to wait.
+  /// Stops the pulse but not its rest: the host has to wait before the next pulse.
   void rest() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
-  /// What is asked of the motor in this period.
+  /// Current or voltage of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };
 
-/// The pulse that a command asks for; none for a motor that there is not or for a time that is not positive.
+/// Returns the pulse of a command. The pulse is empty for a motor that does not exist or a time that is not positive.
 constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPulse::Quantity quantity) {
   if (wanted.motor < 1 || wanted.motor > 3 || !(wanted.duration_s > 0.0f)) return {};
   const float duration_s =
@@ -41,9 +41,9 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
   return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
 }
 
-/// The current of a motor, 0..2, that makes `force_limit_N` at a hand that holds the probe in this pose. The force of
-/// one motor's torque stands across what the other two joints move: it is torque over the part of the joint's own
-/// column of the Jacobian in that direction. 0 where a pose has no such direction.
+/// Current of a motor, 0..2, that applies `force_limit_N` to a hand that holds the probe in this pose. The force of a
+/// single motor is perpendicular to the probe motions of the other two joints. The force is the torque divided by the
+/// component of the joint's Jacobian column in this direction. Returns 0 if the pose has no such direction.
 inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
   const std::size_t next = motor == 2 ? 0 : motor + 1, last = motor == 0 ? 2 : motor - 1;
   const Vector3 across = cross(jacobian.column[next], jacobian.column[last]);

@@ -1,4 +1,4 @@
-// From joint torques to current references (paper, section 3.5).
+// Conversion of joint torques to current references (paper, section 3.5).
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace inkwell::control {
 
 struct Motors {
   Triple ampere_per_Nm;    ///< 1 / (gear ratio * torque constant), negative for a reversed motor
-  Triple current_limit_A;  ///< bound of each reference; a motor with 0 takes no part
-  Triple ampere_per_heat;  ///< how much the limit falls for each 1 of MotorHeat::beyond
-  /// Current that makes a newton at the end of the longer link.
+  Triple current_limit_A;  ///< bound of each reference; a motor with limit 0 is not used
+  Triple ampere_per_heat;  ///< reduction of the limit per unit of MotorHeat::beyond
+  /// Current for 1 N at the end of the longer link.
   Triple ampere_per_N;
-  std::uint32_t idle = 0;  ///< 1 or 2: of the motors that move the links this one alone takes no part
+  std::uint32_t idle = 0;  ///< 1 or 2 if only this link motor is not used, otherwise 0
 
   float allowed_A(std::size_t motor, const Triple& heat_beyond) const {
     return std::max(0.0f, current_limit_A[motor] - ampere_per_heat[motor] * heat_beyond[motor]);
@@ -26,17 +26,17 @@ struct Motors {
 
 struct CurrentReferences {
   Triple reference_A{};
-  bool held_by_current = false;  ///< less than was asked for, by a motor's own limit
-  bool held_by_heat = false;     ///< or by that of a hot one
+  bool held_by_current = false;  ///< reduced by a current limit
+  bool held_by_heat = false;     ///< reduced by the lower limit of a hot motor
 };
 
-/// What a motor may carry, of what is asked of it.
+/// Allowed part of the requested current.
 [[gnu::cold, gnu::noinline]] inline float part_of(float allowed_A, float asked_A) {
   return allowed_A * reciprocal_square_root(asked_A * asked_A);
 }
 
-/// Currents that give the joint torques. Where one would be above what its motor may carry (`heat_beyond` makes that
-/// less) all give way together, so that the force becomes smaller but keeps its direction.
+/// Returns the currents for the joint torques. If a motor exceeds its allowed current, which falls with `heat_beyond`,
+/// all three are scaled down together. The force then keeps its direction.
 inline CurrentReferences current_references(const Triple& torque_Nm, const Motors& motors, const Triple& heat_beyond) {
   CurrentReferences references;
   float part = 1.0f;

@@ -1,24 +1,24 @@
-// What keeps the force from jumping when what the hand touches changes from one period to the next.
+// Smooth transition of the force when the rendered objects change between two periods.
 #pragma once
 
 #include <control/vector.hpp>
 
 namespace inkwell::control {
 
-/// A force that is added to what is rendered: as large as the jump when it came, then less each period until it is gone
-/// (recovery time: Mark et al., "Adding force feedback to graphics systems", SIGGRAPH 1996).
+/// Force that is added to the rendered force. The added force starts with the size of the jump and decreases to zero
+/// (Mark et al., "Adding force feedback to graphics systems", SIGGRAPH 1996: recovery time).
 struct Transition {
   Vector3 jump_N;
-  float part = 0.0f;  ///< of the jump that is left, 1 to 0
+  float part = 0.0f;  ///< remaining part of the jump, 1 to 0
   float part_per_period = 0.0f;
 
   Vector3 force_N() const { return part * jump_N; }
 };
 
-/// Starts anew over `jump_N`, the force before minus the force after; its magnitude then falls by `N_per_period`.
+/// Starts a transition over `jump_N`, the old force minus the new force. The magnitude of the transition falls by
+/// `N_per_period`.
 Transition over(const Vector3& jump_N, float N_per_period);
 
-/// One control period further.
 constexpr void advance(Transition& transition) {
   transition.part = transition.part > transition.part_per_period ? transition.part - transition.part_per_period : 0.0f;
 }

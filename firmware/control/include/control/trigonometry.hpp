@@ -1,4 +1,4 @@
-// Sine, cosine, reciprocal and reciprocal square root in float, without libm and without a divide.
+// Sine, cosine, reciprocal and reciprocal square root in float, without libm and without division.
 #pragma once
 
 namespace inkwell::control {
@@ -17,7 +17,7 @@ float reciprocal(float value);
 /// 1 / sqrt(value) for a positive normal value; relative error at most 3e-7.
 float reciprocal_square_root(float value);
 
-/// False for infinities and for what is not a number, also where the compiler may assume there are none.
+/// False for infinities and NaN, even if the compiler may assume that neither occurs.
 bool is_finite(float value);
 
 }  // namespace inkwell::control

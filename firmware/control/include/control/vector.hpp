@@ -1,4 +1,4 @@
-// The two small types that the signal path is made of.
+// Basic types of the signal path.
 #pragma once
 
 #include <array>
@@ -6,10 +6,10 @@
 
 namespace inkwell::control {
 
-/// One number for each joint, motor, encoder or potentiometer, in the order of the arm.
+/// One value for each joint, motor, encoder or potentiometer, in arm order.
 using Triple = std::array<float, 3>;
 
-/// A point or a direction in the workspace.
+/// Point or direction in the workspace.
 struct Vector3 {
   float x = 0.0f;
   float y = 0.0f;
@@ -25,7 +25,7 @@ constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// `value` moved into [low, high]. Written so that it compiles to compares and selects.
+/// Limits `value` to [low, high]. This form compiles to compares and selects.
 constexpr float clamp(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 }  // namespace inkwell::control

@@ -1,18 +1,20 @@
-// Speed of a joint from its encoder, usable at every control period.
+// Joint speed from the encoder, updated in every control period.
 //
-// One count in one period of 50 us would be 1.1 m/s at the probe, so a difference of samples is of no
-// use. This is a first-order adaptive window (Janabi-Sharifi, Hayward, Chen, IEEE T-CST 2000) on the
-// encoder's EDGES instead of its samples: an edge is seen within a period of the crossing, so its position
-// is known to within what the joint moves in one period, not merely to within a count. Of the edges
-// remembered, the window goes back to the oldest whose straight line to the newest passes every edge
-// between within a tolerance that constant speed always keeps: half a count up to half a count a period,
-// one count above. A window that holds a whole quadrature cycle, in which the encoder's phase errors cancel,
-// and is long enough for an error below 2 % grows no further: it would only add lag. Slow motion then gives
-// long windows and quiet values, acceleration short ones and little lag.
+// One count in one period of 50 us corresponds to 1.1 m/s at the probe, so the difference of two samples is useless.
+// The estimator is a first-order adaptive window (Janabi-Sharifi, Hayward, Chen, IEEE T-CST 2000) on encoder edges
+// instead of samples. An edge is detected within one period of its crossing. The error of an edge position is therefore
+// the joint motion of one period. The error of a sample would be one count.
 //
-// Between edges the value stays as it is, unless the joint has been silent for longer than the value
-// allows: n periods without an edge bound the speed by 1/n counts a period. A reversal is a speed of
-// zero and starts the window anew, so one count to and fro reads zero.
+// The window starts at the oldest stored edge whose straight line to the newest edge passes all edges in between within
+// a tolerance. A constant speed never exceeds the tolerance. The tolerance is half a count at speeds up to half a count
+// per period, and one count at higher speeds. A window stops growing if it contains a whole quadrature cycle and is
+// long enough for an error below 2 %. The phase errors of the encoder cancel over a whole cycle, and a longer window
+// would only add lag. Slow motion results in long windows with little noise, acceleration in short windows with little
+// lag.
+//
+// Between edges the value does not change, unless a long time without an edge proves a lower speed. After n periods
+// without an edge the speed is at most 1/n counts per period. At a reversal the speed is zero and the window restarts.
+// A motion of one count back and forth therefore reads zero.
 #pragma once
 
 #include <array>
@@ -22,43 +24,43 @@
 
 namespace inkwell::control {
 
-/// A boundary between two counts, and the control period in which the encoder was first seen beyond it.
+/// Boundary between two counts, and the first control period in which the encoder was beyond it.
 struct EncoderEdge {
   std::uint32_t period;
   std::int32_t boundary;
 };
 
-/// What the estimate of one joint remembers.
+/// State of the estimate of one joint.
 struct SpeedEstimate {
   static constexpr std::uint32_t capacity = 6;
-  /// Edges nearer than this to the last remembered one are used but not remembered, so that six reach back
-  /// 3 ms at high speed, where every period has an edge.
+  /// Edges closer than this to the last stored edge are used but not stored. Six stored edges therefore cover 3 ms at
+  /// high speed, where every period has an edge.
   static constexpr std::uint32_t spacing_periods = 11;
-  /// An edge's time is uncertain by one period, so a window of this length is right to one in 64.
+  /// The time of an edge is uncertain by one period, so a window of this length has an error of 1/64.
   static constexpr std::uint32_t enough_periods = 64;
   static constexpr std::int32_t enough_counts = 4;
-  /// Half a second without an edge is rest.
+  /// After half a second without an edge the speed is zero.
   static constexpr std::uint32_t rest_periods = 10'000;
 
   std::array<EncoderEdge, capacity> edges{};  ///< ring
-  std::uint32_t newest = 0;                   ///< index of the edge remembered last
-  std::uint32_t remembered = 0;               ///< 0..capacity
-  EncoderEdge head{};                         ///< the last edge, remembered or not
-  bool head_waits = false;                    ///< for its turn to be fitted
+  std::uint32_t newest = 0;                   ///< index of the last stored edge
+  std::uint32_t remembered = 0;               ///< number of stored edges, 0..capacity
+  EncoderEdge head{};                         ///< last edge, stored or not
+  bool head_waits = false;                    ///< `head` is not fitted yet
   std::int32_t counts = 0;
-  std::int32_t direction = 0;  ///< of the last edge: +1, -1, or 0 before the first
+  std::int32_t direction = 0;  ///< of the last edge: +1, -1, or 0 before the first edge
   float counts_per_period = 0.0f;
 };
 
-/// Lets a new estimate start at rest at these counts.
+/// Starts a new estimate at rest at these counts.
 constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
   estimate.counts = counts;
   estimate.head.period = period;
 }
 
-/// Takes in the counts of one control period. Where `may_fit` is false a new edge is kept and fitted in the
-/// next period that may, so that joints can take turns and only one pays for a fit in any period: at most
-/// `capacity` short steps, no divide.
+/// Processes the counts of one control period. If `may_fit` is false, a new edge waits for the next period in which
+/// `may_fit` is true. Joints can thus take turns, and a period contains at most one fit. A fit needs at most `capacity`
+/// short steps and no division.
 void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit = true);
 
 }  // namespace inkwell::control

@@ -1,11 +1,11 @@
-// Everything analogue. One driver, because ADC1 serves two of the roles:
+// All analog inputs. All analog inputs share one driver, because ADC1 has two of the roles:
 //
 //   motor currents      ADC1, ADC2, ADC3 together, injected by the update of TIM1; ADC1 interrupts at their end
 //   gimbal, supply and  regular sequence of ADC1, started in every control period, stored by DMA2 stream 0
 //   internal reference
 //
-// From the update to the middle of the sampling window there are at most 0.2 us. In that time, at 1 A, resistance
-// alone changes the current by 2 mA in the smallest motor, one step of the ADC: the instant needs no correction.
+// The middle of the sampling window is at most 0.2 us after the update. In this time, at 1 A, the resistance changes
+// the current of the smallest motor by 2 mA, one ADC step. The sampling instant therefore needs no correction.
 #pragma once
 
 #include <array>
@@ -32,47 +32,47 @@ class AnalogInputs {
                                      pin(board::facts.gimbal[2]),
                                      pin(board::facts.supply)};
 
-  /// Before TIM1 runs: the converters miss a trigger that comes before their clocks.
+  /// Call this function before TIM1 runs: the converters miss a trigger that comes before their clocks.
   void start_clocks();
 
-  /// Connects the pins and sets the sequences up.
+  /// Connects the pins and sets up the sequences.
   void start();
 
-  /// Switches the converters on and lets TIM1 trigger them. Call it well before an update, so that all three are
-  /// accurate by then and hear the same one first.
+  /// Switches the converters on and enables their trigger from TIM1. Call this function well before an update. All
+  /// three converters are then accurate and respond to the same first update.
   void arm();
 
   struct Currents {
-    std::array<float, 3> current_A;  ///< from leg A to leg B of each bridge, offsets of the amplifiers included
-    bool are_new;                    ///< each converter has measured since they were last taken
+    std::array<float, 3> current_A;  ///< from leg A to leg B of each bridge; includes the amplifier offsets
+    bool are_new;                    ///< each converter has measured since the previous call
   };
-  /// At the last update. Acknowledges the interrupt.
+  /// Currents at the last update. Acknowledges the interrupt.
   Currents take_currents();
 
-  /// Starts the conversion of gimbal, supply and reference, which takes 36 us; call it once in a control period. If
-  /// conversions stop coming, it sets converter and stream up again.
+  /// Starts the conversion of gimbal, supply and reference, which takes 36 us. Call this function once per control
+  /// period. If no more conversions complete, the function sets up converter and stream again.
   void start_slow_conversions();
 
-  /// Voltage of the gimbal's potentiometers over that of their supply, 0..1.
+  /// Voltage of the gimbal potentiometers divided by their supply, 0..1.
   std::array<float, 3> gimbal_ratio() const;
   float supply_V() const;
-  /// As the converter shows them: for whom floats cost too much.
+  /// Converter counts, for code in which floats are too expensive.
   std::uint16_t supply_counts() const { return slow_[4]; }
-  /// The chip's internal reference; 0 before it was first measured.
+  /// Converter counts of the internal reference; 0 before its first measurement.
   std::uint16_t reference_counts() const { return slow_[3]; }
-  /// What the chip's maker has read of it with a VDDA of 3.3 V; 65535 if that was erased.
+  /// The manufacturer's reading of this reference at a VDDA of 3.3 V; 65535 if it was erased.
   static std::uint16_t calibrated_reference_counts();
-  /// Control periods for which gimbal and supply have not been measured anew; 0 or 1 while all is well.
+  /// Control periods without a new measurement of gimbal and supply; 0 or 1 in normal operation.
   std::uint32_t slow_age_periods() const { return slow_age_periods_; }
 
  private:
   void stop_slow();
   void set_up_slow();
 
-  /// Gimbal, internal reference, supply. Written by the DMA controller, which reaches the main RAM only.
+  /// Gimbal, internal reference, supply. Written by the DMA controller, which reaches only the main RAM.
   std::array<volatile std::uint16_t, 5> slow_{};
   std::uint32_t slow_age_periods_ = 0;
-  bool slow_stopped_ = true;  ///< to be set up in the next period: at the start, or again
+  bool slow_stopped_ = true;  ///< to be set up in the next period, at start-up or after an error
 };
 
 }  // namespace inkwell::drivers

@@ -1,15 +1,15 @@
-// The boot loader in the chip's system memory (AN2606): USB DFU among its ways to write the flash.
+// Boot loader in the chip's system memory (AN2606). USB DFU is one of its interfaces for writing the flash.
 #pragma once
 
 namespace inkwell::drivers {
 
-/// Resets the chip; start-up then goes to the boot loader, which stays until power or reset.
+/// Resets the chip. Start-up then enters the boot loader, which runs until power-off or reset.
 [[noreturn]] void start_boot_loader();
 
-/// Whether the run before ended with start_boot_loader(); once.
+/// Whether the previous run stopped with start_boot_loader(). Only the first call returns true.
 bool take_boot_loader_wish();
 
-/// For start-up, while clocks and peripherals are as after a reset.
+/// For start-up, while clocks and peripherals are in their reset state.
 extern "C" [[noreturn]] void enter_boot_loader();
 
 }  // namespace inkwell::drivers

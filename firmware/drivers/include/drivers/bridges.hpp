@@ -1,4 +1,4 @@
-// The three motor bridges: TIM1 drives legs A, TIM8 legs B, synchronised and centre-aligned.
+// The three motor bridges: TIM1 drives legs A, TIM8 legs B, synchronized and center-aligned.
 //
 // Counter and events of both timers in one control period (three PWM periods):
 //
@@ -8,7 +8,7 @@
 //       |                 |
 //       update            update: preloaded compare values of all six legs become active, ADCs sample
 //
-// The update comes at a turning point, in the middle of a zero vector, where the ripple current crosses its mean.
+// The update is at a turning point, in the middle of a zero vector, where the ripple current crosses its mean.
 #pragma once
 
 #include <array>
@@ -28,50 +28,53 @@ class Bridges {
       pin(board::facts.bridges[1].leg_b), pin(board::facts.bridges[2].leg_b), pin(board::facts.bridge_fault_tim1),
       pin(board::facts.bridge_fault_tim8)};
 
-  /// Sets up both timers and lets them run with all outputs off. Their update triggers the ADCs from now on.
+  /// Sets up both timers and starts them with all outputs off. From then on the update triggers the ADCs.
   void start();
 
-  /// Preloads no voltage for all motors: what the motors get if the control interrupt does not finish in time.
+  /// Preloads zero voltage for all motors, which applies if the control interrupt does not finish in time.
   void write_neutral();
 
-  /// Preloads duties of -1..1, which become active with the next update.
+  /// Preloads duty cycles of -1..1, which become active at the next update.
   void write(const std::array<float, 3>& duty);
 
-  /// Preloads all low sides on: a motor that turns is braked by its own voltage.
+  /// Preloads all low sides on: the back EMF of a turning motor then brakes it.
   void write_brake();
 
-  /// Lets the bridges switch. Does nothing if they do already, so that a fault cannot be cleared by accident.
+  /// Switches the bridges on. The function has no effect while the bridges are on, so that a fault is not cleared by
+  /// accident.
   void enable();
 
-  /// All six legs low and the bridges' enable wire low, at once.
+  /// Sets all six legs and the enable wire of the bridges low immediately.
   void disable();
 
-  /// The fault wire has been low since the bridges were enabled, or is low now.
+  /// Whether the fault wire is low, or has been low since the bridges were enabled.
   bool fault() const;
 
-  /// Whether the fault wire does as the own pulls of TIM1's pin, or of TIM8's, do: it reaches neither bridges nor its
-  /// pull-up. While the bridges are off; no interrupt, which might take that for a fault, comes for 8 us.
+  /// Whether the fault wire follows the internal pulls at the pin of TIM1 or TIM8. The wire then reaches neither the
+  /// bridges nor its pull-up. Call this function while the bridges are off. The function disables interrupts for 8 us,
+  /// because an interrupt could read the pull-down as a fault.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
-  /// What the enable wire, the heartbeat's, the monostable's output and the legs' wires are, at the chip's pins,
-  /// whoever drives them there.
+  /// Levels of the enable wire, the heartbeat wire, the monostable output and the leg wires at the chip's pins. Other
+  /// circuits may drive these wires too.
   bool enable_is_high() const;
   bool heartbeat_is_high() const;
   bool hold_is_high() const;
   bool a_leg_is_high() const;
-  /// As the control interrupt has left them.
+  /// State that the control interrupt has set.
   bool are_on() const { return enabled_; }
 
-  /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
-  /// that the interrupt took longer than its period.
+  /// Whether an update occurred after the last begin_period(). True at the end of the control interrupt means that the
+  /// interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
-  /// If the bridges are on the heartbeat rises: they may stay so for `bridge_hold_s`.
-  /// True if they were to be on and had been let go: the heartbeat before came too long ago, or did not reach them.
+  /// Raises the heartbeat if the bridges are on. The bridges may then stay on for `bridge_hold_s`. Returns true if the
+  /// bridges should be on but were switched off: the previous heartbeat came too long ago, or did not reach the
+  /// bridges.
   [[nodiscard]] bool begin_period();
-  /// The heartbeat falls, so that it can rise again.
+  /// Lowers the heartbeat, so that the next period can raise it.
   void end_period();
 
-  /// Waits for the next update, at most two control periods. False if one of the timers does not run.
+  /// Waits for the next update, at most two control periods. Returns false if one of the timers does not run.
   [[nodiscard]] bool wait_for_update();
 
  private:

@@ -1,4 +1,5 @@
-// The chip's own CRC-32 of words (RM0090, chapter CRC): polynomial 0x04C11DB7, the highest bit first, from all ones.
+// CRC-32 unit of the chip for words (RM0090, chapter CRC): polynomial 0x04C11DB7, highest bit first, initially all
+// ones.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +14,10 @@ class Checksum {
   static constexpr std::array claims{peripheral<registers::CRC>()};
 
   void start();
-  /// Forgets the words so far.
+  /// Discards the previous words.
   void begin();
   void add(std::uint32_t word);
-  /// Of the words since begin().
+  /// Checksum of the words since begin().
   std::uint32_t value() const;
 };
 

@@ -1,11 +1,12 @@
-// What each driver has to itself: peripherals, pins, DMA streams and interrupt lines.
+// Resources that belong to one driver: peripherals, pins, DMA streams and interrupt lines.
 //
 //   class Encoders {
 //    public:
 //     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), ...};
 //
-// A driver has a peripheral's registers, starts its clock, sets a pin up and enables an interrupt only if it claims
-// them, and the application's PartsList does not compile with two drivers that claim the same.
+// A driver must claim a peripheral to access its registers and start its clock. A driver must also claim the pins that
+// it sets up and the interrupts that it enables. The application's PartsList does not compile if two drivers claim the
+// same resource.
 #pragma once
 
 // To add a driver:
@@ -30,13 +31,13 @@ enum class Interrupt : std::uint8_t { voltage_detector = 1, analog_converters = 
 struct Claim {
   enum class Kind : std::uint8_t { peripheral, pin, stream, interrupt };
   Kind kind;
-  std::uint32_t which;  ///< address of a peripheral's registers; a stream's number is added to its controller's
+  std::uint32_t which;  ///< base address of a peripheral; for a stream, base address of its controller plus its number
   bool operator==(const Claim&) const = default;
 };
 
 namespace detail {
 
-/// What stands behind a peripheral's name.
+/// Base address and register map of a peripheral.
 template <class Peripheral>
 struct Behind;
 template <template <std::uint32_t> class Map, std::uint32_t base_>
@@ -100,14 +101,14 @@ struct Claimed : Behind<Peripheral> {
 
 }  // namespace detail
 
-/// The registers of a driver's own peripheral.
+/// Registers of a peripheral that the driver claims.
 template <class Driver, class Peripheral>
 using RegistersOf = typename detail::Claimed<Driver, Peripheral, peripheral<Peripheral>()>::Registers;
-/// Those of the controller of its own stream.
+/// Registers of the controller of a stream that the driver claims.
 template <class Driver, class Controller, std::uint32_t number>
 using RegistersOfStream = typename detail::Claimed<Driver, Controller, stream<Controller, number>()>::Registers;
 
-/// All drivers of an application.
+/// List of all drivers of an application.
 template <class... Drivers>
 struct PartsList {
   static_assert(detail::AllApart<Drivers...>::value);

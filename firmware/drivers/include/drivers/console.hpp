@@ -1,4 +1,4 @@
-// Some lines of text after each start, on USART2 at 115200 8N1: for the bench, before USB speaks.
+// Some lines of text after each boot, on USART2 at 115200 8N1, for use on the bench before USB works.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace inkwell::drivers {
 
-/// Waits for each character to leave, about 0.1 ms: for start-up only.
+/// The console waits about 0.1 ms for each sent character, so only start-up uses it.
 class Console {
  public:
   static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::facts.console_transmit)};
 
-  /// Also again, when the clock of its bus has changed.
+  /// Call this function again when the clock of the bus has changed.
   void start(std::uint32_t bus_Hz);
   void write(std::string_view text);
   void write_hexadecimal(std::uint32_t word);

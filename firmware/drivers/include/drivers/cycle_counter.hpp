@@ -1,5 +1,5 @@
-// The processor's cycle counter (ARMv7-M, DWT): measures the stages of the control interrupt, and every wait of the
-// drivers, each of which has an end.
+// Cycle counter of the processor (ARMv7-M, DWT). The counter measures the stages of the control interrupt and limits
+// every wait of the drivers.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ class CycleCounter {
 
   static std::uint32_t now() { return registers::DWT::CYCCNT::read(); }
 
-  /// Begins the first lap of a control period; the count at that moment.
+  /// Begins the first lap of a control period and returns the present count.
   std::uint32_t begin() { return last_ = now(); }
 
-  /// Cycles since the last lap, right over a wrap of the counter.
+  /// Cycles since the last lap, correct over a wrap of the counter.
   std::uint32_t lap() {
     const std::uint32_t present = now();
     const std::uint32_t cycles = present - last_;
@@ -34,12 +34,12 @@ class CycleCounter {
   std::uint32_t last_ = 0;
 };
 
-/// Waits until a condition holds, at most `limit_cycles`; says whether it came to hold.
+/// Waits until a condition is true, for at most `limit_cycles`. Returns whether the condition became true.
 template <class Condition>
 [[nodiscard]] bool wait_for(std::uint32_t limit_cycles, Condition condition) {
   const std::uint32_t from = CycleCounter::now();
   while (!condition())
-    if (CycleCounter::now() - from > limit_cycles) return condition();  // an interrupt may have taken the time
+    if (CycleCounter::now() - from > limit_cycles) return condition();  // an interrupt may have used the time
   return true;
 }
 

@@ -17,13 +17,13 @@ class Encoders {
       peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), pin(board::facts.encoders[1].b),
       peripheral<registers::TIM4>(), pin(board::facts.encoders[2].a), pin(board::facts.encoders[2].b)};
 
-  /// Counts every edge of both channels, four a line, from 0.
+  /// Counts every edge of both channels, four per line, from 0.
   void start();
 
-  /// The timers' counts, which wrap at 16 bits (TIM5 could do more; all three are alike on purpose).
+  /// Timer counts, which wrap at 16 bits. TIM5 has 32 bits, but the interface is the same for all three.
   std::array<std::uint16_t, 3> read() const;
 
-  /// Whether a wire of `encoder`, 0..2, does as the pin's own pulls do, so that no encoder drives it: A, or B. Takes
+  /// Whether wire A or B of `encoder`, 0..2, follows the internal pulls of its pin, so that no encoder drives it. Takes
   /// 20 us.
   bool wire_a_floats(std::size_t encoder) const;
   bool wire_b_floats(std::size_t encoder) const;

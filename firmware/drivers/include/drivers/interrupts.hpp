@@ -1,4 +1,4 @@
-// Lines of the interrupt controller, each of one driver (PM0214, chapter NVIC).
+// Lines of the interrupt controller, each for one driver (PM0214, chapter NVIC).
 #pragma once
 
 #include <drivers/claims.hpp>
@@ -6,7 +6,7 @@
 
 namespace inkwell::drivers {
 
-/// No interrupt comes while it lives, which may be some microseconds, or a sleep that an interrupt ends.
+/// Disables interrupts during its lifetime: some microseconds, or a sleep that an interrupt ends.
 class InterruptsHeld {
  public:
   InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }
@@ -15,12 +15,12 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// Last of every handler. While one returns with a store under way, the processor may clear an interrupt that comes
-/// then and run another in its place (erratum 838869 of the Cortex-M4; RM0090's chip has that core).
+/// Last statement of every handler. Without this statement, a handler may return while a store is in progress. The
+/// processor may then clear a newly arrived interrupt and run another one instead (erratum 838869 of the Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
-/// A handler that comes when every interrupt has been served, before the program goes on, and that each of them
-/// interrupts (PendSV: ARMv7-M, B1.5.6).
+/// Handler that runs after all interrupts have been served, before the program continues (PendSV: ARMv7-M, B1.5.6).
+/// Every interrupt can preempt this handler.
 struct CallBehindInterrupts {
   static void start() {
     constexpr std::uint32_t behind_all = 0xF0;
@@ -29,7 +29,7 @@ struct CallBehindInterrupts {
   static void ask() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
 };
 
-/// A line as its driver has it. None interrupts another, and faults interrupt each.
+/// Interrupt line of a driver. No interrupt preempts another one, and faults preempt all of them.
 template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {

@@ -1,4 +1,4 @@
-// What a run leaves for the next one: it lies in memory that start-up does not clear.
+// Data from one run for the next run, in memory that start-up does not clear.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace inkwell::drivers {
 
-/// Put it into .noinit. Memory after power-up holds anything, so what is there is checked.
+/// Place objects of this class in .noinit. Memory is undefined after power-on, so the contents are checked.
 template <class Facts>
 class KeptOverReset {
  public:
@@ -21,7 +21,7 @@ class KeptOverReset {
 
   void forget() { check_ = ~check_of(facts_); }
 
-  /// What the run before left, once.
+  /// Returns the data of the previous run, once.
   std::optional<Facts> take() {
     const bool is_sound = check_ == check_of(facts_);
     forget();
@@ -30,7 +30,7 @@ class KeptOverReset {
   }
 
  private:
-  /// Each bit that changes changes it, and so do words that change places.
+  /// The check value changes if any single bit changes, and if words are exchanged.
   static std::uint32_t check_of(const Facts& facts) {
     std::uint32_t check = 0x696E6B77;
     for (std::size_t i = 0; i < sizeof facts; i += sizeof(std::uint32_t)) {

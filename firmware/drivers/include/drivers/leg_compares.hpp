@@ -1,4 +1,4 @@
-// From a duty to the compare values of a bridge's two legs. No register here.
+// Conversion of a duty cycle to the compare values of a bridge's two legs, without register access.
 #pragma once
 
 #include <cstdint>
@@ -7,21 +7,21 @@
 
 namespace inkwell::drivers {
 
-/// Counts of the timers at which the legs of one bridge switch.
+/// Timer counts at which the legs of one bridge switch.
 struct LegCompares {
   std::uint16_t leg_a;
   std::uint16_t leg_b;
   bool operator==(const LegCompares&) const = default;
 };
 
-/// Legs of (1 + u) / 2 and (1 - u) / 2. The difference of the legs is what the motor sees, so it is rounded and
-/// not each leg: the motor gets steps of 1 / pwm_top. A duty beyond the board's limit is bounded to it, and one
-/// that is not a number gives no voltage.
+/// The duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The motor voltage depends on the difference of the
+/// legs, so the difference is rounded: it has steps of 1 / pwm_top. The duty cycle is limited to the board's limit. A
+/// value that is not a number results in zero voltage.
 constexpr LegCompares leg_compares(float duty) {
   constexpr float limit = board::duty_limit;
   const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;
   constexpr auto top = static_cast<std::int32_t>(board::pwm_top);
-  // Rounds to nearest: what is converted is positive, where a conversion rounds down.
+  // Rounds to nearest: the converted value is positive, and the conversion rounds positive values down.
   const auto difference = static_cast<std::int32_t>(bounded * top + (top + 0.5f)) - top;
   const std::int32_t leg_a = (top + difference) / 2;
   return {static_cast<std::uint16_t>(leg_a), static_cast<std::uint16_t>(leg_a - difference)};

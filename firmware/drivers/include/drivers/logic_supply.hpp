@@ -1,4 +1,4 @@
-// The chip's own supply of 3.3 V, by its voltage detector (RM0090, "Programmable voltage detector").
+// Monitor of the 3.3 V CPU supply, with the chip's voltage detector (RM0090, "Programmable voltage detector").
 #pragma once
 
 #include <array>
@@ -14,24 +14,26 @@ class LogicSupply {
  public:
   static constexpr std::array claims{peripheral<registers::EXTI>(), interrupt(Interrupt::voltage_detector)};
 
-  /// After start_clocks(), which gives the detector its clock.
+  /// Call this function after start_clocks(), which enables the clock of the detector.
   static void start() {
     using registers::PWR;
-    constexpr std::uint32_t falls_at_2_92_V = 0b110;  // data sheet, V_PVD; and rises at 3.03 V
+    constexpr std::uint32_t falls_at_2_92_V = 0b110;  // data sheet, V_PVD; the rising threshold is 3.03 V
     PWR::CR::modify(PWR::CR::PLS(falls_at_2_92_V), PWR::CR::PVDE(1));
   }
 
-  /// From now on its interrupt comes when the supply falls too low.
+  /// Enables the interrupt for a supply that falls too low.
   static void arm() {
-    Lines::RTSR::write(detector);  // its output is high while the supply is low
+    Lines::RTSR::write(detector);  // the detector output is high while the supply is low
     Lines::IMR::write(detector);
     InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
-  /// It is below 2.9 V: a tenth of a volt before the brown-out reset, and the sensors' references fall with it.
+  /// Whether the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The sensor references fall
+  /// with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// In the interrupt. False if it is not low any more, as after an edge of a detector that was just switched on.
+  /// Call this function in the interrupt. Returns false if the supply is no longer low, as after an edge of a newly
+  /// enabled detector.
   INKWELL_INTERRUPT static bool has_fallen() {
     Lines::PR::write(detector);
     return is_low();

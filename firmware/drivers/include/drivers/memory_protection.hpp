@@ -1,12 +1,15 @@
-// What no instruction may do with the chip's memory (PM0214, section 4.2 "Memory protection unit").
+// Restrictions on memory access (PM0214, section 4.2 "Memory protection unit").
 #pragma once
 
 namespace inkwell::drivers {
 
-/// From now on a fault: any access by a null pointer, to the alias that a reset maps to address 0, behind the flash
-/// (which is below the stack), or to the alias of a bit of the SRAM; a write to the flash or to the code and tables of
-/// the interrupts in the SRAM; and an instruction from anywhere else in the SRAM. Call it when these lie where they
-/// belong.
+/// Call this function after the interrupt code and tables have been copied. From then on each of these accesses is a
+/// fault:
+/// - any access through a null pointer, or to the alias that a reset maps to address 0
+/// - any access between the end of the flash and the stack, which detects a stack overflow
+/// - any access to the bit-band alias of the SRAM
+/// - a write to the flash, or to the interrupt code and tables in RAM
+/// - an instruction fetch from any other part of the SRAM
 void protect_memory();
 
 }  // namespace inkwell::drivers

@@ -1,6 +1,6 @@
-// Erases and programs sectors of the flash that hold parameters. While it does, each fetch and each read of the flash
-// waits, that of this code too: the main loop stands still for 16 us a word (100 us on the slowest chip) and for a
-// quarter of a second (half a second) a sector, but interrupts, which run from the RAM, go on.
+// Erases and programs the flash sectors for parameters. Each fetch and each read of the flash waits during this time,
+// including fetches of this code. Programming stops the main loop for 16 us per word, or 100 us on the slowest chip.
+// Erasing stops it for 0.25 s per sector, or 0.5 s on the slowest chip. Interrupts run from RAM and continue.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@ class ParameterFlash {
  public:
   static constexpr std::array claims{peripheral<registers::FLASH_PROGRAMMING>()};
 
-  /// Programs a word that is erased; false if it does not read as `value` then.
+  /// Programs an erased word. Returns false if the word does not read as `value` afterwards.
   [[nodiscard]] bool program(volatile std::uint32_t* place, std::uint32_t value);
-  /// The sector of 16 KB that begins at `begin`.
+  /// Erases the sector of 16 KB that starts at `begin`.
   void erase(const volatile std::uint32_t* begin);
 };
 

@@ -1,4 +1,4 @@
-// Clocks of the peripherals (RM0090, RCC): a peripheral does nothing before its driver has started its clock.
+// Peripheral clocks (RM0090, RCC): a peripheral does nothing before its driver has started its clock.
 #pragma once
 
 #include <drivers/claims.hpp>
@@ -10,7 +10,7 @@ namespace detail {
 
 using registers::RCC;
 
-/// The field that starts a peripheral's clock.
+/// Register field that enables the clock of a peripheral.
 template <class Peripheral>
 struct ClockOf;
 // clang-format off
@@ -39,14 +39,14 @@ void start_clock() {
 
 }  // namespace detail
 
-/// Starts the clocks of a driver's own peripherals.
+/// Starts the clocks of peripherals that the driver claims.
 template <class Driver, class... Peripherals>
 void start_clocks_of() {
   (require_claim<Driver, peripheral<Peripherals>()>(), ...);
   (detail::start_clock<Peripherals>(), ...);
 }
 
-/// Starts the clock of the controller of a driver's own stream.
+/// Starts the clock of the controller of a stream that the driver claims.
 template <class Driver, class Controller, std::uint32_t number>
 void start_clock_of_stream() {
   require_claim<Driver, stream<Controller, number>()>();

@@ -1,5 +1,5 @@
-// Pins of the chip by the board's facts (RM0090, chapter GPIO). A pin is a template argument, so that setting
-// one up is a few stores. Only the driver that claims a pin can set it up.
+// Pins of the chip, configured from the facts of the board (RM0090, chapter GPIO). A pin is a template argument, so
+// that its setup compiles to a few stores. Only the driver that claims a pin can set it up.
 #pragma once
 
 #include <type_traits>
@@ -36,7 +36,7 @@ struct Port<'C'> {
 template <board::Pin pin>
 using Registers = typename Port<pin.port>::Registers;
 
-/// The field of `width` bits that belongs to a pin in a register with one such field for each pin.
+/// Field of a pin in a register that has one field of `width` bits for each pin.
 template <class Register, board::Pin pin, unsigned width>
 using PinField = registers::Field<Register, pin.number % (32 / width) * width, width>;
 
@@ -51,7 +51,7 @@ void configure(Mode mode, Pull pull, Speed speed) {
 
 }  // namespace detail
 
-/// Clocks the ports; call it before anything else in this file.
+/// Enables the port clocks. Call this function before anything else in this file.
 inline void start_pins() {
   using Enable = registers::RCC::AHB1ENR;
   Enable::modify(Enable::GPIOAEN(1), Enable::GPIOBEN(1), Enable::GPIOCEN(1));
@@ -59,7 +59,6 @@ inline void start_pins() {
   static_cast<void>(Enable::read());
 }
 
-/// Connects a pin to its peripheral.
 template <class Driver, board::PeripheralPin wiring>
 void connect(Pull pull, Speed speed) {
   using Io = detail::Registers<wiring.pin>;
@@ -68,14 +67,14 @@ void connect(Pull pull, Speed speed) {
   detail::configure<Driver, wiring.pin>(detail::Mode::alternate, pull, speed);
 }
 
-/// Frees a pin from its digital circuits, for an ADC.
+/// Disconnects a pin from its digital circuits, for an ADC.
 template <class Driver, board::AnalogInput input>
 void connect_analog() {
   detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
 }
 
-/// Whether the level of a pin with a pull-up follows its own pulls: nothing drives it from outside. A pull of some 40 k
-/// has this many cycles for what hangs on the pin.
+/// Whether the level of a pin with a pull-up follows its internal pulls, so that nothing else drives the pin. A pull of
+/// about 40 kOhm has `settle_cycles` to charge the capacitance at the pin.
 template <class Driver, board::Pin number>
 bool follows_pulls(std::uint32_t settle_cycles) {
   require_claim<Driver, pin(number)>();
@@ -93,14 +92,14 @@ bool follows_pulls(std::uint32_t settle_cycles) {
 template <class Driver, board::Pin pin>
 struct DigitalInput {
   static void start(Pull pull) { detail::configure<Driver, pin>(detail::Mode::input, pull, Speed::low); }
-  /// A bit for each pin of this one's port.
+  /// Levels of all pins of the port, one bit per pin.
   static std::uint32_t read_port() { return detail::Registers<pin>::IDR::read(); }
   static bool is_high() { return (read_port() >> pin.number & 1u) != 0; }
 };
 
 template <class Driver, board::Pin pin>
 struct DigitalOutput {
-  /// Drives the pin low from the first moment.
+  /// The pin is low from its first moment as an output.
   static void start() {
     set_low();
     detail::configure<Driver, pin>(detail::Mode::output, Pull::none, Speed::low);

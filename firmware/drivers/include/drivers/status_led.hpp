@@ -1,4 +1,4 @@
-// The status LED: what it shows can be told apart without counting.
+// Status LED. The patterns of the LED can be distinguished without counting.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 namespace inkwell::drivers {
 
 enum class LedPattern : std::uint8_t {
-  slow_blink,  ///< once a second: waits for the inkwell
+  slow_blink,  ///< once per second: waits for the inkwell
   steady,      ///< pose is valid
-  fast_blink,  ///< five times a second: fault
+  fast_blink,  ///< five times per second: fault
 };
 
 class StatusLed {
@@ -23,7 +23,7 @@ class StatusLed {
   }
   void set(bool on) { Output::set(on != board::facts.status_led_shines_when_low); }
 
-  /// Call it often; `time_periods` is in control periods.
+  /// Call this function often. `time_periods` is in control periods.
   void show(LedPattern pattern, std::uint32_t time_periods) {
     set(pattern == LedPattern::steady || time_periods % period(pattern) < period(pattern) / 2);
   }

@@ -1,11 +1,11 @@
-// Buttons and the inkwell switch: closing to ground, with pull-ups in the chip.
+// Buttons and inkwell switch: contacts to ground, with pull-ups in the chip.
 #pragma once
 
 #include <drivers/pins.hpp>
 
 namespace inkwell::drivers {
 
-/// True is closed. The contacts bounce; who reads them more than once debounces them.
+/// True is closed. The contacts bounce, so a caller that polls them must debounce them.
 struct SwitchContacts {
   bool button_1;
   bool button_2;
@@ -23,7 +23,7 @@ class Switches {
     DigitalInput<Switches, board::facts.inkwell_switch>::start(Pull::up);
   }
 
-  /// All at one instant, in one access to their port.
+  /// Reads all contacts at one instant, with one port access.
   SwitchContacts read() const {
     static_assert(board::facts.button_1.port == board::facts.button_2.port &&
                   board::facts.button_1.port == board::facts.inkwell_switch.port);

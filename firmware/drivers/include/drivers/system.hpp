@@ -1,4 +1,4 @@
-// Small things that belong to the chip as a whole: reset and its cause, sleep, identity.
+// Functions of the chip as a whole: reset and its cause, sleep, identity.
 #pragma once
 
 #include <array>
@@ -9,24 +9,24 @@
 
 namespace inkwell::drivers {
 
-/// Flags of RCC_CSR: why the chip started.
+/// Flags of RCC_CSR: the cause of the last reset.
 struct ResetCause {
   std::uint32_t flags;
   bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
-  /// The supply fell below its brown-out level and rose again. Power that comes sets that flag too.
+  /// The supply fell below its brown-out level and rose again. Power-on sets this flag too.
   bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 
-/// Reads the cause of the last reset and clears it, so that the next one stands alone.
+/// Reads the cause of the last reset and clears it, so that the next cause is reported alone.
 inline ResetCause take_reset_cause() {
   const ResetCause cause{registers::RCC::CSR::read()};
   registers::RCC::CSR::modify(registers::RCC::CSR::RMVF(1));
   return cause;
 }
 
-/// Whether the boot pins led into the chip's boot loader, and that started the firmware (RM0090, SYSCFG_MEMRMP: after a
-/// reset it tells the pins' choice).
+/// Whether the boot pins selected the chip's boot loader, and the boot loader started the firmware. After a reset
+/// SYSCFG_MEMRMP contains the selection of the pins (RM0090).
 inline bool started_by_boot_loader() {
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
   static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"
@@ -42,7 +42,7 @@ inline bool started_by_boot_loader() {
   for (;;) asm volatile("dsb" ::: "memory");
 }
 
-/// The chip's unique identifier as 24 hexadecimal digits (RM0090, "Unique device ID register").
+/// Unique identifier of the chip as 24 hexadecimal digits (RM0090, "Unique device ID register").
 inline std::array<char, 24> unique_identifier() {
   std::array<char, 24> digits{};
   for (unsigned i = 0; i < digits.size(); ++i)
@@ -50,9 +50,8 @@ inline std::array<char, 24> unique_identifier() {
   return digits;
 }
 
-/// Sleeps until an interrupt has been served, unless there is something to do already. The interrupts wait while that
-/// is asked, and one that waits ends the sleep at once: none comes between the question and the sleep and is slept
-/// over.
+/// Sleeps until an interrupt has been served, unless there is work already. Interrupts are disabled during the check,
+/// and a pending interrupt ends the sleep immediately. An interrupt between check and sleep therefore cannot be missed.
 template <class Question>
 void sleep_unless(Question is_something_to_do) {
   const InterruptsHeld held;

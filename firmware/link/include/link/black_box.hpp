@@ -1,4 +1,5 @@
-// The black box: every signal of the last 100 ms before a fault and the first 100 ms after it, kept over a reset.
+// The black box: all signals of the last 100 ms before a fault and of the first 100 ms after it, retained across a
+// reset.
 #pragma once
 
 #include <array>
@@ -11,8 +12,8 @@
 
 namespace inkwell::link {
 
-/// What the black box remembers over a reset. It lies in memory that start-up does not clear and that holds anything
-/// after power-up, so nothing in here is believed before its check has been looked at.
+/// Data that the black box retains across a reset. Start-up does not clear this memory, and its content is undefined
+/// after power-on. Every part therefore has a checksum, which must match before the part is used.
 struct BlackBoxNotes {
   struct Cause {
     std::uint32_t fault;  ///< protocol::Fault
@@ -22,10 +23,12 @@ struct BlackBoxNotes {
     protocol::CrashFacts crash;
     std::uint32_t check;
   };
-  std::uint32_t tables_hash;   ///< of the tables that the rows are made by; another value: nothing in here counts
-  Cause cause;                 ///< a black box is kept, if its check is right
-  std::uint32_t rows_written;  ///< before the fault; only as many as have room are there. Falls before it wraps
-  std::uint32_t rows_added;    ///< from the fault on
+  std::uint32_t tables_hash;  ///< hash of the tables that define the rows; with another hash all data is ignored
+  Cause cause;                ///< a black box exists if the checksum of this member matches
+  /// Number of rows before the fault. Only the newest rows are in the ring. number_after() decreases the number before
+  /// it wraps.
+  std::uint32_t rows_written;
+  std::uint32_t rows_added;  ///< number of rows from the fault on
 };
 
 struct BlackBoxPlace {
@@ -40,11 +43,12 @@ struct BlackBoxMemory {
   std::array<BlackBoxPlace, from_fault> line;
 };
 
-/// Of no use in the control interrupt: the main loop follows the ring of samples and takes one in twenty, and so also
-/// finds the fault, with its period. What it is too late for is missing, as the rows' periods tell.
+/// Main loop only, because the control interrupt has no time for it. The main loop reads the sample ring, records one
+/// sample in twenty, and finds the fault and its period. Rows can be missing if the main loop is late. The periods of
+/// the rows then show the gap.
 class BlackBox {
  public:
-  /// Looks at nothing in `memory` before start().
+  /// Does not read `memory` before start().
   template <std::size_t before, std::size_t from_fault>
   BlackBox(const SampleRing& samples, BlackBoxMemory<before, from_fault>& memory)
       : samples_(samples),
@@ -53,16 +57,16 @@ class BlackBox {
         line_(memory.line),
         followed_(samples.recorded()) {}
 
-  /// Once, before the control interrupt runs: finds what the run before this one has left. `raised` is the fault that
-  /// this start is going to raise because of how that run ended, or none; `crash` what the processor noted then.
+  /// Reads the rows of the previous run. Call it once, before the control interrupt starts. `raised` is the fault that
+  /// this start will raise for the end of the previous run, or `none`. `crash` is the crash record of that run.
   void start(protocol::Fault raised, const protocol::CrashFacts& crash);
 
-  /// Takes what has been recorded since the last call. Call it every time that the main loop comes round.
+  /// Records the samples since the last call. Call it in every pass of the main loop.
   void follow();
 
   protocol::BlackBoxReport report() const;
-  /// Chooses the first row of the next rows() by a BlackBoxRequest. A request that is not valid changes nothing but the
-  /// result in rows(); the bytes after it are ignored.
+  /// Selects the first row of the next rows() from a BlackBoxRequest. An invalid request changes only the result in
+  /// rows(). Bytes after the request are ignored.
   void select_rows(std::span<const std::byte> request);
   protocol::BlackBoxRowsReport rows() const;
 
@@ -73,22 +77,22 @@ class BlackBox {
   void keep(protocol::Fault fault, std::uint32_t period, bool is_restart, const protocol::CrashFacts& crash);
   void take(const Sample& sample);
   void add_after_fault(const Sample& sample);
-  /// Where a row before the fault lies, by its number since recording began.
+  /// Returns the slot of a row before the fault. `number` counts rows since recording started.
   BlackBoxPlace& before(std::uint32_t number) const { return ring_[number % ring_.size()]; }
   std::uint32_t row_count() const { return rows_before_ + rows_from_fault_; }
 
   const SampleRing& samples_;
   BlackBoxNotes& notes_;
-  std::span<BlackBoxPlace> ring_;  ///< before the fault
-  std::span<BlackBoxPlace> line_;  ///< from the fault on
+  std::span<BlackBoxPlace> ring_;  ///< rows before the fault
+  std::span<BlackBoxPlace> line_;  ///< rows from the fault on
   Phase phase_ = Phase::recording;
   std::uint32_t tables_hash_ = 0;
-  std::uint32_t followed_;  ///< samples of the ring
-  // While a black box is kept: how many of its rows are sound.
+  std::uint32_t followed_;  ///< number of samples read from the ring
+  // Numbers of valid rows of the black box.
   std::uint32_t rows_before_ = 0;
   std::uint32_t rows_from_fault_ = 0;
-  std::uint16_t first_row_ = 0;                                         ///< wanted by the host
-  protocol::RequestResult result_ = protocol::RequestResult::accepted;  ///< of its last request
+  std::uint16_t first_row_ = 0;                                         ///< requested by the host
+  protocol::RequestResult result_ = protocol::RequestResult::accepted;  ///< result of the host's last request
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// Commands on their way from the host to the control interrupt.
+// Queue of commands from the host to the control interrupt.
 #pragma once
 
 #include <array>
@@ -12,70 +12,71 @@
 
 namespace inkwell::link {
 
-/// The command in an output report (from its report id on), valid or not; nothing if the length, id or version differs.
+/// Returns the command in an output report, valid or not. The report starts with its report id. Returns nothing for a
+/// wrong length, id or version.
 std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> report);
 
-/// Whether the command, signals, motor, amplitude and duration are within the protocol.
+/// True if command, signals, motor, amplitude and duration are within the protocol's ranges.
 bool is_valid(const protocol::CommandReport& command);
 
-/// The command in an output report if it is whole and valid.
+/// Returns the command in an output report if the report is complete and the command valid.
 std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
 
-/// Queue from the main loop to the control interrupt, which takes one command a period.
+/// Queue from the main loop to the control interrupt, which removes one command per control period.
 class CommandQueue {
  public:
   static constexpr std::uint32_t capacity = 8;
 
   // ---- main loop ----
 
-  /// Whether push() will take a command now.
+  /// True if the queue is not full.
   bool has_room() const { return pushed_.load() - taken_.load() != capacity; }
 
-  /// Queues a decoded command and notes a sign of life; false if the queue is full.
+  /// Queues a decoded command and records a sign of life. Returns false if the queue is full.
   [[nodiscard]] bool push(const protocol::CommandReport& command);
 
-  /// The host was heard, without a command.
+  /// Records a sign of life without a command.
   void note_sign_of_life() { sign_of_life_.store(true); }
 
-  /// Commands that were pushed since the start.
+  /// Number of commands queued since start-up.
   std::uint32_t pushed() const { return pushed_.load(); }
-  /// Whether the interrupt has taken the command that was the last one when pushed() returned this.
+  /// True if the interrupt has removed the command after which pushed() returned this number.
   bool was_taken(std::uint32_t pushed) const { return static_cast<std::int32_t>(taken_.load() - pushed) >= 0; }
 
-  /// Whether such a command waits for the interrupt.
+  /// True if such a command is in the queue.
   bool waiting(protocol::Command command) const;
 
-  /// The host is gone: what is queued is forgotten, and the interrupt's next command is a stop that is told apart from
-  /// a user's.
+  /// Call this when the connection to the host is lost. It discards the queued commands. The next take() returns a stop
+  /// command that the interrupt can distinguish from a stop command of a user.
   void host_gone();
 
   // ---- control interrupt ----
 
-  /// Whether a command arrived since the last call; the controller then hears host_alive().
+  /// True if a command arrived since the last call. The interrupt then calls host_alive() of the controller.
   bool take_sign_of_life() {
     const bool seen = sign_of_life_.load();
     if (seen) sign_of_life_.store(false);
     return seen;
   }
 
-  /// The next command, to be carried out in this period; null if there is none. Valid until the interrupt returns.
+  /// Returns the command for this control period, or null. The command is valid until the interrupt returns.
   const protocol::CommandReport* take();
 
-  /// Whether that is the stop of host_gone(), and not a host's own.
+  /// True for the stop command of host_gone(), false for a stop command of the host.
   bool is_of_gone_host(const protocol::CommandReport& command) const { return &command == &stop_; }
 
-  /// Token of the last command taken, for PoseReport::command_token.
+  /// Token of the last removed command, for PoseReport::command_token.
   std::uint8_t last_token() const { return last_token_; }
 
  private:
   std::array<protocol::CommandReport, capacity> commands_;
   Shared<std::uint32_t> pushed_{0};     ///< written by the main loop
   Shared<std::uint32_t> taken_{0};      ///< written by the interrupt
-  Shared<std::uint32_t> forgotten_{0};  ///< what was pushed before is forgotten, if `host_gone_`
+  Shared<std::uint32_t> forgotten_{0};  ///< commands before this number are discarded if `host_gone_` is set
   Shared<bool> host_gone_{false};
   Shared<bool> sign_of_life_{false};
   std::uint8_t last_token_ = 0;
-  protocol::CommandReport stop_{.command = protocol::Command::stop};  ///< for a host that is gone
+  protocol::CommandReport stop_{.command = protocol::Command::stop};  ///< stop command of host_gone()
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// The program that drives the arm, of those that are connected.
+// The claim of the driver, which is one of the connected programs.
 #pragma once
 
 #include <cstddef>
@@ -9,27 +9,27 @@
 
 namespace inkwell::link {
 
-/// Holds the claim of one program at a time. Main loop only.
+/// Claim of at most one program. Main loop only.
 class DriverClaim {
  public:
-  /// Carries out a ClaimReport. Returns true if it ended the claim that was held, by release or takeover. A report that
-  /// is too short, of another version, with an unknown operation or with claim 0 has no effect.
+  /// Carries out a ClaimReport. Returns true if the report ended the current claim by release or takeover. A report
+  /// that is too short, or has another version, an unknown operation or claim 0, has no effect.
   bool accept(std::span<const std::byte> report, std::uint32_t now_periods);
 
-  /// Whether a request with this claim may be carried out: there is no driver, or this is the driver.
+  /// True if a request with this claim is permitted: the claim is the driver's, or there is no driver.
   bool permits(std::uint32_t claim) const { return claim_ == 0 || claim == claim_; }
   void count_refusal() { ++refused_; }
   bool is_held() const { return claim_ != 0; }
-  /// Whether this is the driver.
+  /// True if the claim is the driver's.
   bool is_held_by(std::uint32_t claim) const { return claim != 0 && claim == claim_; }
 
-  /// Counts the seconds that the program drives. Call it more often than once a second.
+  /// Counts the seconds since the program became the driver. Call it at least once per second.
   void pass_time(std::uint32_t now_periods);
-  /// The driver was heard.
+  /// Records a sign of life of the driver.
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
-  /// Whether the driver has been silent for too long. Call it more often than the counter of periods wraps.
+  /// True if the claim has expired. Call it more often than the period counter wraps.
   bool has_expired(std::uint32_t now_periods) const;
-  /// No program drives the arm from now on.
+  /// Ends the claim. No program drives the arm afterwards.
   void end();
 
   protocol::DriverReport report(std::uint32_t now_periods) const;
@@ -41,7 +41,7 @@ class DriverClaim {
   std::uint32_t claim_ = 0;  ///< 0: no program drives the arm
   protocol::DriverReport driver_{};
   std::uint32_t heard_at_periods_ = 0;
-  std::uint32_t second_began_periods_ = 0;  ///< of the driver, because the count of periods wraps after 59 hours
+  std::uint32_t second_began_periods_ = 0;  ///< start of the current second; the period counter wraps after 59 hours
   std::uint32_t changes_ = 0;
   std::uint32_t refused_ = 0;
 };

@@ -1,13 +1,14 @@
-// Records in two sectors of a flash, of which the newest whole one counts: a power cut at any word or erase leaves what
-// counted before, or what was being written.
+// Log of records in two flash sectors. The newest complete record is the valid one. A power loss during any write or
+// erase leaves either the previous record or the new record valid.
 //
-// A sector begins with five words: magic, its place in the order of all that were begun, how often it was erased, how
-// often the other one, and the CRC of these. Behind them follow records: seven words (RecordHead), its payload, and the
-// CRC of all of it, which is written last. A record without its right CRC is skipped; its room is lost until the sector
-// is erased. While the board runs only words are programmed: into the sector of the newest record, then, once that is
-// full, into the other one if it has been erased. Erasing is for start(), once at most: the sector that will be written
-// next, if anything else stands in it. Before that a note of the erase goes into the sector that stays, so that one
-// which was cut off is known, even if its sector reads as erased, and is counted.
+// A sector begins with five words: magic, sequence number, its erase count, the erase count of the other sector, and
+// their CRC. Records follow. A record has a header of seven words (RecordHead), its payload, and the CRC of both. The
+// CRC is written last. A record with a wrong CRC is skipped, and its space is lost until the sector is erased.
+//
+// While the board runs, words are only programmed. New records go to the sector of the newest record. When this sector
+// is full, they go to the other sector if it is erased. Only start() erases, and at most one sector: the next sector to
+// be written, if it has other content. Before the erase, start() writes an erase record to the other sector. An
+// interrupted erase is therefore repeated and counted, even if the sector already reads as erased.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ namespace inkwell::link {
 class FlashMemory {
  public:
   virtual std::span<const std::uint32_t> sector(std::size_t number) const = 0;
-  /// Programs an erased word, and tells whether it reads as it should then.
+  /// Programs an erased word. Returns true if the word then has this value.
   virtual bool program(std::size_t sector, std::size_t word, std::uint32_t value) = 0;
   virtual void erase(std::size_t sector) = 0;
 
@@ -34,12 +35,12 @@ class FlashMemory {
 
 enum class RecordKind : std::uint8_t { parameters = 1, factory_reset = 2, erase = 3 };
 
-/// The first three and the last words are laid out alike in every schema.
+/// The first three words and the last word of a record have the same position in every schema.
 struct RecordHead {
   std::uint32_t magic;
   std::uint16_t schema;
   std::uint16_t kind;     ///< RecordKind
-  std::uint32_t number;   ///< one more each time, in the board's life
+  std::uint32_t number;   ///< increases by one per record over the life of the board
   std::uint32_t payload;  ///< in words
   std::uint32_t firmware_version;
   std::uint32_t parameter_table_hash;
@@ -47,7 +48,7 @@ struct RecordHead {
 };
 inline constexpr std::size_t record_head_words = sizeof(RecordHead) / sizeof(std::uint32_t);
 
-/// Words that a record with so much payload takes.
+/// Returns the number of words of a record with this payload.
 constexpr std::size_t record_words(std::size_t payload) { return record_head_words + payload + 1; }
 
 class FlashLog {
@@ -58,28 +59,28 @@ class FlashLog {
   };
   enum class Progress : std::uint8_t { under_way, done, failed };
 
-  /// Reads both sectors, and erases one if there is something in it where the next record may have to go.
+  /// Reads both sectors. Erases one sector if the next record may need it and it has other content.
   void start(FlashMemory& memory);
 
-  /// The newest whole record that is not the note of an erase.
+  /// Returns the newest complete record that is not an erase record.
   const std::optional<Record>& newest() const { return newest_; }
-  /// In the board's life.
+  /// Number of records over the life of the board.
   std::uint32_t records_written() const { return last_number_; }
   const std::array<std::uint32_t, protocol::store_sectors>& erases() const { return erases_; }
-  /// How many records of so much payload still go into the flash without an erase.
+  /// Returns the number of records of this payload that fit without an erase.
   std::size_t room(std::size_t payload) const;
 
-  /// Begins to write a record; `head` needs all but magic, number and payload. False if there is no room. `payload`
-  /// must last until step() says that it is over.
+  /// Starts writing a record. `head` needs all members except magic, number and payload. Returns false if there is no
+  /// space. `payload` must remain valid until step() returns `done` or `failed`.
   [[nodiscard]] bool begin(RecordHead head, std::span<const std::uint32_t> payload);
-  /// Programs one word of it. After a failure what was newest still is.
+  /// Programs one word of the record. After a failure, newest() still returns the previous record.
   Progress step();
 
  private:
   struct Sector {
-    bool is_begun = false;  ///< its head is right
+    bool is_begun = false;  ///< the sector header is valid
     std::uint32_t order = 0;
-    std::size_t end = 0;  ///< first word behind which all is erased
+    std::size_t end = 0;  ///< first word after which all words are erased
   };
 
   void scan(std::size_t number);
@@ -97,17 +98,17 @@ class FlashLog {
 
   FlashMemory* memory_ = nullptr;
   std::array<Sector, protocol::store_sectors> sectors_{};
-  std::array<std::uint32_t, protocol::store_sectors> erases_{};  ///< begun
-  std::array<bool, protocol::store_sectors> erase_is_open_{};    ///< begun, and perhaps not ended
+  std::array<std::uint32_t, protocol::store_sectors> erases_{};  ///< started erases
+  std::array<bool, protocol::store_sectors> erase_is_open_{};    ///< started erases that may be incomplete
   std::optional<Record> newest_;
   std::uint32_t last_number_ = 0;
   std::size_t current_ = 0;
-  // What is being written.
+  // State of the record that is being written.
   std::array<std::uint32_t, 5> sector_head_{};
   RecordHead head_{};
   std::span<const std::uint32_t> payload_;
-  std::size_t written_ = 0;  ///< of its words
-  std::uint32_t check_ = 0;  ///< of these
+  std::size_t written_ = 0;  ///< number of written words
+  std::uint32_t check_ = 0;  ///< CRC of the written words
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// A value of the main loop's that stays for long: a bit of it that changes by itself is noticed.
+// A long-lived value of the main loop, with a checksum that detects flipped bits.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace inkwell::link {
 
-/// Differs for any two that differ in a bit, and for most others.
+/// Returns a checksum. It is different for values that differ in one bit, and for most others.
 template <class T>
 std::uint32_t sum_of(const T& value) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof value % sizeof(std::uint32_t) == 0);
@@ -23,7 +23,7 @@ std::uint32_t sum_of(const T& value) {
   return sum;
 }
 
-/// A copy takes the sum along, so what is damaged stays so.
+/// A value with its checksum. A copy keeps the checksum, so a damaged value remains detectable.
 template <class T>
 class Guarded {
  public:
@@ -33,12 +33,12 @@ class Guarded {
     value_ = value;
     seal();
   }
-  /// To change it in place; seal() ends that.
+  /// Allows changes in place. Call seal() after the last change.
   T& open() { return value_; }
   void seal() { sum_ = sum_of(value_); }
 
   const T& value() const { return value_; }
-  /// Whether it is bit for bit what was put.
+  /// True if the value has not changed since put() or seal().
   bool is_intact() const { return sum_of(value_) == sum_; }
 
  private:

@@ -1,4 +1,4 @@
-// A value that the main loop makes and the control interrupt uses.
+// A value that the main loop produces and the control interrupt uses.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace inkwell::link {
 
-/// Two places: the interrupt works with one, the main loop prepares the next value in the other. The interrupt alone
-/// swaps them, so a value is used whole or not at all.
+/// Double buffer. The interrupt uses one slot while the main loop prepares the next value in the other slot. Only the
+/// interrupt swaps the slots, so that it never reads an incomplete value.
 template <class T>
 class Handover {
  public:
@@ -18,16 +18,16 @@ class Handover {
 
   // ---- main loop ----
 
-  /// Where the next value is made; null while the interrupt has not taken the one before.
+  /// Returns the slot for the next value, or null while the interrupt has not accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &places_[used_ ^ 1u]; }
-  /// Whether a value waits to be taken; while none does, used() stays the same.
+  /// True if a value has been offered and not accepted. Otherwise used() does not change.
   bool is_offered() const { return offered_.load(); }
-  /// What stands in next() is for the interrupt from now on.
+  /// Offers the value in next() to the interrupt.
   void offer() { offered_.store(true); }
 
   // ---- control interrupt ----
 
-  /// Swaps if there is a value to take, and tells whether it did.
+  /// Swaps the slots if a value was offered. Returns true if it swapped.
   bool take() {
     if (!offered_.load()) return false;
     used_ ^= 1u;
@@ -38,7 +38,7 @@ class Handover {
 
  private:
   std::array<T, 2> places_{};
-  std::uint32_t used_ = 0;  ///< written by the interrupt, and only while `offered_`
+  std::uint32_t used_ = 0;  ///< written by the interrupt, and only while `offered_` is true
   Shared<bool> offered_{false};
 };
 

@@ -1,6 +1,6 @@
-// Everything that the main loop and the control interrupt hand to each other.
+// Data exchange between the main loop and the control interrupt.
 //
-// Each part has one producer and one consumer and never makes the interrupt wait. In a control period:
+// Each part has one producer and one consumer and never blocks the interrupt. In a control period:
 //
 //   if (link.parameters.take(periods)) controller.settings_changed()
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
@@ -16,8 +16,8 @@
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
-// About 13 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames and the rows of the
-// black box are the main loop's and lie elsewhere.
+// The size is about 13 KB, mostly for the samples. The object is in the core-coupled memory. Scope frames and black-box
+// rows are accessed only by the main loop and are in other memory.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@
 namespace inkwell::link {
 
 struct Link {
-  /// `cycles_per_period`: processor cycles of one control period. `first_period`: the number of the first one.
+  /// `cycles_per_period`: processor cycles of one control period. `first_period`: number of the first control period.
   template <std::size_t before, std::size_t after>
   Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory,
        std::uint32_t first_period = 0)
@@ -61,8 +61,8 @@ struct Link {
   BlackBox black_box;
   SelfTest self_test;
   ServoStatus status;
-  Shared<bool> update_asked{false};                 ///< the host wants the boot loader
-  Shared<protocol::Watches> found_in_main_loop{0};  ///< faults that a control period's delay makes no worse
+  Shared<bool> update_asked{false};                 ///< the host requested the boot loader
+  Shared<protocol::Watches> found_in_main_loop{0};  ///< faults that tolerate a delay of one control period
 };
 
 }  // namespace inkwell::link

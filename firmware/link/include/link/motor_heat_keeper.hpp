@@ -1,4 +1,4 @@
-// How warm the motors are, from one run to the next: a restart cools no motor.
+// Retains the motor heat across a restart, because a restart does not cool the motors.
 #pragma once
 
 #include <array>
@@ -9,22 +9,24 @@
 
 namespace inkwell::link {
 
-/// Lies in memory that start-up does not clear, so it has no constructor. That memory holds anything after power-up,
-/// and a restart may come between any two words that are written: of two places one stays whole.
+/// The object is in memory that start-up does not clear, so it has no constructor. The content of this memory is
+/// undefined after power-on. A restart may also interrupt a write at any word. Of the two slots, one is always
+/// complete.
 class MotorHeatKeeper {
  public:
-  /// More than this is kept as this.
+  /// Largest stored heat.
   static constexpr float most = 4.0f;
 
-  /// Before anything else: what the run before left last, unless the power has just come. None if nothing is sound.
+  /// Returns the last heat of the previous run. Call it before anything else. After power-on, or without a valid slot,
+  /// it returns nothing.
   std::optional<control::Warmth> start(bool power_has_come);
-  /// In place of what was left before last.
+  /// Stores the heat in the older slot.
   void leave(const control::Warmth& warmth);
 
  private:
   struct Left {
     control::Warmth warmth;
-    std::uint32_t number;  ///< one more each time
+    std::uint32_t number;  ///< increases by one per write
   };
   struct Place {
     Left left;

@@ -1,4 +1,4 @@
-// Checks of one transaction of parameters, before any of it takes effect.
+// Checks a parameter transaction before any of its values take effect.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,23 @@
 
 namespace inkwell::link {
 
-/// Parameters of this image: those of the table, then those of its force law.
+/// Number of parameters of the table and of this image's force law.
 std::size_t image_parameter_count();
-/// On the wire, of one of them.
+/// Returns the protocol id of a parameter.
 std::uint16_t image_parameter_id(std::size_t index);
-/// Of the one with this id on the wire.
+/// Returns the index of the parameter with this protocol id.
 std::optional<std::size_t> image_parameter_index(std::uint16_t id);
 protocol::ParameterSet image_defaults();
 
-/// Values that were stored, perhaps by another firmware: each that this one refuses takes its default instead.
+/// Stored parameter values, possibly from another firmware. A value that this firmware refuses is replaced by its
+/// default.
 class StoredSet {
  public:
   StoredSet() : set_(image_defaults()) {}
   void put(std::size_t index, float value);
-  /// After all have been put: of a pair of bounds that contradict each other both take their default.
+  /// Call this after the last put(). If two bounds contradict each other, both are replaced by their defaults.
   void make_consistent();
-  /// How many took their default.
+  /// Number of values replaced by their default.
   std::uint16_t refused() const { return refused_; }
   const protocol::ParameterSet& set() const { return set_; }
 
@@ -34,7 +35,7 @@ class StoredSet {
   std::uint16_t refused_ = 0;
 };
 
-/// What precedes the entries of a ParametersReport.
+/// The bytes of a ParametersReport before its entries.
 struct TransactionHeader {
   protocol::ReportId report_id;
   protocol::ParameterOperation operation;
@@ -44,22 +45,22 @@ struct TransactionHeader {
   std::uint32_t claim;
 };
 
-/// The header of a ParametersReport; missing bytes are zero.
+/// Returns the header of a ParametersReport. Missing bytes are zero.
 TransactionHeader header_of(std::span<const std::byte> report);
 
-/// What became of a transaction: `set` is valid if `refusal` is accepted.
+/// Result of a transaction. `set` is valid if `refusal` is `accepted`.
 struct ParameterCheck {
   protocol::Refusal refusal = protocol::Refusal::accepted;
-  std::uint16_t parameter_id = 0;  ///< the one that was refused, else 0
-  float value = 0.0f;              ///< the value that was refused, else 0
+  std::uint16_t parameter_id = 0;  ///< id of the refused parameter, otherwise 0
+  float value = 0.0f;              ///< refused value, otherwise 0
   protocol::ParameterSet set{};
 };
 
 /// Applies a ParametersReport to `current` and checks the result as a whole.
 ///
-/// `report` starts at the report id. Bytes after the entries that it counts are ignored: Windows pads feature reports.
-/// While the force is on, a transaction that changes a parameter of the group "arm" is refused. `stored` is what
-/// restore_stored gives; null is nothing.
+/// `report` starts at the report id. Bytes after the last entry are ignored, because Windows pads feature reports.
+/// While the force is on, a change of a parameter in the group "arm" is refused. `stored` is the set for
+/// restore_stored, or null.
 ParameterCheck check_transaction(std::span<const std::byte> report, const protocol::ParameterSet& current,
                                  bool force_is_on, const protocol::ParameterSet* stored = nullptr);
 

@@ -1,4 +1,5 @@
-// The parameters: checked and prepared in the main loop, taken whole at the start of a control period.
+// The parameters. The main loop checks and prepares them. The control interrupt accepts them as a whole at the start of
+// a control period.
 #pragma once
 
 #include <cstddef>
@@ -14,52 +15,55 @@
 
 namespace inkwell::link {
 
-/// The ParametersReport that tells this set; returns the bytes of it that are used.
+/// Writes a set of parameters to a ParametersReport. Returns the used bytes of the report.
 std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
                      protocol::ParametersReport& report);
 
-/// Holds the parameters, and hands the settings prepared from them over to the interrupt.
+/// Stores the parameters, and hands the settings computed from them over to the interrupt.
 class ParameterStore {
  public:
   /// Starts with the defaults of the table and of the force law.
   ParameterStore();
 
-  /// Before the control interrupt runs: with these instead, which are sound.
+  /// Replaces the defaults by a valid set. Call it before the control interrupt starts.
   void start_with(const protocol::ParameterSet& set);
 
   // ---- main loop ----
 
-  /// Checks a ParametersReport and, if it is sound, offers its settings to the interrupt. A refused one
-  /// changes nothing but result(). `busy` while the transaction before has not been taken yet, and for good where a bit
-  /// of a set has changed by itself, which the background watch tells. `stored` is what restore_stored gives; null is
-  /// nothing.
+  /// Checks a ParametersReport and, if it is valid, offers its settings to the interrupt. A refused report changes only
+  /// result(). `stored` is the set for restore_stored, or null.
+  ///
+  /// Returns `busy` while the interrupt has not accepted the previous transaction. Returns `busy` for every report if a
+  /// bit of a parameter set has flipped. The background watch reports this fault.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
-  /// Refuses a ParametersReport of a program that does not drive the arm.
+  /// Refuses a ParametersReport from a program that is not the driver.
   void refuse(std::span<const std::byte> report);
 
-  /// Without a transaction, while the force is off. False, and nothing done, where accept() would be busy.
+  /// Restores the defaults without a transaction. The force must be off. Returns false without any effect in the cases
+  /// in which accept() returns `busy`.
   [[nodiscard]] bool restore_defaults();
 
-  /// Every parameter of the table and of the force law, in this order; returns the bytes of the report that are used.
+  /// Writes all parameters of the table, followed by those of the force law. Returns the used bytes of the report.
   std::size_t read(protocol::ParametersReport& report) const;
 
-  /// What became of the last transaction.
+  /// Result of the last transaction.
   protocol::TransactionReport result() const;
 
   const protocol::ParameterSet& values() const { return values_.value(); }
-  /// With the sum by which they were accepted.
+  /// Values with their checksum.
   const Guarded<protocol::ParameterSet>& guarded_values() const { return values_; }
-  /// Whether they are bit for bit those that were accepted.
+  /// True if no bit of the accepted values has flipped.
   bool values_are_intact() const { return values_.is_intact(); }
 
-  /// Whether the interrupt's settings are bit for bit those that were prepared. True while others wait to be taken.
+  /// True if no bit of the interrupt's settings has flipped. The settings are not checked while a transaction is
+  /// waiting for the interrupt.
   bool settings_are_intact() const;
 
   // ---- control interrupt ----
 
-  /// Called once at the start of a control period; swaps if there is a transaction to take, and tells whether it did.
+  /// Applies an offered transaction and returns true if there was one. Call it once at the start of a control period.
   bool take(std::uint32_t periods) {
     const bool changed = settings_.take();
     if (changed) applied_at_periods_.store(periods);
@@ -73,13 +77,13 @@ class ParameterStore {
 
   Guarded<protocol::ParameterSet> values_;
   Handover<control::Settings> settings_;
-  std::uint32_t settings_sum_;  ///< of the newest
+  std::uint32_t settings_sum_;  ///< checksum of the newest settings
   Shared<std::uint32_t> applied_at_periods_{0};
   protocol::Refusal refusal_ = protocol::Refusal::accepted;
   std::uint16_t refused_id_ = 0;
   float refused_value_ = 0.0f;
   std::uint32_t transactions_ = 0;
-  std::uint16_t ticket_ = 0;  ///< of the last transaction
+  std::uint16_t ticket_ = 0;  ///< ticket of the last transaction
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// The newest pose, from the control interrupt to the main loop.
+// The newest pose, passed from the control interrupt to the main loop.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace inkwell::link {
 
-/// Board time of a moment.
+/// Board time.
 struct BoardTime {
-  std::uint32_t periods;  ///< the control period it lies in
-  std::uint32_t cycles;   ///< processor cycles since the begin of that period
+  std::uint32_t periods;  ///< number of the control period
+  std::uint32_t cycles;   ///< processor cycles since the start of that period
 };
 
-/// The main loop makes a report of the newest sample when the bus wants one.
+/// The main loop creates a report from the newest sample when the bus requests one.
 class PoseRecorder {
  public:
   PoseRecorder(const SampleRing& samples, std::uint32_t cycles_per_period)
@@ -26,7 +26,7 @@ class PoseRecorder {
 
   // ---- control interrupt ----
 
-  /// Called every period, with the longest interrupt known so far: this one or the one before it.
+  /// Call this in every period with the length of the longest interrupt known so far: the current or the previous one.
   void note_load(std::uint32_t servo_cycles) {
     if (longest_was_taken_.load()) {
       longest_was_taken_.store(false);
@@ -38,25 +38,26 @@ class PoseRecorder {
 
   // ---- main loop ----
 
-  /// The newest pose, without a sequence and driver parity; false before the first period.
+  /// Writes the newest pose, without sequence and driver parity. Returns false before the first period.
   bool read(protocol::PoseReport& report) const;
 
-  /// The same for a report that is sent: the longest interrupt is looked for anew.
+  /// Like read(), for a report that is sent. The maximum of the interrupt length restarts.
   bool take(protocol::PoseReport& report);
 
-  /// That of read() was sent after all.
+  /// Records that the report of read() was sent.
   void note_taken() { longest_was_taken_.store(true); }
 
-  /// Of the control interrupt, since the last report that was taken.
+  /// Longest control interrupt since the last sent report.
   std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
 
-  /// Number of the newest control period; 0 before the first.
+  /// Number of the newest control period, or 0 before the first period.
   std::uint32_t newest_periods() const;
 
-  /// The cycle counter when the newest pose's control interrupt began; nothing before the first period.
+  /// Cycle counter at the start of the newest pose's control interrupt. Nothing before the first period.
   std::optional<std::uint32_t> newest_cycles() const;
 
-  /// Board time at a moment of the cycle counter that is less than 12 s ago; nothing if there is no pose to count from.
+  /// Converts a cycle counter value to board time. The value must be less than 12 s old. Returns nothing before the
+  /// first pose.
   std::optional<BoardTime> time_of(std::uint32_t cycles) const;
 
  private:

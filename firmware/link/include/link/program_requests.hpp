@@ -1,4 +1,4 @@
-// What a program on the PC asks for: forces, and shapes to be felt.
+// Requests of a program on the PC: forces and shapes.
 #pragma once
 
 #include <cstddef>
@@ -14,35 +14,36 @@
 
 namespace inkwell::link {
 
-/// The force in a ForceReport (from its report id on), ready for the interrupt; nothing if its length, version, mode,
-/// interval or force is not one of the protocol. The report may be padded to the longest output report.
+/// Returns the force target of a ForceReport. The report starts with its report id and may be padded to the longest
+/// output report. Returns nothing if length, version, mode, interval or force is invalid.
 std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report);
 
-/// The same for a ShapesReport; false if anything in its used part is not valid, and then `shapes` is undefined. The
-/// bytes after the used part are ignored.
+/// Decodes a ShapesReport. Returns false if any part is invalid, and `shapes` is then undefined. Bytes after the used
+/// part are ignored.
 bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
 
-/// The claim in a ForceReport or a ShapesReport; 0 if the report is too short to hold one.
+/// Returns the claim of a ForceReport or ShapesReport, or 0 if the report is too short.
 std::uint32_t claim_of_force(std::span<const std::byte> report);
 std::uint32_t claim_of_shapes(std::span<const std::byte> report);
 
-/// The ticket in a ShapesReport; 0 if the report is too short to hold one or of another version.
+/// Returns the ticket of a ShapesReport, or 0 if the report is too short or has another version.
 std::uint32_t ticket_of_shapes(std::span<const std::byte> report);
 
-/// Each newer request takes the place of the older one.
+/// A new request replaces the previous one.
 class ProgramRequests {
  public:
   // ---- main loop ----
 
-  /// Accepts a ForceReport. False, and counted as refused, if it is not valid, if its program does not drive the arm,
-  /// or if it answers a pose that is older than force_pose_age_maximum_ms. `pose_sequence`: of the newest pose report.
+  /// Accepts a ForceReport. Returns false and counts a refusal if the report is invalid or not from the driver. The
+  /// same applies if the report answers a pose older than force_pose_age_maximum_ms. `pose_sequence` is the sequence of
+  /// the newest pose report.
   bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
 
-  /// Accepts a ShapesReport of the driver. `busy` while the interrupt has not taken the previous one, `malformed` if it
-  /// is not valid.
+  /// Accepts a ShapesReport of the driver. Returns `busy` while the interrupt has not accepted the previous report, and
+  /// `malformed` for an invalid report.
   protocol::RequestResult accept_shapes(std::span<const std::byte> report);
 
-  /// The driver is gone, and with it every shape. Its force fades.
+  /// Removes all shapes and lets the program force fade. Call this when the driver is gone.
   void driver_gone();
 
   std::uint32_t forces_received() const { return forces_received_; }
@@ -51,7 +52,7 @@ class ProgramRequests {
 
   // ---- control interrupt ----
 
-  /// What came since the last call; null for nothing. Valid until the next call.
+  /// Returns the newest request since the last call, or null. The result is valid until the next call.
   const control::ForceTarget* take_force() { return forces_.take() ? &forces_.used() : nullptr; }
   const control::Shapes* take_shapes() { return shapes_.take() ? &shapes_.used() : nullptr; }
 
@@ -61,7 +62,7 @@ class ProgramRequests {
   std::uint32_t forces_received_ = 0;
   std::uint32_t forces_lost_ = 0;
   std::uint32_t forces_refused_ = 0;
-  std::optional<std::uint32_t> newest_sequence_;  ///< none while no program drives
+  std::optional<std::uint32_t> newest_sequence_;  ///< empty while no program sends forces
 };
 
 }  // namespace inkwell::link

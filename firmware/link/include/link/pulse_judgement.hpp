@@ -1,4 +1,4 @@
-// What the pulses of the self-test say about motors, bridges and shunts.
+// Evaluates the self-test pulses for motors, bridges and shunts.
 #pragma once
 
 #include <array>
@@ -10,21 +10,26 @@
 namespace inkwell::link {
 
 struct PulseJudgement {
-  /// Of the resistance that is expected. A winding that is 100 K hotter than where it was measured has 39 % more, one
-  /// at the freezing point 10 % less; switches and shunt add 4 %, sensors err by 3 %, the motor's own motion by 5 %.
-  /// Half the turns, or a shunt amplifier with twice its gain, are below at any heat, and half its gain is above.
+  /// Limits relative to the expected resistance. The resistance of a winding is 39 % higher at +100 K, and 10 % lower
+  /// at the freezing point. Switches and shunt add 4 %. The sensor error is 3 %, and the motion of the motor
+  /// contributes 5 %.
+  ///
+  /// A winding with half its turns, or a shunt amplifier with twice its gain, is below these limits at any temperature.
+  /// An amplifier with half its gain is above them.
   static constexpr float resistance_minimum_part = 0.78f, resistance_maximum_part = 1.7f;
-  /// What is told of a motor through which no current goes, or one of the wrong sign.
+  /// Largest reported resistance, relative to the expected resistance. It is reported for a motor without current or
+  /// with a current of the wrong sign.
   static constexpr float resistance_shown_part = 10.0f;
-  /// A bridge may take this many times what its dead time takes.
+  /// Largest voltage loss of a bridge, relative to the loss from its dead time.
   static constexpr float dead_time_ratio = 1.8f;
-  /// Current in another motor's sensor, as a part of the motor's own. Two wires that touch share it evenly.
+  /// Largest current in another motor's sensor, relative to the motor's own current. Two touching wires share the
+  /// current evenly.
   static constexpr float foreign_part = 0.25f;
-  /// A mean back EMF from which on it need not be steady, and a resistance that is out of its bounds is no failure yet.
+  /// Mean back EMF above which a resistance out of its limits does not count as a failure, because the arm moves.
   static constexpr float moves_V = 0.15f;
-  /// What is kept of a resistance has to be better than what passes: both signs agree within so many parts, and the
-  /// mean back EMF is less. A motor that its own pulses make quicker, as one of an arm that nobody holds, seems to have
-  /// 5 % more.
+  /// Stricter limits for a resistance that is stored. Both signs must agree within the factor `kept_apart`, and the
+  /// mean back EMF must be below `rests_V`. A motor that its own pulses accelerate, as in an arm that no hand holds,
+  /// appears to have 5 % more resistance.
   static constexpr float kept_apart = 1.06f, rests_V = 0.08f;
 
   using Result = protocol::SelfTestResult;
@@ -32,14 +37,16 @@ struct PulseJudgement {
     Result result = Result::not_done;
     float figure = 0.0f;
   };
-  std::array<Found, 3> motors;       ///< ohm: the sign with the larger error
-  std::array<Found, 3> bridges;      ///< V that the bridge takes
-  Found wires;                       ///< A, the largest in a sensor that should see none
-  control::Triple bridge_loss_part;  ///< of the supply: what a bridge that passes takes; 0 if it seems to give
-  control::Triple resistance_ohm;    ///< of a motor that passes and rests: the mean of both signs; else 0
+  std::array<Found, 3> motors;   ///< ohm, for the sign with the larger error
+  std::array<Found, 3> bridges;  ///< voltage loss of the bridge in V
+  Found wires;                   ///< largest current in A in a sensor of another motor
+  /// Voltage loss of a bridge that passes, relative to the supply voltage. 0 if the measured loss is negative.
+  control::Triple bridge_loss_part;
+  /// Mean resistance of both signs, for a motor that passes and is at rest. Otherwise 0.
+  control::Triple resistance_ohm;
 
   bool any(Result result) const;
-  /// Of an arm that moved too fast for pulses.
+  /// Returns the result for an arm that moved too fast for pulses.
   static PulseJudgement moved();
 };
 

@@ -1,5 +1,4 @@
-// Whether memory keeps what is written into it: a march, in which each bit goes up and down between its neighbours
-// before and after theirs did.
+// RAM test by a march: each bit rises and falls, both before and after its neighbors.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +8,11 @@
 
 namespace inkwell::link {
 
-/// Leaves the pattern behind. `Word` is a volatile word on a board.
+/// Returns true if the memory retains the pattern. The memory has the pattern afterwards. On a board, `Word` is
+/// volatile.
 template <class Word>
 bool keeps_pattern(std::span<Word> memory) {
-  constexpr std::uint32_t pattern = 0x5555'5555;  // neighbours in a word differ
+  constexpr std::uint32_t pattern = 0x5555'5555;  // neighboring bits of a word differ
   bool is_sound = true;
   for (Word& word : memory) word = pattern;
   for (Word& word : memory) {
@@ -27,7 +27,7 @@ bool keeps_pattern(std::span<Word> memory) {
   return is_sound;
 }
 
-/// Puts back what was there, by way of `room`, as many words at a time as it holds.
+/// Like the function above, but restores the content of the memory. `room` is the buffer and limits the words per step.
 template <class Word>
 bool keeps_pattern(std::span<Word> memory, std::span<std::uint32_t> room) {
   bool is_sound = true;

@@ -1,4 +1,4 @@
-// The results of commands and shapes, for the programs that sent them.
+// Results of commands and shapes, for the programs that sent them.
 #pragma once
 
 #include <array>
@@ -10,26 +10,26 @@
 
 namespace inkwell::link {
 
-/// The newest requests that have a ticket; those without one are not recorded. Main loop only.
+/// Stores the newest requests with a ticket. Main loop only.
 class RequestResults {
  public:
   explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}
 
-  /// The command has just been queued.
+  /// Call this directly after the command has been queued.
   void note_queued(const protocol::CommandReport& command) {
     note(entry_of(command, protocol::RequestResult::waiting), queue_.pushed());
   }
-  /// The board dropped the command.
+  /// Records a command that the board dropped.
   void note_dropped(const protocol::CommandReport& command, protocol::RequestResult result) {
     note(entry_of(command, result), 0);
   }
   void note_shapes(std::uint32_t ticket, protocol::RequestResult result) {
     note({ticket, protocol::ReportId::shapes, {}, result, 0}, 0);
   }
-  /// The host is gone, and with it the commands that waited.
+  /// Erases all results. Call this when the host is gone and the queued commands are discarded.
   void forget() { requests_ = {}; }
 
-  /// `state` and `now_periods`: of the newest control period.
+  /// `state` and `now_periods` are those of the newest control period.
   protocol::RequestResultsReport report(protocol::State state, std::uint32_t now_periods) const;
 
  private:

@@ -1,4 +1,4 @@
-// The last control periods, whole: every signal, and where the board stood.
+// Samples of the last control periods: all signals and the state of the board.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 
 namespace inkwell::link {
 
-/// What one control period leaves behind beside its signals.
+/// Data of one control period in addition to its signals.
 struct PeriodSummary {
   protocol::State state;
   protocol::Fault fault;
   std::uint8_t switches;       ///< bits of protocol::Switch
   std::uint8_t force_sources;  ///< bits of protocol::ForceSource
   std::uint8_t limits;         ///< bits of protocol::Limit
-  bool is_referenced;          ///< it is known where the arm is
+  bool is_referenced;          ///< the position of the arm is known
   std::uint8_t command_token;  ///< CommandQueue::last_token()
   std::uint32_t periods;       ///< number of this control period
-  std::uint32_t begin_cycles;  ///< the cycle counter at its begin
+  std::uint32_t begin_cycles;  ///< cycle counter at the start of this control period
 };
 
 struct Sample {
@@ -28,13 +28,13 @@ struct Sample {
   PeriodSummary summary;
 };
 
-/// The interrupt writes each period straight into its place here, which is all that recording costs there. The main
-/// loop follows: pose reports, scope and black box read from here, each at its own pace.
+/// The interrupt writes each sample directly into the ring, which saves a copy. The main loop creates pose reports,
+/// scope frames and black-box rows from the ring, at separate rates.
 class SampleRing {
  public:
-  /// Samples in the ring: 1.6 ms, against the fraction of one for which the main loop is busy at most.
+  /// Number of samples, 1.6 ms. The main loop is busy for less than 1 ms at a time.
   static constexpr std::uint32_t capacity = 32;
-  /// Two places stay unread, for the samples that the interrupt may write while one is read.
+  /// Two slots are never read, because the interrupt may write two samples while the main loop reads one.
   static constexpr std::uint32_t readable = capacity - 2;
 
   /// `first` is the number of the first sample.
@@ -42,33 +42,33 @@ class SampleRing {
 
   // ---- control interrupt ----
 
-  /// Where this period goes; it counts once record() has been called.
+  /// Slot for the sample of this period. The sample counts after record().
   Sample& next() { return samples_[recorded_.load() % capacity]; }
 
-  /// Records what was written to next(). Called once every control period.
+  /// Records the sample in next(). Call it once per control period.
   void record() { recorded_.store(recorded_.load() + 1); }
 
   // ---- main loop ----
 
-  /// The number of the next sample: samples recorded since the start. Wraps.
+  /// Number of the next sample. It counts samples since the start and wraps.
   std::uint32_t recorded() const { return recorded_.load(); }
 
-  /// Null before the first sample. The interrupt comes back to its place 1.6 ms later.
+  /// Returns null before the first sample. The interrupt overwrites the sample 1.6 ms later.
   const Sample* newest() const {
     const std::uint32_t recorded = recorded_.load();
-    // Once it is set it stays, because the count comes back to the first number when it wraps.
+    // The flag never returns to false, because the counter returns to the first number when it wraps.
     has_samples_ = has_samples_ || recorded != first_;
     return has_samples_ ? &samples_[(recorded - 1) % capacity] : nullptr;
   }
 
-  /// One of the `readable` newest.
+  /// Returns one of the `readable` newest samples.
   const Sample& operator[](std::uint32_t number) const { return samples_[number % capacity]; }
 
  private:
   std::array<Sample, capacity> samples_{};
   std::uint32_t first_;
   Shared<std::uint32_t> recorded_;    ///< written by the interrupt
-  mutable bool has_samples_ = false;  ///< known to the main loop
+  mutable bool has_samples_ = false;  ///< main loop only
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// A selection of signals, prepared so that recording a sample takes few instructions.
+// A selection of signals, prepared for recording with few instructions per sample.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 namespace inkwell::link {
 
 struct ScopePlan {
-  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};    ///< places in SignalValues
-  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< where it goes as a 16-bit number
-  /// The items fall into runs that go alternately as floats and as 16-bit numbers, floats first (none, if the
-  /// first item is narrow). Each entry is the number of items up to the end of its run, 0 behind the last run.
+  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};    ///< indices in SignalValues
+  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< for signals in 16-bit encoding
+  /// The items form runs that alternate between floats and 16-bit integers. The first run has floats and may be empty.
+  /// Each entry is the number of items up to the end of its run. The entry after the last run is 0.
   std::array<std::uint8_t, protocol::scope_signals_maximum + 2> run_ends{};
   std::uint32_t count = 0;                ///< 0: the scope is off
-  std::uint32_t sample_size_maximum = 0;  ///< bytes, the mask of a `changes` sample included
+  std::uint32_t sample_size_maximum = 0;  ///< bytes, including the mask of a `changes` sample
   protocol::ScopeEncoding encoding = protocol::ScopeEncoding::full;
-  std::uint8_t token = 0;  ///< of the command that asked for it
+  std::uint8_t token = 0;  ///< token of the select_signals command
 };
 
-/// `selection` holds known signals only (decode_command sees to that).
+/// `selection` must contain only known signals (checked by decode_command()).
 ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token);
 
 }  // namespace inkwell::link

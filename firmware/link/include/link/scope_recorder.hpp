@@ -1,4 +1,4 @@
-// The scope: chosen signals of every control period, in frames for the bulk endpoint.
+// The scope: selected signals of every control period, in frames for the bulk endpoint.
 #pragma once
 
 #include <array>
@@ -13,38 +13,38 @@
 
 namespace inkwell::link {
 
-/// Room for frames: large, and touched by the main loop only.
+/// Memory for frames. It is large, and only the main loop accesses it.
 struct ScopeFrames {
   static constexpr std::uint32_t count = 10;
   using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
   alignas(4) std::array<Frame, count> frames;
 };
 
-/// The main loop follows the ring of samples, picks the selected signals and packs them into frames. When no frame is
-/// free, the oldest that is not being sent is dropped and its samples are counted, and so are samples that the main
-/// loop was too late for: the interrupt never waits, and the newest data is kept.
+/// The main loop reads the sample ring and packs the selected signals into frames. If no frame is free, the recorder
+/// drops the oldest frame that is not being sent, and counts its samples. It also counts samples that the main loop
+/// read too late. The interrupt therefore never waits, and the newest data is retained.
 class ScopeRecorder {
  public:
-  /// So that the main loop comes round also when it has been late; it comes once a period.
+  /// Allows a late main loop to catch up. It normally makes one pass per period.
   static constexpr std::uint32_t samples_per_pack = 4;
 
-  /// `frames` are the recorder's from now on.
+  /// The recorder uses `frames` exclusively.
   ScopeRecorder(const SampleRing& samples, ScopeFrames& frames);
 
-  /// Records these signals from the next period on; none stops, and finishes the frame that was begun.
-  /// A new selection forgets the finished frames of the one before.
+  /// Selects the signals to record from the next period on. An empty selection stops recording and finishes the current
+  /// frame. A new selection discards the finished frames of the previous selection.
   void select(const protocol::SignalSelection& selection, std::uint8_t token);
 
-  /// Packs the oldest samples that wait, `samples_per_pack` at most. Call it every time that the main loop comes round.
+  /// Packs the oldest unread samples, at most `samples_per_pack`. Call it in every pass of the main loop.
   void pack();
 
-  /// The oldest finished frame, empty if there is none. Stays as it is until release().
+  /// Returns the oldest finished frame, or an empty span. The frame does not change until release().
   std::span<const std::byte> oldest_frame();
 
-  /// Gives back the frame that oldest_frame() showed.
+  /// Frees the frame that oldest_frame() returned.
   void release();
 
-  /// Samples dropped since the start because the host did not read, or the main loop was late.
+  /// Samples dropped since start-up, because the host did not read or the main loop was late.
   std::uint32_t samples_dropped() const { return samples_dropped_; }
 
  private:
@@ -63,18 +63,18 @@ class ScopeRecorder {
   std::array<ScopeFrames::Frame, ScopeFrames::count>& frames_;
   std::array<std::uint8_t, ScopeFrames::count> free_{};  ///< stack of free frames
   std::uint32_t free_count_ = 0;
-  std::array<std::uint8_t, ScopeFrames::count> finished_{};  ///< ring
+  std::array<std::uint8_t, ScopeFrames::count> finished_{};  ///< ring of finished frames
   std::uint32_t finished_first_ = 0;
   std::uint32_t finished_count_ = 0;
-  std::optional<std::uint8_t> shown_;  ///< by oldest_frame()
-  std::uint8_t writing_ = 0;           ///< frame that is written
-  std::byte* cursor_ = nullptr;        ///< next byte of it
+  std::optional<std::uint8_t> shown_;  ///< frame returned by oldest_frame()
+  std::uint8_t writing_ = 0;           ///< frame that is being written
+  std::byte* cursor_ = nullptr;        ///< next byte of the frame that is being written
   const std::byte* frame_end_ = nullptr;
-  std::uint32_t sample_count_ = 0;  ///< in it
+  std::uint32_t sample_count_ = 0;  ///< samples in the frame that is being written
   std::uint32_t first_period_ = 0;
   std::uint32_t sequence_ = 0;
   std::uint32_t samples_dropped_ = 0;
-  std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{};  ///< bits last written
+  std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{};  ///< last written bits of each signal
 };
 
 }  // namespace inkwell::link

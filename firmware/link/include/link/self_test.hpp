@@ -1,5 +1,5 @@
-// The self-test, from the first look at the memory to the verdict: the main loop leads it, the control interrupt sends
-// the pulses, and both stay in the state `testing` meanwhile.
+// The self-test, from the RAM test at start-up to the result. The main loop controls the self-test, and the control
+// interrupt sends the pulses.
 #pragma once
 
 #include <array>
@@ -20,50 +20,54 @@ class SelfTest {
   using Item = protocol::SelfTestItem;
   using Result = protocol::SelfTestResult;
 
-  /// A line that follows its pulls so often in a row is driven by nobody. One that an encoder moves does so by chance.
+  /// A line that follows its pull resistor in this many consecutive checks is not driven. The level of a moving encoder
+  /// can match the pull resistor by chance in fewer checks.
   static constexpr std::uint32_t wire_looks = 8;
-  /// A failure counts once it was seen so often with the arm at rest.
+  /// Number of failures with the arm at rest after which an item has failed.
   static constexpr std::uint32_t failures_to_believe = 2;
-  /// An arm that moves all the time is given up. Before each round it may take so long to come to rest.
+  /// Limits for an arm that moves continuously: number of rounds, and waiting time before each round.
   static constexpr std::uint32_t rounds_maximum = 8;
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
-  /// With a larger back EMF no round begins: bridges that are on brake the arm, and the hand would feel it.
+  /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm, and the hand would
+  /// feel it.
   static constexpr float rest_V = 0.3f;
-  /// Of a potentiometer's track at each end: its wiper never gets there.
+  /// Invalid range at each end of a potentiometer track, relative to its length. A working wiper never reaches these
+  /// ends.
   static constexpr float gimbal_rail_part = 0.01f;
-  /// The current sensors are looked at once a current that a pulse left has ended: twelve time constants of a motor.
+  /// The current sensors are read after 1.2 ms, which is twelve time constants of a motor. By then the current of an
+  /// earlier pulse has decayed.
   static constexpr std::uint32_t off_periods = control::periods_in(0.0012f), offset_readings = 16;
 
   explicit SelfTest(const SampleRing& samples) : samples_(samples) {}
 
   // ---- main loop ----
 
-  /// What start-up has found.
+  /// Records a result of start-up.
   void note(Item item, bool is_sound, float figure = 0.0f) { note(item, sound(is_sound), figure); }
 
-  /// The wire that is to be looked at now, if any: the bridges are off.
+  /// Returns the wire to be tested, if any. The bridges are off.
   std::optional<Item> wanted_wire() const;
-  /// Whether that wire's level followed the pulls of its pin.
+  /// Records whether the level of the wire followed the pull resistors of its pin.
   void note_wire(bool follows);
 
-  /// Whether there is a test that wants follow(). Ask every time that the main loop comes round.
+  /// True while follow() is needed. Check it in every pass of the main loop.
   bool goes_on() const { return phase_ != Phase::idle || begun_.load() != test_; }
 
-  /// What the converters read as the test begins.
+  /// Converter readings at the start of the self-test.
   struct Readings {
-    control::Triple gimbal_ratio;  ///< voltage of each potentiometer as a part of its supply
+    control::Triple gimbal_ratio;  ///< voltage of each potentiometer relative to its supply
     float analog_supply_V;
     bool analog_supply_is_right;
   };
 
-  /// Goes on with it.
+  /// Continues the self-test.
   void follow(const control::Controller& controller, const control::Settings& settings, const Readings& readings);
 
   protocol::SelfTestReport report() const;
 
   // ---- control interrupt ----
 
-  /// While the state is `testing`, after the controller's step.
+  /// Call this after the controller's step while the state is `testing`.
   void exchange(control::Controller& controller);
 
  private:
@@ -87,20 +91,20 @@ class SelfTest {
   const SampleRing& samples_;
   std::array<protocol::SelfTestEntry, protocol::self_test_item_count> entries_{};
   Phase phase_ = Phase::idle;
-  std::uint32_t test_ = 0;  ///< that the main loop leads: the controller counts them
+  std::uint32_t test_ = 0;  ///< number of the current self-test, as counted by the controller
   std::uint32_t tests_ended_ = 0;
   std::size_t wire_ = 0;
-  std::uint32_t looks_ = 0;  ///< in which that wire followed
+  std::uint32_t looks_ = 0;  ///< checks in which the wire followed its pull resistors
   std::uint32_t rounds_ = 0, failures_ = 0;
-  std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< samples recorded by then
-  control::Triple offset_A_{};                      ///< of the sensors, as they were measured at the start
-  control::MeasuredMotors measured_{};              ///< by the rounds; the interrupt's once it is to pass
+  std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< sample numbers
+  control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
+  control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
-  /// Number of the test, and what the interrupt is to do in it; 0 once that is done.
+  /// Number of the self-test and the order for the interrupt; 0 after the interrupt has carried it out.
   Shared<std::uint32_t> order_{0};
-  Shared<std::uint32_t> begun_{0};     ///< number of the test that the interrupt is in, or was in
-  Shared<bool> round_is_over_{false};  ///< its figures are the main loop's until the next order
-  bool pulses_run_ = false;            ///< the interrupt's own
+  Shared<std::uint32_t> begun_{0};     ///< number of the current or last self-test of the interrupt
+  Shared<bool> round_is_over_{false};  ///< the main loop may read the results until the next order
+  bool pulses_run_ = false;            ///< control interrupt only
 };
 
 }  // namespace inkwell::link

@@ -1,4 +1,4 @@
-// What the main loop may know about the control interrupt.
+// Status of the control interrupt for the main loop.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace inkwell::link {
 
-/// Written at the end of every control interrupt, read by the main loop.
+/// The control interrupt writes it at its end, and the main loop reads it.
 class ServoStatus {
  public:
   // ---- control interrupt ----
 
-  /// `motor_heat`: 1 is what the continuous current leads to; `cycles`: processor cycles of this interrupt;
-  /// `late_force_reports`: since the start; `overrun`: it did not finish within its period.
+  /// `motor_heat` is 1 at the continuous current. `cycles` is the length of this interrupt in processor cycles.
+  /// `late_force_reports` counts since start-up. `overrun` is true if the interrupt did not finish within its period.
   void record(protocol::State state, const std::array<float, 3>& motor_heat, std::uint32_t cycles,
               std::uint32_t late_force_reports, bool overrun) {
     state_.store(state);

@@ -1,16 +1,18 @@
-// One word between the main loop and the control interrupt.
+// One word shared by the main loop and the control interrupt.
 #pragma once
 
 #include <atomic>
 
 namespace inkwell::link {
 
-/// A word that one side writes and the other reads, or that one side sets and the other clears.
+/// A word that one side writes and the other side reads, or that one side sets and the other side clears.
 ///
-/// There is one core, and the interrupt preempts the main loop but never the other way round. So the
-/// processor keeps the order by itself and only the compiler has to be told: what stands before `store`
-/// happens before it and what stands after it happens after it; what stands after `load` happens after it. No barrier
-/// instruction, no lock, and `load` then `store` is no atomic change: a word has one writer at a time.
+/// The chip has one core, and the interrupt preempts the main loop but not the reverse. The processor therefore
+/// maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are completed before
+/// it, and accesses after `store` or `load` start after it.
+///
+/// No barrier instruction or lock is necessary. `load` followed by `store` is not atomic, so a word must have only one
+/// writer at a time.
 template <class T>
 class Shared {
   static_assert(std::atomic<T>::is_always_lock_free, "a lock would let the main loop hold up the interrupt");

@@ -1,5 +1,5 @@
-// What of the parameters outlives a start: read before the control interrupt runs, written on command, a word each time
-// that the main loop comes round, and never while the force is on.
+// Stored parameters. They are read before the control interrupt starts. A command writes them, one word per pass of the
+// main loop, never while the force is on.
 #pragma once
 
 #include <array>
@@ -16,37 +16,39 @@ class StoredParameters {
  public:
   StoredParameters();
 
-  /// Reads the flash, erases in it if it has to, and lets `parameters` hold what is stored. Before the control
-  /// interrupt runs. Without it nothing can be stored.
+  /// Reads the flash, erases a sector if necessary, and sets `parameters` to the stored values. Call it before the
+  /// control interrupt starts. Without this call no parameters can be stored.
   void start(FlashMemory& memory, std::array<std::uint8_t, 3> firmware_version, ParameterStore& parameters);
 
   // ---- main loop ----
 
-  /// store_parameters or factory_reset has come; `may` is whether it may be carried out.
+  /// Requests store_parameters or factory_reset. `may` is true if the command is allowed.
   void ask(protocol::Command command, bool may);
-  /// One step of what was asked for, now and then; given up as flash_failed where a bit of what it goes by has changed
-  /// by itself, which the background watch tells. It may hold up the main loop for as long as the flash takes for a
-  /// word; `periods` are control periods, by which words keep their distance, so that poses stay in time.
+  /// Carries out one step of the requested command. The command fails with flash_failed if a bit of its data has
+  /// flipped, which the background watch reports.
+  ///
+  /// A step may block the main loop for the time in which the flash programs one word. `periods` is the number of the
+  /// control period. It separates the words in time, so that poses remain punctual.
   void follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods);
-  /// Something that was asked for is not over.
+  /// True while a requested command is not finished.
   bool is_busy() const { return wanted_ != Wanted::nothing || is_writing_ || is_resetting_; }
 
-  /// What the next start would give every parameter.
+  /// The parameter values after the next start.
   const protocol::ParameterSet& next_start() const { return set_.value(); }
-  /// What restore_stored gives; null is nothing.
+  /// The set for restore_stored, or null.
   const Guarded<protocol::ParameterSet>* restorable() const { return has_parameters() ? &set_ : nullptr; }
-  /// Whether what it holds, and writes, is bit for bit what it was given.
+  /// True if no bit of the stored data has flipped.
   bool is_intact() const { return set_.is_intact() && writing_.is_intact() && payload_.is_intact(); }
   bool has_parameters() const { return contents_ == protocol::StoreContents::parameters; }
   protocol::StoreReport report(const protocol::ParameterSet& held) const;
-  /// As the ParametersReport of next_start(); returns the bytes that are used.
+  /// Writes next_start() to a ParametersReport. Returns the used bytes.
   std::size_t read(protocol::ParametersReport& report) const;
 
  private:
   static constexpr std::uint32_t periods_between_words = 10;
 
   enum class Wanted : std::uint8_t { nothing, store, factory_reset };
-  /// Of a record: the parameters of this image, and some that another firmware has left.
+  /// Largest number of entries of a record: the parameters of this image, and others from another firmware.
   static constexpr std::size_t entries_maximum = protocol::parameter_entries_maximum + 32;
 
   void load(ParameterStore& parameters);
@@ -61,7 +63,7 @@ class StoredParameters {
   FlashLog log_;
   bool has_flash_ = false;
   protocol::StoreContents contents_ = protocol::StoreContents::nothing;
-  bool is_as_written_here_ = false;  ///< the newest record has just what this firmware would write for `set_`
+  bool is_as_written_here_ = false;  ///< true if the newest record is identical to a record of `set_` by this firmware
   protocol::StoreReport at_start_{};
   std::uint32_t firmware_version_ = 0;
 

@@ -1,4 +1,4 @@
-// Analogue-to-digital converters and what they share (RM0090, chapter ADC).
+// Analog-to-digital converters and their common registers (RM0090, chapter ADC).
 #pragma once
 
 #include <registers/register.hpp>

@@ -1,5 +1,5 @@
-// Reset and clock control, supply of the core, boot mode, lines that interrupt, flash interface (RM0090, chapters RCC,
-// PWR, SYSCFG, EXTI, Embedded flash).
+// Reset and clock control, power control, boot mode, interrupt lines, flash interface (RM0090, chapters RCC, PWR,
+// SYSCFG, EXTI, Embedded flash).
 #pragma once
 
 #include <registers/register.hpp>

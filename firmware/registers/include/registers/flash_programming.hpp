@@ -1,4 +1,4 @@
-// What erases and programs the flash (RM0090, chapter "Embedded Flash memory interface").
+// Erasing and programming of the flash (RM0090, chapter "Embedded Flash memory interface").
 #pragma once
 
 #include <registers/register.hpp>
@@ -10,7 +10,7 @@ struct FlashProgramming {
   struct KEYR : Register<base + 0x04> {};
   struct SR : Register<base + 0x0C> {
     using BSY = Field<SR, 16, 1>;
-    static constexpr std::uint32_t all_errors = 0xF2;  // OPERR, WRPERR, PGAERR, PGPERR and PGSERR are cleared by 1
+    static constexpr std::uint32_t all_errors = 0xF2;  // OPERR, WRPERR, PGAERR, PGPERR, PGSERR; writing 1 clears them
   };
   struct CR : Register<base + 0x10> {
     using PG = Field<CR, 0, 1>;

@@ -1,4 +1,4 @@
-// General-purpose input and output (RM0090, chapter GPIO). The fields of a pin are made by the pin driver.
+// General-purpose input and output (RM0090, chapter GPIO). The pin driver defines the fields of a pin.
 #pragma once
 
 #include <registers/register.hpp>

@@ -119,7 +119,7 @@ struct UsbPower {
   struct PCGCCTL : Register<base + 0x00> {};
 };
 
-/// Windows into the FIFO memory: a write fills the transmit FIFO of that endpoint, a read of any empties the
+/// Windows into the FIFO memory. A write fills the transmit FIFO of the endpoint. A read of any window empties the
 /// receive FIFO.
 template <std::uint32_t base>
 struct UsbFifo {

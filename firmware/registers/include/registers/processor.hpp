@@ -1,5 +1,5 @@
-// What belongs to the Cortex-M4F itself (ARMv7-M Architecture Reference Manual, PM0214), the chip's debug
-// configuration (RM0090, chapter Debug support) and its unique identifier (chapter Device electronic signature).
+// Registers of the Cortex-M4F core (ARMv7-M Architecture Reference Manual, PM0214). Debug configuration and unique
+// identifier of the chip (RM0090, chapters Debug support and Device electronic signature).
 #pragma once
 
 #include <registers/register.hpp>

@@ -1,6 +1,6 @@
-// Registers and fields as types: an address is a template argument, so an access costs what a store costs.
+// Registers and fields as types: an address is a template argument, so an access compiles to a load or a store.
 //
-// Headers in this folder keep one form. tools/check_registers.py compares what the compiler makes of it with the
+// Headers in this folder have a fixed form. tools/check_registers.py compares the compiled result with the
 // manufacturer's description of the chip:
 //
 //   template <std::uint32_t base>
@@ -11,9 +11,9 @@
 //     struct CNT : Register<base + 0x24> {};
 //   };
 //
-// and in peripherals.hpp the row X(TIM1, Timer, 0x40010000).
+// The row in peripherals.hpp is X(TIM1, Timer, 0x40010000).
 //
-// Names are those of the reference manual, so that they can be looked up.
+// Names are those of the reference manual.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace inkwell::registers {
 
 [[gnu::error("this value does not fit into the field")]] void value_does_not_fit_into_its_field();
 
-/// A field of register `Owner_`, and, as an object, a value for it: `TIM1::CR1::modify(TIM1::CR1::CEN(1))`.
+/// Field of register `Owner_`. An object of it is a value for the field: `TIM1::CR1::modify(TIM1::CR1::CEN(1))`.
 template <class Owner_, unsigned position_, unsigned width_>
 struct Field {
   static_assert(width_ >= 1 && position_ + width_ <= 32);
@@ -32,33 +32,33 @@ struct Field {
   static constexpr std::uint32_t maximum = width == 32 ? 0xFFFF'FFFFu : (1u << width % 32) - 1u;
   static constexpr std::uint32_t mask = maximum << position;
 
-  std::uint32_t bits;  ///< the value at its place in the register
+  std::uint32_t bits;  ///< value at its position in the register
 
-  /// A constant that is too large does not compile; a variable is cut to the field's width.
+  /// A constant that is too large does not compile. A variable is truncated to the width of the field.
   [[gnu::always_inline]] explicit constexpr Field(std::uint32_t value) : bits((value & maximum) << position) {
     if (__builtin_constant_p(value > maximum) && value > maximum) value_does_not_fit_into_its_field();
   }
 
   static std::uint32_t read() { return from(Owner::read()); }
   static bool is_set() { return read() != 0; }
-  /// The field's value in a word that was read from the register before.
+  /// Extracts the field from a word that was read from the register.
   static constexpr std::uint32_t from(std::uint32_t word) { return (word & mask) >> position; }
 };
 
-/// A register of 32 bits (or of the width of `Value`, where the manual asks for narrow accesses).
+/// A register of 32 bits, or of the width of `Value` if the manual requires narrow accesses.
 template <std::uint32_t address_, class Value = std::uint32_t>
 struct Register {
   static constexpr std::uint32_t address = address_;
 
   static Value read() { return at(); }
   static void write(Value value) { at() = value; }
-  /// Writes the given fields and zero to all others.
+  /// Writes the given fields, and zero to all others.
   template <class... Fields>
   requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...)) static void write(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
     at() = static_cast<Value>((fields.bits | ...));
   }
-  /// Changes the given fields and keeps the others. Not for registers with flags that a one clears.
+  /// Changes the given fields only. Not for registers with flags that are cleared by writing one.
   template <class... Fields>
   static void modify(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
@@ -69,7 +69,7 @@ struct Register {
   static volatile Value& at() { return *reinterpret_cast<volatile Value*>(address); }
 };
 
-/// `count` registers of one form, `stride` bytes apart. The caller keeps `index` below `count`.
+/// `count` registers of one form, `stride` bytes apart. The caller ensures that `index` is below `count`.
 template <std::uint32_t address_, std::uint32_t stride, unsigned count_, class Value = std::uint32_t>
 struct RegisterArray {
   static constexpr std::uint32_t address = address_;

@@ -1,4 +1,4 @@
-// Universal synchronous asynchronous receiver transmitter (RM0090, chapter USART), as far as it transmits.
+// Universal synchronous asynchronous receiver transmitter (RM0090, chapter USART), transmitter only.
 #pragma once
 
 #include <registers/register.hpp>

@@ -25,12 +25,12 @@ struct SetupPacket {
   constexpr std::uint8_t value_low() const { return static_cast<std::uint8_t>(value); }
 };
 
-/// What a request leads to.
+/// Result of a request.
 struct Answer {
   enum class Kind : std::uint8_t {
-    stall,    ///< the request is not supported, or wrong
-    done,     ///< no data stage; carried out
-    send,     ///< IN data stage with `data`, then zeros up to `padded_size`, cut to wLength
+    stall,    ///< the request is not supported or invalid
+    done,     ///< no data stage; the request has been carried out
+    send,     ///< IN data stage with `data`, then zeros up to `padded_size`, truncated to wLength
     receive,  ///< OUT data stage of wLength bytes, then data_received()
   };
   Kind kind = Kind::stall;
@@ -45,11 +45,12 @@ struct Answer {
   static constexpr Answer receive() { return {Kind::receive}; }
 };
 
-/// Who carries the requests out.
+/// Handler of the requests.
 class ControlRequests {
  public:
   virtual Answer request(const SetupPacket& setup) = 0;
-  /// The data of an OUT data stage, as far as ControlEndpoint::buffer_size; false stalls the status stage.
+  /// Handles the data of an OUT data stage, up to ControlEndpoint::buffer_size. The status stage is stalled if the
+  /// result is false.
   virtual bool data_received(const SetupPacket& setup, std::span<const std::byte> data) = 0;
 
  protected:
@@ -58,9 +59,9 @@ class ControlRequests {
 
 class ControlEndpoint {
  public:
-  /// Room for the longest report of which the device uses every byte.
+  /// Size of the longest report of which the device uses all bytes.
   static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
-  /// A host may pad what it writes to the longest feature report. The bytes beyond the buffer are discarded.
+  /// A host may pad a written report to the longest feature report. Bytes beyond the buffer are discarded.
   static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);
   static constexpr std::size_t buffer_alignment = alignof(protocol::ParametersReport);
 
@@ -71,13 +72,13 @@ class ControlEndpoint {
   void received(std::span<const std::byte> packet);
   void sent();
 
-  /// Where an answer may be composed; valid until the next SETUP.
+  /// Buffer for an answer, valid until the next SETUP.
   std::span<std::byte, buffer_size> buffer() { return buffer_; }
 
  private:
   enum class Stage : std::uint8_t {
     idle,        ///< waits for SETUP
-    data_in,     ///< sends `remaining_` and `zeros_`; also takes an early status packet
+    data_in,     ///< sends `remaining_` and `zeros_`; also accepts an early status packet
     data_out,    ///< collects wLength bytes in `buffer_`
     status_in,   ///< an empty packet to the host ends the request
     status_out,  ///< an empty packet from the host ends the request

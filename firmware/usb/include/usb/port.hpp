@@ -1,4 +1,4 @@
-// What the USB device needs from the hardware: one full-speed port with its endpoints.
+// Hardware interface of the USB device: one full-speed port with its endpoints.
 #pragma once
 
 #include <array>
@@ -13,70 +13,71 @@ inline constexpr std::size_t packet_size_maximum = 64;
 
 enum class EndpointType : std::uint8_t { control = 0, bulk = 2, interrupt = 3 };
 
-/// Something that happened on the bus, in the order in which it happened.
+/// Bus event. Events are reported in their order on the bus.
 struct Event {
   enum class Kind : std::uint8_t {
-    reset,     ///< the host reset the bus: address 0, every endpoint but 0 closed
-    suspend,   ///< no traffic for 3 ms: the host sleeps or the cable is out
-    resume,    ///< traffic again
-    setup,     ///< eight bytes of a SETUP packet in `data`; what endpoint 0 was doing is over
-    received,  ///< an OUT packet of `length` bytes on `endpoint`; the next one waits for receive()
-    sent,      ///< the transfer given to send() on `endpoint` was taken by the host to its last packet
+    reset,     ///< bus reset: address 0, all endpoints except 0 closed
+    suspend,   ///< no traffic for 3 ms: the host is in suspend or the cable is unplugged
+    resume,    ///< traffic has resumed
+    setup,     ///< SETUP packet of eight bytes in `data`; the previous transfer on endpoint 0 is over
+    received,  ///< OUT packet of `length` bytes on `endpoint`; the next packet is accepted after receive()
+    sent,      ///< the host has read the whole transfer of send() on `endpoint`
   };
 
   Kind kind = Kind::reset;
   std::uint8_t endpoint = 0;  ///< number, without the direction bit
-  std::uint8_t length = 0;    ///< bytes of `data` that are used
+  std::uint8_t length = 0;    ///< used bytes of `data`
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
 };
 
-/// A frame of the bus: what the host does in one of its milliseconds. Cycles are those of the processor's counter.
+/// A bus frame: 1 ms of the host's clock. Cycles are those of the processor's cycle counter.
 struct BusFrame {
-  std::uint16_t number = 0;         ///< 0..2047, as it came with the start of frame
-  std::uint32_t count = 0;          ///< of frames since the port started
-  std::uint32_t begin_cycles = 0;   ///< the counter at the start of frame
-  std::uint32_t length_cycles = 0;  ///< from one start of frame to the next, as measured
-  std::uint32_t now_cycles = 0;     ///< the counter when this was asked for
+  std::uint16_t number = 0;         ///< 0..2047, from the start-of-frame packet
+  std::uint32_t count = 0;          ///< bus frames since the port was started
+  std::uint32_t begin_cycles = 0;   ///< cycle counter at the start of the bus frame
+  std::uint32_t length_cycles = 0;  ///< measured time between two start-of-frame packets
+  std::uint32_t now_cycles = 0;     ///< cycle counter at the time of this call
 };
 
-/// Endpoint hardware. Endpoints go by their address, bit 7 set for IN. Every call returns at once or
-/// after a wait that is bounded to microseconds. Endpoint 0 is open from reset on and always takes SETUP; while
-/// a SETUP waits to be taken from next_event(), send(), receive() and stall() do nothing on endpoint 0, because
-/// they answer an older one.
+/// Endpoint hardware. Endpoint addresses have bit 7 set for IN. Every call returns within microseconds.
+///
+/// Endpoint 0 is open after a reset and always accepts SETUP. While a SETUP event is pending in next_event(), send(),
+/// receive() and stall() have no effect on endpoint 0, because they would answer an older request.
 class Port {
  public:
-  /// The next event; false if there is none. Also moves the running transfers on.
+  /// Returns the next event in `event`, or false if there is none. Also advances the transfers in progress.
   virtual bool next_event(Event& event) = 0;
 
-  /// Called when SET_ADDRESS arrives, before its status stage; the port takes the address into use when
-  /// its hardware wants it.
+  /// The device calls this when SET_ADDRESS arrives, before its status stage. The port applies the address at the time
+  /// that its hardware requires.
   virtual void set_address(std::uint8_t address) = 0;
 
-  /// Opens an endpoint with data toggle 0, not halted, without a transfer: no `sent` comes for one that was running.
+  /// Opens an endpoint with data toggle 0, without halt and without a transfer. A transfer in progress is canceled
+  /// without a `sent` event.
   virtual void open(std::uint8_t endpoint_address, EndpointType type) = 0;
 
-  /// Closes an endpoint; a running transfer is forgotten, and no `sent` comes for it.
+  /// Closes an endpoint. A transfer in progress is canceled without a `sent` event.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
-  /// Answers STALL from now on. On endpoint 0 in both directions, until the next SETUP.
+  /// Answers STALL from now on. On endpoint 0 this applies to both directions, until the next SETUP.
   virtual void stall(std::uint8_t endpoint_address) = 0;
 
-  /// Forgets a running transfer, ends a stall and starts again with data toggle 0.
+  /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
   virtual void clear_stall(std::uint8_t endpoint_address) = 0;
 
-  /// Starts an IN transfer. `data` must stay as it is until `sent` or cancel(); it may be empty. It goes
-  /// out as full packets and a shorter last one; no empty packet is added. One transfer at a time. On
-  /// endpoint 0 at most one packet.
+  /// Starts an IN transfer. `data` may be empty, and must not change until `sent` or cancel(). The port sends full
+  /// packets and a shorter last packet, without an additional empty packet. Only one transfer may be in progress. On
+  /// endpoint 0 a transfer is at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
 
-  /// Forgets a running IN transfer: no `sent` comes for it any more. False if there was none, or the host had taken it
-  /// already.
+  /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was none or the host had
+  /// already read it.
   virtual bool cancel(std::uint8_t endpoint_address) = 0;
 
-  /// Lets the endpoint take one OUT packet.
+  /// Accepts one OUT packet on the endpoint.
   virtual void receive(std::uint8_t endpoint_address) = 0;
 
-  /// The frame that runs; none while the bus is silent.
+  /// Returns the current bus frame, or nothing while the bus is silent.
   virtual std::optional<BusFrame> frame() = 0;
 
  protected:

@@ -1,5 +1,5 @@
-// When the frames of the bus begin: TIM2 captures its count at each start of frame, in hardware, so that no interrupt
-// that runs at that moment falsifies it (RM0090, "Peripheral SOFs": the core's pulse is one of TIM2's triggers).
+// Start times of the bus frames. TIM2 captures its count at each start of frame in hardware, so interrupts do not
+// affect the result. The start-of-frame pulse of the core is a trigger of TIM2 (RM0090, "Peripheral SOFs").
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace inkwell::drivers {
 
-/// A part of OtgFs, which claims TIM2 and starts its clock.
+/// Part of OtgFs, which claims TIM2 and starts its clock.
 class FrameClock {
  public:
-  /// `frames` are counted already.
+  /// `frames` is the initial frame count.
   constexpr explicit FrameClock(std::uint32_t frames) : count_(frames) {}
 
   void start();
 
-  /// The bus has fallen silent: no frame is known until the next one begins.
+  /// Call this function when the bus has become silent. No frame is known until the next frame begins.
   void forget() { is_known_ = false; }
 
-  /// The newest frame; none while the bus is silent. To be called once in a frame at least.
+  /// Returns the newest frame, or nothing while the bus is silent. Call this function at least once per frame.
   std::optional<usb::BusFrame> newest();
 
  private:
@@ -28,9 +28,9 @@ class FrameClock {
 
   bool is_known_ = false;
   std::uint16_t number_ = 0;
-  std::uint32_t count_;         ///< of frames; wraps
-  std::uint32_t captured_ = 0;  ///< TIM2's count at the start of frame
-  std::uint32_t length_ = 0;    ///< of a frame in TIM2's counts, as measured last
+  std::uint32_t count_;         ///< number of frames; wraps
+  std::uint32_t captured_ = 0;  ///< TIM2 count at the start of frame
+  std::uint32_t length_ = 0;    ///< last measured frame length in TIM2 counts
 };
 
 }  // namespace inkwell::drivers

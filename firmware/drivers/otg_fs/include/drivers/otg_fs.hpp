@@ -5,9 +5,8 @@
 //   port.start();
 //   for (;;) { device.poll(); ... }
 //
-// Everything happens in poll(), and the core has no interrupt: the control interrupt wakes the main loop every 50 us,
-// the time of a packet. A transfer of the scope takes 5 ms, so that the bus stands idle between two of them for at most
-// a hundredth of its time.
+// All work is done in poll(), and the core has no interrupt. The control interrupt wakes the main loop every 50 us, the
+// time of a packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 % of the time.
 #pragma once
 
 #include <array>
@@ -33,11 +32,11 @@ class OtgFs final : public usb::Port {
                                      pin(board::facts.usb_plus),
                                      pin(board::facts.usb_supply)};
 
-  /// `frames` of the bus are counted already.
+  /// `frames` is the initial count of bus frames.
   constexpr explicit OtgFs(std::uint32_t frames = 0) : frame_clock_(frames) {}
 
-  /// Sets pins, clock and core up; next_event() connects the pull-up of D+ while the cable brings VBUS. Takes 26 ms.
-  /// The 48 MHz clock runs already (clocks.hpp). False if the core does not answer.
+  /// Sets up pins, clock and core, which takes 26 ms. Later next_event() connects the pull-up of D+ while the cable
+  /// supplies VBUS. The 48 MHz clock must already run (clocks.hpp). Returns false if the core does not answer.
   [[nodiscard]] bool start();
 
   bool next_event(usb::Event& event) override;
@@ -72,12 +71,12 @@ class OtgFs final : public usb::Port {
   void pass_on_setup(usb::Event& event);
   bool next_suspend_or_resume(usb::Event& event);
   void answer_control();
-  /// False while a SETUP makes the answer stale, or may.
+  /// Returns false while a SETUP packet makes the answer stale, or may make it stale.
   bool arm_control();
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
-  /// False if nothing was under way, or the host has taken it.
+  /// Returns false if no transfer was running, or if the host has received it.
   bool stop_in(unsigned endpoint);
   void empty_receive_fifo();
 
@@ -88,8 +87,8 @@ class OtgFs final : public usb::Port {
   bool control_send_waits_ = false;
   bool control_receive_waits_ = false;
   bool control_stall_waits_ = false;
-  bool setup_waits_ = false;         ///< `setup_` has been read; the end of its stage has not
-  bool setup_done_is_lost_ = false;  ///< of the SETUP in the receive FIFO: NAK was cleared when it had just come
+  bool setup_waits_ = false;         ///< `setup_` has been read, but the end of its stage has not
+  bool setup_done_is_lost_ = false;  ///< lost because NAK was cleared just after the SETUP packet arrived
   bool pulled_up_ = false;
   bool suspended_ = false;
 };
