@@ -1,7 +1,7 @@
-// Rows that the force law of a device adds to the tables of parameters and signals, behind their last.
+// Rows that a force law adds at the end of the parameter and signal tables.
 //
-// The firmware knows its own law. A PC program learns of it from the device that it opens, and from then on the rows
-// are in the tables like all others: in the window, in files, on the command line.
+// The firmware knows its force law. A PC program reads the force law from the device that it opens. From then on
+// window, files and command line use these rows like all others.
 #pragma once
 
 #include <array>
@@ -12,17 +12,19 @@
 
 namespace inkwell::protocol {
 
-/// Set whenever a PC program meets a force law. What it points at stays as it is for ever, since another thread may
-/// still read it.
+/// Set whenever a PC program opens a device with a force law. The rows are never freed or changed, because another
+/// thread may still read them.
 template <class Info>
 inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 
 template <class Info>
 inline constexpr Info nameless_row{};
 
-/// A table with the rows that are added to it at run time; `own` is the number of its own rows. Constant expressions
-/// read the table itself. The constructor must not ask std::is_constant_evaluated(): GCC 14 answers true wherever a
-/// reference is bound to the result, as in a range-based for loop, and the added rows would be missing there.
+/// Table with rows that are added at run time. `own` is the number of rows of the table itself. Constant expressions
+/// read the table directly.
+///
+/// The constructor must not call std::is_constant_evaluated(). GCC 14 returns true wherever a reference is bound to the
+/// result, as in a range-based for loop. The added rows would then be missing.
 template <class Info, std::size_t own>
 class KnownRows {
  public:
@@ -32,7 +34,7 @@ class KnownRows {
   }
 
   std::size_t size() const { return own + added_.size(); }
-  /// A row without a name for a place that no row has.
+  /// Returns a row without a name if the index is out of range.
   const Info& operator[](std::size_t place) const {
     return place < own ? (*table_)[place] : place < size() ? added_[place - own] : nameless_row<Info>;
   }

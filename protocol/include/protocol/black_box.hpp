@@ -1,9 +1,10 @@
-// The black box: what a board kept of the time around a fault. It keeps one, over a reset as well, from the fault until
-// the force is switched on again or the power goes. Rows lie a millisecond apart; one is the fault's own.
+// The black box: record of the signals around a fault. The board retains one black box, also across a reset, until the
+// force is switched on again or the power is lost. Rows have an interval of 1 ms, and one row is the fault's control
+// period.
 //
-//   host <- device   feature report  BlackBoxReport: whether there is one, and what it says
-//   host -> device   feature report  BlackBoxRequest: the first row of the next BlackBoxRowsReport
-//   host <- device   feature report  BlackBoxRowsReport, the same again until another one is asked for
+//   host <- device   feature report  BlackBoxReport: presence, fault and crash data
+//   host -> device   feature report  BlackBoxRequest: first row of the next BlackBoxRowsReport
+//   host <- device   feature report  BlackBoxRowsReport: the same rows until the next request
 #pragma once
 
 #include <cstddef>
@@ -15,44 +16,48 @@
 
 namespace inkwell::protocol {
 
-/// Control periods from one row to the next. The fault's own row is out of step with those before it.
+/// Control periods from one row to the next. The interval before the fault's row is different.
 inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
-/// Rows before the fault, 100 ms of them, and from it on.
+/// 100 rows (100 ms) before the fault, and 101 rows from the fault's row on.
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
 inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + black_box_rows_from_fault;
 
-/// The exceptions by which a crash record tells of a crystal that stopped (NMI) and of a main loop that hung (PendSV).
+/// Exception numbers in a crash record for a failed crystal (NMI) and for a stalled main loop (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
-/// What was noted as the processor crashed (ARMv7-M, "Fault handling") or the main loop hung; all 0 if neither.
+/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if neither
+/// occurred.
 struct CrashFacts {
-  std::uint32_t exception;        ///< its number: one of those two, 3 to 6 a fault, from 16 on an unexpected interrupt
-  std::uint32_t program_counter;  ///< of what follows, only r4 to r11 hold if the stack could not be read
+  /// Exception number: crystal_exception, hang_exception, 3 to 6 for a CPU fault, 16 or more for an unexpected
+  /// interrupt.
+  std::uint32_t exception;
+  /// If the stack could not be read, only r4 to r11 are valid from here to `registers`.
+  std::uint32_t program_counter;
   std::uint32_t link_register;
   std::uint32_t program_status;             ///< xPSR
-  std::uint32_t stack_pointer;              ///< before the exception; 0 if the stack could not be read
+  std::uint32_t stack_pointer;              ///< value before the exception; 0 if the stack could not be read
   std::uint32_t registers[13];              ///< r0 to r12
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR
-  std::uint32_t fault_address;              ///< MMFAR or BFAR, if CFSR says that it holds
-  /// What the link register and the stack hold that lies behind a call, the newest first: where the calls came from,
-  /// and perhaps some of older ones. 0 from the end on.
+  std::uint32_t fault_address;              ///< MMFAR or BFAR, if CFSR marks it as valid
+  /// Values of link register and stack that are return addresses, the newest first. Some may be left over from earlier
+  /// calls. Unused entries are 0.
   std::uint32_t callers[8];
-  std::uint32_t image_check;  ///< of the image that ran: the word that its ELF has in .image_check
+  std::uint32_t image_check;  ///< checksum of the image that ran: the word in section .image_check of its ELF
 };
 
 /// Feature report, get.
 struct BlackBoxReport {
   ReportId report_id = ReportId::black_box;
-  std::uint8_t is_complete;     ///< 1: nothing more will come; 0: rows are still being added
-  std::uint8_t is_restart;      ///< 1: the board's time ended with the last row; the start after it told the fault
-  Fault fault;                  ///< `none` if no black box is kept; then the rest is 0
-  std::uint16_t rows_before;    ///< how many of the rows are from before the fault; the first ones
-  std::uint16_t row_count;      ///< up to black_box_rows_maximum
-  std::uint32_t fault_periods;  ///< the control period of the fault, or of the last row before a restart
-  /// Restarts after a crash since then; the signals stay those around the first fault.
+  std::uint8_t is_complete;     ///< 1: the record is complete; 0: rows are still being added
+  std::uint8_t is_restart;      ///< 1: the board restarted after the last row, and the fault was found at that start
+  Fault fault;                  ///< `none` if there is no black box; then all further fields are 0
+  std::uint16_t rows_before;    ///< number of rows before the fault; these rows come first
+  std::uint16_t row_count;      ///< 0..black_box_rows_maximum
+  std::uint32_t fault_periods;  ///< control period of the fault, or of the last row before a restart
+  /// Restarts after a crash since the fault. The rows do not change.
   std::uint32_t later_crashes;
-  CrashFacts crash;  ///< of the newest restart after a crash
+  CrashFacts crash;  ///< crash record of the newest restart after a crash
 };
 
 /// Feature report, set. BlackBoxRowsReport::result is its result.
@@ -62,22 +67,23 @@ struct BlackBoxRequest {
   std::uint16_t first_row;
 };
 
-/// Every signal of one control period, in the table's order; those of the force law behind them, as far as it has any.
+/// All signals of one control period in table order, followed by the signals of the force law.
 struct BlackBoxRow {
   std::uint32_t time_periods;
   float values[signal_count + force_law_signals_maximum];
 };
 
-/// As many as have room where a device composes its answers.
+/// Number of rows that fit into the device's answer buffer.
 inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) - 8) / sizeof(BlackBoxRow);
 
-/// Feature report, get: some rows in the order of time.
+/// Feature report, get. Consecutive rows in the order of time.
 struct BlackBoxRowsReport {
   ReportId report_id = ReportId::black_box_rows;
   std::uint8_t row_count : 4;  ///< 0..black_box_report_rows; 0 after the last row
-  std::uint8_t result : 4;     ///< RequestResult of the last request: accepted, also before the first one, or malformed
-  std::uint16_t first_row;     ///< of the last request that was accepted
-  std::uint32_t fault_periods;  ///< BlackBoxReport::fault_periods, which tells one black box from another
+  /// RequestResult of the last request: `accepted` (also before the first request) or `malformed`.
+  std::uint8_t result : 4;
+  std::uint16_t first_row;      ///< first row of the last accepted request
+  std::uint32_t fault_periods;  ///< BlackBoxReport::fault_periods, which identifies the black box
   BlackBoxRow rows[black_box_report_rows];
 };
 

@@ -1,8 +1,9 @@
-// The program that drives the arm, and the results of its commands and shapes.
+// The driver: the program that drives the arm. Results of commands and shapes.
 //
-// Several programs may be connected to one arm. One of them drives it: it has claimed the arm with a random number, and
-// stamps its commands, forces, shapes and parameters with that claim. The board accepts them from no other program,
-// except for `stop`. Every report with the claim renews it; after claim_expiry_s of silence the claim ends.
+// Several programs may be connected to one arm, and one of them drives it. This program has claimed the arm with a
+// random number and sends the claim with its commands, forces, shapes and parameters. The board accepts these requests
+// from no other program, except for `stop`. Every report with the claim renews it. After claim_expiry_s without such a
+// report the claim expires.
 #pragma once
 
 #include <algorithm>
@@ -16,48 +17,50 @@
 
 namespace inkwell::protocol {
 
-/// Board time after the last report with a claim, after which the claim ends.
+/// Board time from the last report with a claim to the expiry of the claim.
 inline constexpr float claim_expiry_s = 1.0f;
 
-/// Letters of a program's name; the rest of a longer name is cut off.
+/// Longest program name. A longer name is truncated.
 inline constexpr std::size_t program_name_maximum = 31;
 
-/// Whether a command is refused while another program drives the arm. Anybody may stop the force and read signals.
+/// True if the board refuses the command while another program drives the arm. Any program may stop the force and
+/// select signals.
 constexpr bool needs_claim(Command command) {
   return command != Command::heartbeat && command != Command::stop && command != Command::select_signals;
 }
 
 enum class ClaimOperation : std::uint8_t {
-  claim = 0,      ///< without effect while another program drives the arm
-  release = 1,    ///< without effect for any claim but the one that is held. A force that is on falls
-  take_over = 2,  ///< ends the claim of the other program. Its force and its shapes fade
+  claim = 0,      ///< no effect while another program drives the arm
+  release = 1,    ///< no effect with another claim than the current one; the force ramps down
+  take_over = 2,  ///< ends the claim of the other program; its force and its shapes fade
 };
 
-/// Feature report, set. Whether it had an effect is in the DriverReport that follows.
+/// Feature report, set. The next DriverReport shows the result.
 struct ClaimReport {
   ReportId report_id = ReportId::driver;
   ClaimOperation operation;
   std::uint16_t version = protocol_version;
   std::uint32_t claim;                     ///< random, not 0
-  std::uint32_t process_id;                ///< of the program, on its computer
-  char program[program_name_maximum + 1];  ///< its name, padded with zeros
+  std::uint32_t process_id;                ///< process id of the program on its computer
+  char program[program_name_maximum + 1];  ///< program name, padded with zeros
 };
 
 /// Feature report, get: the program that drives the arm.
 struct DriverReport {
   ReportId report_id = ReportId::driver;
-  std::uint8_t is_driven;  ///< 0: no program drives the arm, and the next five are 0
+  std::uint8_t is_driven;  ///< 0: no program drives the arm, and claim_digest to driven_s are 0
   std::uint16_t version = protocol_version;
-  std::uint32_t claim_digest;  ///< digest_of() its claim
+  std::uint32_t claim_digest;  ///< digest_of() the claim
   std::uint32_t process_id;
-  char program[program_name_maximum + 1];  ///< as the program wrote it: filter it before it reaches a terminal
-  std::uint32_t driven_s;                  ///< whole seconds of board time since it claimed the arm
-  std::uint32_t time_periods;              ///< now
-  std::uint32_t changes;                   ///< of the driver since the start: claims, releases, losses, takeovers
-  std::uint32_t refused;                   ///< requests since the start that came from programs that do not drive
+  /// Program name as received, padded with zeros. Filter the name before printing it to a terminal.
+  char program[program_name_maximum + 1];
+  std::uint32_t driven_s;      ///< board time since the program claimed the arm, in whole seconds
+  std::uint32_t time_periods;  ///< board time of this report
+  std::uint32_t changes;       ///< claims, releases, expiries and takeovers since start-up
+  std::uint32_t refused;       ///< requests since start-up from programs that were not the driver
 };
 
-/// Tells one claim from another without naming it, so that no program uses a claim of another by mistake.
+/// Identifies a claim without revealing it, so that no program uses the claim of another program by mistake.
 constexpr std::uint32_t digest_of(std::uint32_t claim) {
   std::uint32_t mixed = claim ^ 0x9E3779B9u;
   mixed = (mixed ^ mixed >> 16) * 0x85EBCA6Bu;
@@ -65,7 +68,8 @@ constexpr std::uint32_t digest_of(std::uint32_t claim) {
   return mixed ^ mixed >> 16;
 }
 
-/// The name in a report: up to its first zero, with `?` for every byte that is not printable ASCII.
+/// Copies the program name up to its first zero, with `?` for every byte that is not printable ASCII. Returns its
+/// length.
 constexpr std::size_t copy_program_name(const char (&field)[program_name_maximum + 1],
                                         char (&name)[program_name_maximum + 1]) {
   std::size_t length = 0;
@@ -76,22 +80,22 @@ constexpr std::size_t copy_program_name(const char (&field)[program_name_maximum
 }
 
 struct RequestResultEntry {
-  std::uint32_t ticket;  ///< CommandReport::ticket or ShapesReport::ticket; 0 for an empty entry
-  ReportId request;      ///< command or shapes
-  Command command;       ///< of a CommandReport, else 0
+  std::uint32_t ticket;  ///< CommandReport::ticket or ShapesReport::ticket; 0 if the entry is empty
+  ReportId request;      ///< `command` or `shapes`
+  Command command;       ///< command of a CommandReport, otherwise 0
   RequestResult result;
   std::uint8_t reserved;
 };
 
 inline constexpr std::size_t request_results_kept = 8;
 
-/// Feature report, get: the results of the newest commands and shapes that have a ticket, of all programs. They are
-/// forgotten when the bus is reset or suspended, together with the commands that waited.
+/// Feature report, get. Results of the newest commands and shapes with a ticket, from all programs. A bus reset or
+/// suspend erases the results and discards the queued commands.
 struct RequestResultsReport {
   ReportId report_id = ReportId::request_results;
-  State state;  ///< now
+  State state;  ///< state at the time of this report
   std::uint16_t version = protocol_version;
-  std::uint32_t time_periods;  ///< now
+  std::uint32_t time_periods;  ///< board time of this report
   RequestResultEntry entries[request_results_kept];
 };
 

@@ -1,7 +1,7 @@
-// Rows that stand in a table three times: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
+// Rows that a table has three times: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
 //
-// The three are named alike but for their number or letter: gear_ratio_1, gear_ratio_2, gear_ratio_3. Code names
-// the first and counts from there: of_axis() from 0, as in arrays; of_number() from 1, as in the rows' names.
+// The names of the three rows differ only in the digit or letter, for example gear_ratio_1, gear_ratio_2, gear_ratio_3.
+// Code names the first row and an index: of_axis() counts from 0 as in arrays, of_number() from 1 as in the row names.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace inkwell::protocol {
 
 namespace detail {
 
-/// Where a name says which of the three it is: a digit 1 to 3 or a letter x to z that stands alone, else npos.
+/// Returns the position of the axis in a name: a separate digit 1 to 3 or letter x to z. Returns npos if there is none.
 constexpr std::size_t axis_place(std::string_view name) {
   for (std::size_t i = 1; i < name.size(); ++i) {
     const bool alone = name[i - 1] == '_' && (i + 1 == name.size() || name[i + 1] == '_');
@@ -21,7 +21,7 @@ constexpr std::size_t axis_place(std::string_view name) {
   return std::string_view::npos;
 }
 
-/// Whether `name` is `other` but for a number or letter that lies `distance` further.
+/// True if the names differ only in the axis, and the axis of `name` is `distance` after the axis of `other`.
 constexpr bool is_named_after(std::string_view name, std::string_view other, int distance) {
   const std::size_t place = axis_place(other);
   return place != std::string_view::npos && name.size() == other.size() && axis_place(name) == place &&
@@ -29,7 +29,7 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// Whether the row, if it is a 1, 3, x or z, has its neighbor 2 or y, alike() in all that must agree.
+/// True if a row for 1, 3, x or z has a row for 2 or y with which it agrees (alike()). True for all other rows.
 template <class Table>
 constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   const auto& row = table[index];
@@ -41,20 +41,20 @@ constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   return false;
 }
 
-// Not constexpr: a call ends the compilation, and the compiler's message shows the name.
+// Not constexpr: a call stops the compilation, and the compiler's message shows the function name.
 void the_table_has_no_three_rows_of_this_name();
 void the_three_rows_differ_in_unit_range_or_kind();
 
 }  // namespace detail
 
-/// Three rows of the table of `Row`s (Parameter or Signal). Made while compiling, from the first of them, and checked
-/// against the table then: names, units, kinds and ranges must agree.
+/// Three rows of a table (Parameter or Signal). The compiler derives the rows from the first row and checks that names,
+/// units, kinds and ranges agree.
 template <class Row>
 class EachAxis {
  public:
-  // Implicit, so that a function that takes EachAxis can be given a row.
+  // Implicit, so that callers can pass a row to a function with a parameter EachAxis.
   consteval EachAxis(Row first) : EachAxis(first, named_after(first, 1), named_after(first, 2)) {}
-  /// For three rows that are not named alike.
+  /// For three rows with unrelated names.
   consteval EachAxis(Row first, Row second, Row third) : rows_{first, second, third} {
     for (const Row row : rows_)
       if (!alike(info(row), info(first))) detail::the_three_rows_differ_in_unit_range_or_kind();

@@ -1,4 +1,4 @@
-// Faults and refusals: every code with its cause and its remedy, in the words a user sees.
+// Faults and refusals: codes, causes and remedies. Users see these texts.
 #pragma once
 
 // To add a fault:
@@ -22,19 +22,19 @@
 
 namespace inkwell::protocol {
 
-/// A motor current is too much beyond so many times its limit.
+/// Limit of a motor current, relative to the current limit of the motor.
 inline constexpr float over_current_ratio = 1.5f;
-/// Supply and gimbal are not known any more if they were not measured for longer.
+/// Largest age of the supply and gimbal measurements.
 inline constexpr float samples_stale_s = 0.001f;
-/// The main loop did not come round for longer. The watchdog's shortest time is longer than that.
+/// Longest pass of the main loop. The shortest timeout of the watchdog is longer.
 inline constexpr float main_loop_stalled_s = 0.01f;
-/// The supply of the bridges swings by more to either side of its mean (control/supply_ripple.hpp).
+/// Largest deviation of the bridge supply from its mean, in either direction (control/supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
-/// The converters' reference is off by a larger part of what it should be (control/analog_supply.hpp).
+/// Largest relative deviation of the converter reference from its nominal value (control/analog_supply.hpp).
 inline constexpr float analog_supply_bearable = 0.05f;
 
 // clang-format off
-/// X(code, name, cause, remedy). A name in braces stands for that figure: device::fault_text() writes it.
+/// X(code, name, cause, remedy). device::fault_text() replaces a name in braces by its figure.
 #define INKWELL_FAULTS(X)                                                                                                         \
   X(0, none, "No fault.", "Nothing to do.")                                                                                       \
   X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \

@@ -1,4 +1,4 @@
-// What an image of the firmware says of itself, at one place in the flash, so that whoever writes it knows what it is.
+// Identity of a firmware image at a fixed flash address. Programs that write an image check it first.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 
 namespace inkwell::protocol {
 
-/// Behind the vector table (RM0090, "Vector table for STM32F405xx", on its boundary of 512 bytes).
+/// The identity follows the vector table (RM0090, "Vector table for STM32F405xx"), which is aligned to 512 bytes.
 inline constexpr std::uint32_t image_begin = 0x0800'0000, image_identity_offset = 512;
 
-/// Of the STM32F405 that both boards have.
+/// Flash size of the STM32F405 on both boards.
 inline constexpr std::size_t flash_bytes = 1024 * 1024;
 
-/// Whether bytes may be all of such a chip's flash: they are as many, and where the first instruction's address stands
-/// (RM0090, "Boot configuration") there is one in the flash, or nothing is written.
+/// True if the bytes may be the complete flash content of an STM32F405. The size must match. The reset vector (RM0090,
+/// "Boot configuration") must either point into the flash or be erased.
 inline bool may_be_flash(std::span<const std::byte> content) {
   if (content.size() != flash_bytes) return false;
   constexpr std::uint32_t erased = 0xFFFF'FFFF;
@@ -40,7 +40,7 @@ struct ImageIdentity {
   std::uint16_t protocol_version;
   std::uint8_t firmware_version[3];
   std::uint8_t reserved;
-  char board[board_name_maximum + 1];  ///< the board that it is for, zeros behind it
+  char board[board_name_maximum + 1];  ///< target board, padded with zeros
 
   constexpr std::array<std::uint8_t, 3> version() const {
     return {firmware_version[0], firmware_version[1], firmware_version[2]};

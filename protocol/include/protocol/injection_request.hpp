@@ -1,5 +1,5 @@
-// A fault as a user or a program asks for it: what may be said of it, and the names of the places that it may be put
-// into. Its checks are the virtual board's (injection/injection.hpp), which alone knows what there is.
+// Request for an injected fault, from a user or a program, and the names of the possible locations. The virtual board
+// checks requests (injection/injection.hpp), because only the virtual board knows its pins and memory.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace inkwell::protocol {
 
-/// No fault comes later, or lasts longer.
+/// Upper limit of `after_s` and of `for_s`.
 inline constexpr double latest_injection_s = 1e6;
 
-/// As it was written.
+/// Request before it is checked.
 struct InjectionRequest {
-  std::string fault;                  ///< its name in the table
-  std::string of = {};                ///< what it is put into, such as "2", "1A" or "encoders[0].a"; empty: not said
-  std::optional<double> amount = {};  ///< none: the table's own
+  std::string fault;                  ///< name in the table
+  std::string of = {};                ///< location, such as "2", "1A" or "encoders[0].a"; empty if not given
+  std::optional<double> amount = {};  ///< without a value: the amount `otherwise` of the table
   double after_s = 0.0;
-  std::optional<double> for_s = {};  ///< none: until it is healed
+  std::optional<double> for_s = {};  ///< without a value: until the fault is healed
 };
 
 namespace detail {
@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, 3> one_to_three{"1", "2", "3"};
 inline constexpr std::array<std::string_view, 6> legs{"1A", "1B", "2A", "2B", "3A", "3B"};
 }  // namespace detail
 
-/// The names of all places of a kind of which there are few; none for the others.
+/// Returns the location names of a kind that has few locations, and an empty list for other kinds.
 constexpr std::span<const std::string_view> names_of_places(InjectionPlace place) {
   switch (place) {
     case InjectionPlace::motor:
@@ -39,7 +39,7 @@ constexpr std::span<const std::string_view> names_of_places(InjectionPlace place
   }
 }
 
-/// What a fault of this kind has to be told, for a sentence that asks for it; empty where it need not be told.
+/// Describes the required location for error messages. The result is empty if the fault needs no location.
 constexpr std::string_view wanted_place(InjectionPlace place) {
   switch (place) {
     case InjectionPlace::motor: return "the motor: 1, 2 or 3";
@@ -54,7 +54,7 @@ constexpr std::string_view wanted_place(InjectionPlace place) {
   return "";
 }
 
-/// The row's help with its figures in it.
+/// Returns the help text of a row with figures instead of names in braces.
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
   const auto place = row.help.find(figure);

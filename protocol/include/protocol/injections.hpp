@@ -1,8 +1,8 @@
-// The table of what can be made to fail in a simulation: X(name, part, place, unit, minimum, maximum, otherwise, help).
+// Table of injected faults for simulations: X(name, part, place, unit, minimum, maximum, otherwise, help).
 //
-// `part` is under what heading it stands, `place` is what a fault is put into, and the last number is its amount unless
-// another is given. A fault with no range takes no amount. Lasting faults can be healed; what has happened once (a
-// slip, a flipped bit of RAM) stays.
+// `part` is the heading in help texts and `place` the kind of location that a request has to name. `otherwise` is the
+// default amount. A fault without a range has no amount. Persistent faults can be healed. Single events (a slip, a
+// flipped RAM bit) cannot.
 #pragma once
 
 // To add an injected fault:
@@ -25,25 +25,25 @@
 
 namespace inkwell::protocol {
 
-/// What of board and arm fails: the rows of one part follow each other.
+/// Part of board and arm that fails. The rows of one part are consecutive.
 enum class InjectionPart : std::uint8_t { wires, encoders, shunts, motors, bridges, supply, clocks, usb, core, memory };
 
-/// What a fault is put into.
+/// Kind of location at which a fault is injected.
 enum class InjectionPlace : std::uint8_t {
-  none,       ///< there is one only
-  motor,      ///< 1 to 3, with its encoder and its shunt amplifier
-  leg,        ///< 1A to 3B: motor, and terminal + or -
-  wire,       ///< a pin of the chip: PA0, or what the board's facts call it, such as encoders[0].a
-  wires,      ///< two of them, with a plus between
-  exception,  ///< by number: 16 is interrupt 0
+  none,       ///< only one location exists
+  motor,      ///< 1 to 3: the motor, its encoder and its shunt amplifier
+  leg,        ///< half bridge 1A to 3B: motor number, and A or B for terminal + or -
+  wire,       ///< a pin of the chip, such as PA0, or its name in the board description, such as encoders[0].a
+  wires,      ///< two wires, separated by a plus sign
+  exception,  ///< exception number; 16 is interrupt 0
   converter,  ///< ADC 1 to 3
-  address,    ///< of a byte; a place by the seed unless given
+  address,    ///< byte address; without one the seed selects it
 };
 
 inline constexpr double wire_spike_s = 2e-6;
 
 // clang-format off
-/// A name in braces stands for that figure: help_of() writes it.
+/// help_of() replaces a name in braces by its figure.
 #define INKWELL_INJECTIONS(X)                                                                                                      \
   X(wire_open, wires, wire, "", 0, 0, 0, "The wire is broken, and its input floats.")                                             \
   X(wire_low, wires, wire, "", 0, 0, 0, "The wire is shorted to ground.")                                                                \
@@ -89,7 +89,7 @@ inline constexpr double wire_spike_s = 2e-6;
   X(flash_bit, memory, address, "", -1, 7, -1, "Bit of the flash byte that flips; -1 chooses the bit from the seed. Healing restores the bit.")
 // clang-format on
 
-/// Its value is its place in the table.
+/// The value of an enumerator is the index of its row.
 enum class InjectedFault : std::uint8_t {
 #define X(name, ...) name,
   INKWELL_INJECTIONS(X)

@@ -1,15 +1,14 @@
-// The table of parameters: the one home of every number a user can set.
-//
-// Firmware, companion, saved files, arm descriptions and documentation all read this table. A row is
+// Table of all parameters. Firmware, companion, saved files, arm descriptions and documentation use it. A row is
 //
 //   X(id, name, kind, unit, minimum, maximum, default, group, help)
 //
-// `id` is what goes over the wire and never changes its meaning; a removed parameter's id is not used
-// again. `name` ends in its unit, as it does in files and on the command line. A row whose default is
-// arm_defaults::name belongs to the arm: every description in boards/arms/ sets it, and the one that the
-// build names gives the default, through the generated header <arm/defaults.hpp>.
+// The protocol transmits `id`. An id never changes its meaning, and the id of a removed parameter is not reused. `name`
+// ends in its unit, in files and on the command line as well.
 //
-// Behind these rows stand those of the force law that the image was built with (docs/force-laws.md).
+// A row with the default arm_defaults::NAME belongs to the arm. Every description in boards/arms/ sets this parameter.
+// The build selects one description and writes its values to the generated header <arm/defaults.hpp>.
+//
+// The parameters of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
 
 // To add a parameter:
@@ -41,7 +40,7 @@ namespace inkwell::protocol {
 enum class ParameterKind : std::uint8_t {
   real,    ///< any value in the range
   whole,   ///< a whole number in the range
-  choice,  ///< a whole number, each value of which has a name in the help text
+  choice,  ///< a whole number; the help text names each value
 };
 
 // clang-format off
@@ -123,7 +122,8 @@ enum class ParameterKind : std::uint8_t {
   X(608, gimbal_3_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_3_offset_rad, "gimbal", "Offset of the roll potentiometer.")
 // clang-format on
 
-/// Index of a parameter in the table; not what goes over the wire. Values behind the last are rows of a force law.
+/// Index of a parameter in the table. The protocol transmits the id instead. Values after the last enumerator are
+/// parameters of the force law.
 enum class Parameter : std::uint8_t {
 #define X(id, name, ...) name,
   INKWELL_PARAMETERS(X)
@@ -131,16 +131,16 @@ enum class Parameter : std::uint8_t {
 };
 
 struct ParameterInfo {
-  std::uint16_t id;       ///< on the wire
+  std::uint16_t id;       ///< id in the protocol
   std::string_view name;  ///< ends in its unit
   ParameterKind kind;
-  std::string_view unit;  ///< empty for a pure number
+  std::string_view unit;  ///< empty for a dimensionless parameter
   float minimum;
   float maximum;
   float default_value;
   std::string_view group;
   std::string_view help;
-  bool belongs_to_arm;  ///< set by every arm description
+  bool belongs_to_arm;  ///< true if every arm description sets it
 };
 
 namespace detail {
@@ -165,11 +165,11 @@ inline constexpr auto parameter_table = std::to_array<ParameterInfo>({
 
 inline constexpr std::size_t parameter_count = parameter_table.size();
 
-/// Of a force law: as many parameters it may have, and the id of its first on the wire.
+/// Largest number of force law parameters, and the id of the first force law parameter.
 inline constexpr std::size_t force_law_parameters_maximum = 12;
 inline constexpr std::uint16_t force_law_first_id = 1000;
 
-/// The table, and the parameters of the force law as far as it is known.
+/// Returns the table and, if the force law is known, its parameters.
 inline KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
 
 constexpr const ParameterInfo& info(Parameter parameter) {
@@ -177,22 +177,23 @@ constexpr const ParameterInfo& info(Parameter parameter) {
   return place < parameter_count ? parameter_table[place] : known_parameters()[place];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
-/// Says where the probe is or how a torque comes to be, so that a change under a force would be a jump: it waits until
-/// the force is off. Other parameters belong to an arm as well, but can change at any time.
+/// True if the parameter is part of the arm's geometry, so a change under force would be a jump. Such a change is
+/// allowed only while the force is off. Parameters outside the group "arm" can change at any time, even if
+/// belongs_to_arm is set.
 constexpr bool needs_force_off(const ParameterInfo& row) { return row.group == "arm"; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
   return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
          a.group == b.group && a.belongs_to_arm == b.belongs_to_arm;
 }
 
-/// The parameter of one of three motors, joints or axes, `rows` named by that of the first; `axis` is 0, 1 or 2.
+/// Returns the parameter of motor, joint or axis `axis` (0, 1 or 2). `rows` is the parameter of the first one.
 constexpr Parameter of_axis(EachAxis<Parameter> rows, std::size_t axis) { return rows[axis]; }
-/// The same for a `number` 1, 2 or 3, as in the rows' names.
+/// Returns the parameter of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Parameter of_number(EachAxis<Parameter> rows, int number) {
   return rows[static_cast<std::size_t>(number) - 1];
 }
 
-/// Stops of the arm. The third are the elbow's: they bound the angle between the links, on every arm.
+/// Joint stops of the arm. The third pair bounds the elbow angle, which is the angle between the links on every arm.
 inline constexpr EachAxis<Parameter> lower_stops{Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad,
                                                  Parameter::elbow_minimum_rad};
 inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad, Parameter::joint_2_maximum_rad,
@@ -201,10 +202,11 @@ inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad,
 struct Bounds {
   Parameter lower;
   Parameter upper;
-  bool hold_sphere;  ///< the upper must be above the lower by more than the sphere's diameter, else just above it
+  /// If true, `upper` must exceed `lower` by more than the sphere's diameter. Otherwise `upper` must exceed `lower`.
+  bool hold_sphere;
 };
 
-/// What no set of parameters may contradict, beside each parameter's own range.
+/// Conditions that every set of parameters must satisfy, in addition to the range of each parameter.
 inline constexpr Bounds parameter_bounds[] = {
     {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m, true},
     {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m, true},
@@ -214,7 +216,7 @@ inline constexpr Bounds parameter_bounds[] = {
     {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
 };
 
-/// A value for every parameter, in the table's order, and for those of a force law; 0 where it has none.
+/// Values of all parameters in table order, followed by the parameters of the force law. Unused values are 0.
 struct ParameterSet {
   std::array<float, parameter_count + force_law_parameters_maximum> values;
 
@@ -226,14 +228,14 @@ struct ParameterSet {
   bool operator==(const ParameterSet&) const = default;
 };
 
-/// The defaults of the table, without those of a force law.
+/// Returns the defaults of the table, without the parameters of the force law.
 constexpr ParameterSet table_defaults() {
   ParameterSet set{};
   for (std::size_t i = 0; i < parameter_count; ++i) set.values[i] = parameter_table[i].default_value;
   return set;
 }
 
-/// The defaults of the table, and of the parameters of the force law as far as it is known.
+/// Returns the defaults of the table and, if the force law is known, of its parameters.
 inline ParameterSet default_parameters() {
   ParameterSet set{};
   const auto rows = known_parameters();
@@ -282,7 +284,7 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
                 #name ": its group stands further up; put it there, with an id of that group");                     \
   static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
                 #name ": it takes another row's default");                                                          \
-  static_assert(detail::neighbors_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),           \
+  static_assert(detail::neighbors_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),            \
                 #name ": rows 1 to 3, or x to z, must all be there and agree in kind, unit, range and group");
 INKWELL_PARAMETERS(X)
 #undef X

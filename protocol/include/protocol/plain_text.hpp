@@ -1,9 +1,9 @@
-// Text that a file or a device supplied, made safe to print. A control character in it could move a terminal's cursor,
-// change its settings, or join lines of a script.
+// Makes text from a file or a device safe to print. Control characters in it could move a terminal's cursor, change
+// terminal settings, or join lines of a script.
 #pragma once
 
-// Call plain_text() where a text from a file, a device or another program is read. device::Error already filters
-// its text.
+// Call plain_text() where a text from a file, a device or another program is read. device::Error already filters its
+// text.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace inkwell::protocol {
 
-/// Bytes of the printable character at the begin of a text; 0 if there is none: the text is empty, or starts with a
-/// control character, a change of the writing direction, or bytes that are not UTF-8.
+/// Returns the number of bytes of the printable character at the beginning of a text. Returns 0 for an empty text, a
+/// control character, a change of the writing direction, or invalid UTF-8.
 constexpr std::size_t printable_length(std::string_view text) {
   if (text.empty()) return 0;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -35,8 +35,8 @@ constexpr std::size_t printable_length(std::string_view text) {
   return is_utf8 && !is_control ? length : 0;
 }
 
-/// The same text with a space for each tab and line end, and '?' for every other byte that is not printable. Its length
-/// in bytes does not change.
+/// Returns the text with a space for each tab and line end, and '?' for every other byte that is not printable. The
+/// length in bytes does not change.
 inline std::string plain_text(std::string_view text) {
   std::string plain;
   while (!text.empty()) {
@@ -50,7 +50,7 @@ inline std::string plain_text(std::string_view text) {
   return plain;
 }
 
-/// Like plain_text(), but tabs and line feeds stay: for sentences of several lines and what another program printed.
+/// Like plain_text(), but keeps tabs and line feeds. Used for multi-line text and for the output of other programs.
 inline std::string plain_lines(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

@@ -1,23 +1,23 @@
-// What goes over the HID interface. All structures are little-endian, as both ends are, and without gaps:
-// only the command is packed, every other number lies where its type wants it.
+// Reports of the HID interface. All structures are little-endian and have no padding. CommandReport is packed; all
+// other structures are naturally aligned.
 //
-//   device -> host   input report    PoseReport, one for each frame of the bus, a millisecond by the host's clock
-//   host -> device   output report   CommandReport, ForceReport; any of them counts as a sign of life
+//   device -> host   input report    PoseReport, one per bus frame (1 ms of the host's clock)
+//   host -> device   output report   CommandReport, ForceReport; each is also a sign of life
 //   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport,
 //                                    FrameReport, ForceLawReport
-//   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
-//                                    likewise
-//   both             feature report  those of the black box: protocol/black_box.hpp
-//   host <- device   feature report  that of the self-test: protocol/self_test.hpp; that of the parameter store:
-//                                    protocol/store.hpp, and the ParametersReport of what the next start would give
-//   both             feature report  the claim of the program that drives the arm: protocol/driver.hpp
-//   host <- device   feature report  the results of commands and shapes: protocol/driver.hpp
+//   host -> device   feature report  ParametersReport (set): one transaction, applied completely or not at all;
+//                                    ShapesReport, in the same way
+//   both             feature report  black box: protocol/black_box.hpp
+//   host <- device   feature report  self-test: protocol/self_test.hpp; parameter store: protocol/store.hpp, and
+//                                    a ParametersReport with the parameters after the next start
+//   both             feature report  claim of the driver: protocol/driver.hpp
+//   host <- device   feature report  results of commands and shapes: protocol/driver.hpp
 //
-// Sizes and directions of all reports are in protocol/report_table.hpp. A report that is set may be longer than its
-// used part; the device ignores the rest. Some hosts pad every report to the longest of its kind. A report that is read
-// is filled with zeros up to its declared size, or to the length that the host asks for (HID 1.11, section 7.2.1).
+// Sizes and directions of all reports are in protocol/report_table.hpp. A report that the host sets may be longer than
+// its used part, and the device ignores the rest. Some hosts pad every report to the longest of its kind. A report that
+// the host reads is filled with zeros up to its declared size or the requested length (HID 1.11, section 7.2.1).
 //
-// And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
+// ControllerReport has a separate interface. Every program that supports joysticks can read it.
 #pragma once
 
 #include <algorithm>
@@ -37,18 +37,19 @@ namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
-/// By how many versions this build is ahead of the tree; a test's firmware is (tests/target/next_protocol).
+/// Number of versions by which this build is ahead of the source tree. A test firmware sets it
+/// (tests/target/next_protocol).
 #ifndef INKWELL_PROTOCOL_VERSIONS_AHEAD
 #define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
 #endif
 
-/// Rises whenever a structure below, or the meaning of an id, changes.
+/// Increases whenever a structure below or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
-/// Frames of the bus in a second of the host.
+/// Bus frames per second of the host's clock.
 inline constexpr std::uint32_t pose_rate_Hz = 1'000;
 
 enum class ReportId : std::uint8_t {
@@ -86,7 +87,7 @@ constexpr bool is_closed(std::uint8_t switches, Switch which) {
   X(4, program, "A program on the PC sends forces.")
 // clang-format on
 
-/// Whose force the hand feels: bits of PoseReport::force_sources.
+/// Force sources that the hand feels: bits of PoseReport::force_sources.
 enum class ForceSource : std::uint8_t {
 #define X(bit, name, ...) name = bit,
   INKWELL_FORCE_SOURCES(X)
@@ -120,7 +121,7 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
   X(32, speed, "The probe speed is close to speed_limit_m_per_s: the force component along the motion is reduced.")
 // clang-format on
 
-/// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.
+/// Limits that reduce the force: bits of PoseReport::limits. A limit is not a fault.
 enum class Limit : std::uint8_t {
 #define X(bit, name, ...) name = bit,
   INKWELL_LIMITS(X)
@@ -141,61 +142,61 @@ inline constexpr auto limit_table = std::to_array<LimitInfo>({
 
 constexpr bool is_reached(std::uint8_t limits, Limit limit) { return (limits & static_cast<std::uint8_t>(limit)) != 0; }
 
-/// What a program's force has to do with that of the board's own force law, the walls of the box. Shapes are felt in
-/// every mode.
+/// Combination of a program's force with the board's force law (the walls of the box). The hand feels shapes in every
+/// mode.
 enum class ForceMode : std::uint8_t {
-  none = 0,              ///< the program has ended: its force fades
-  beside_walls = 1,      ///< both are felt
-  instead_of_walls = 2,  ///< the walls are not felt
+  none = 0,              ///< the program has ended, and its force fades
+  beside_walls = 1,      ///< the hand feels the program's force and the walls
+  instead_of_walls = 2,  ///< the hand does not feel the walls
 };
 
-/// Input report, the newest pose that there is just before the host asks: taken from the last control period that ends
-/// before the start of the frame. What the host did not fetch is replaced, never sent late.
+/// Input report with the newest pose when the host polls. The pose belongs to the last control period that ends before
+/// the start of the bus frame. A newer pose replaces a pose that the host did not read.
 struct PoseReport {
   ReportId report_id = ReportId::pose;
   State state;
   Fault fault;
   std::uint8_t limits : 7;         ///< bits of Limit
-  std::uint8_t is_referenced : 1;  ///< 1: it is known where the arm is; else joints and position mean nothing
-  std::uint32_t sequence;          ///< frames of the bus since it runs; a gap is a frame without a report
-  std::uint32_t time_periods;      ///< control periods since the board started; wraps after 59 hours
+  std::uint8_t is_referenced : 1;  ///< 0: the position of the arm is unknown, and joints and position are invalid
+  std::uint32_t sequence;          ///< number of bus frames; a gap is a bus frame without a report
+  std::uint32_t time_periods;      ///< control periods since start-up; wraps after 59 hours
   float position_m[3];
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
-  std::uint8_t switches : 3;       ///< bits of Switch, 1 is pressed
-  std::uint8_t driver_parity : 1;  ///< lowest bit of DriverReport::changes: it flips when another program drives
+  std::uint8_t switches : 3;       ///< bits of Switch, 1 is closed
+  std::uint8_t driver_parity : 1;  ///< lowest bit of DriverReport::changes; it changes with the driver
   std::uint8_t force_sources : 4;  ///< bits of ForceSource
-  std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
-  std::uint8_t command_token;      ///< token of the last command carried out
-  std::uint8_t supply_dV;          ///< supply of the bridges in tenths of a volt
+  std::uint8_t servo_load;         ///< longest control interrupt since the last report; 255 is the whole control period
+  std::uint8_t command_token;      ///< token of the last command that was carried out
+  std::uint8_t supply_dV;          ///< supply voltage of the bridges in units of 0.1 V
 };
 
-/// A step of ControllerReport: positions to 327 mm, angles to 3.2767 rad, further ones as these.
+/// Units of ControllerReport. Positions are limited to +-327 mm and angles to +-3.2767 rad.
 inline constexpr float controller_position_step_m = 1e-5f;
 inline constexpr float controller_angle_step_rad = 1e-4f;
 inline constexpr float controller_steps_maximum = 32767.0f;
 
-/// Input report of the controller's interface, the only one there and so without an id: a multi-axis controller of the
-/// HID usage tables, every controller_interval_ms if the host asks.
+/// Input report of the controller interface, a multi-axis controller of the HID usage tables. The interface has no
+/// other report, so the report has no id. The host can read it every controller_interval_ms.
 struct ControllerReport {
-  std::int16_t position[3];  ///< x, y and z of the workspace
+  std::int16_t position[3];  ///< x, y and z in the workspace
   std::int16_t angle[3];     ///< Rx, Ry and Rz: yaw, pitch and roll of the gimbal
   std::uint16_t buttons;     ///< bits button_1 and button_2 of Switch
 };
 
 enum class Command : std::uint8_t {
-  heartbeat = 0,         ///< nothing but a sign of life
-  enable_force = 1,      ///< from ready on, by a ramp
-  disable_force = 2,     ///< by a ramp, soft_landing_s; a test ends at once
-  clear_fault = 3,       ///< if its cause is gone
-  select_signals = 4,    ///< starts the scope with these signals; none stops it
-  test_current = 5,      ///< in `ready`, and no test runs: one pulse of current in a motor, then a rest as long
-  test_voltage = 6,      ///< likewise: one pulse of voltage on a motor, then a rest as long
-  stop = 7,              ///< switches force and test off at once
-  self_test = 8,         ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
-  store_parameters = 9,  ///< keeps the parameters as they are now over a start; where may_store() (protocol/store.hpp)
-  factory_reset = 10,    ///< forgets what is stored, and gives every parameter its default; likewise
+  heartbeat = 0,       ///< only a sign of life
+  enable_force = 1,    ///< in `ready` or `landing`; the force ramps up
+  disable_force = 2,   ///< the force ramps down in soft_landing_s; a test pulse stops immediately
+  clear_fault = 3,     ///< no effect while the cause of the fault persists
+  select_signals = 4,  ///< starts the scope with these signals; none stops it
+  test_current = 5,    ///< in `ready` without a running test: one current pulse in a motor, then a rest of equal length
+  test_voltage = 6,    ///< in `ready` without a running test: one voltage pulse on a motor, then a rest of equal length
+  stop = 7,            ///< switches force and test off immediately
+  self_test = 8,       ///< in `unreferenced`, `ready`, or a fault before the first passed self-test
+  store_parameters = 9,  ///< writes the current parameter values to flash, where may_store() (protocol/store.hpp)
+  factory_reset = 10,    ///< erases the stored parameters and sets the defaults, where may_store()
 };
 
 inline constexpr std::size_t scope_signals_maximum = 32;
@@ -210,23 +211,24 @@ struct SignalSelection {
 
 struct TestPulse {
   std::uint8_t motor;  ///< 1..3
-  /// A or V; bounded by the current limit or the voltage limit, and by the current that makes force_limit_N in this
+  /// Pulse height in A or V. It is bounded by the current or voltage limit and by the current for force_limit_N in this
   /// pose.
   float amplitude;
-  float duration_s;  ///< 0..test_duration_maximum_s; the pulse ends before if it moved energy_reserve_J
+  float duration_s;  ///< 0..test_duration_maximum_s; the pulse stops early when it has delivered energy_reserve_J
 };
 
-/// Output report. The device does not acknowledge a report of another version or length, a command that is not valid,
-/// or one that comes over endpoint 0 while the command queue is full. Otherwise `token` comes back in
-/// PoseReport::command_token when the command has been carried out. While a program drives the arm, `stop` is the only
-/// command that is accepted from other programs.
+/// Output report. PoseReport::command_token returns `token` when the command has been carried out. The device does not
+/// acknowledge a report with a wrong version or length or an invalid command. It also does not acknowledge a command on
+/// endpoint 0 while the command queue is full. While a program drives the arm, the device accepts only `stop` from
+/// other programs.
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
   std::uint8_t version = protocol_version;
   std::uint8_t token;
-  std::uint32_t claim;   ///< of the program that sends it; 0 if it has none
-  std::uint32_t ticket;  ///< chosen by the program; RequestResultsReport names the result by it. 0 asks for no result
+  std::uint32_t claim;  ///< claim of the sender; 0 if it has none
+  /// Chosen by the program. RequestResultsReport lists the result under this number. With 0 the result is not recorded.
+  std::uint32_t ticket;
   union {
     SignalSelection selection;  ///< select_signals
     TestPulse test;             ///< test_current, test_voltage
@@ -235,42 +237,44 @@ struct CommandReport {
 
 #pragma pack(pop)
 
-/// The longest interval between two reports of a program that the board interpolates.
+/// Longest interval between two reports of a program over which the board interpolates.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 
-/// Output report, up to one in a millisecond: the force that a program wants at the probe. The board moves to it in a
-/// straight line over the program's own interval, keeps it below the force limit and its change below
-/// program_force_change_N_per_s, and lets it fade program_force_expiry_s after the last report. A force that is not
-/// finite, an unknown mode, an interval out of range, a claim that does not drive the arm or an old pose is refused and
-/// counted.
+/// Output report, at most one per millisecond: the force that a program requests at the probe. The board moves to this
+/// force along a straight line within `interval_ms`. The force is limited by the force limit, and its rate of change by
+/// program_force_change_N_per_s. It fades program_force_expiry_s after the last report. The device refuses and counts a
+/// force that is not finite, an unknown mode, and an interval out of range. It also refuses and counts an old pose and
+/// a claim other than the driver's.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
   std::uint8_t version = protocol_version;
   std::uint8_t interval_ms;     ///< 1..force_interval_maximum_ms
-  std::uint32_t claim;          ///< of the program that drives the arm
-  std::uint32_t sequence;       ///< one more each time; a gap is counted as lost
+  std::uint32_t claim;          ///< claim of the driver
+  std::uint32_t sequence;       ///< increases by one per report; a gap is counted as lost
   std::uint32_t pose_sequence;  ///< PoseReport::sequence of the newest pose that the program has received
-  float force_N[3];             ///< on the hand, workspace axes
+  float force_N[3];             ///< force on the hand, workspace axes
 };
 
-/// A force that answers an older pose is refused: the program no longer knows the position of the hand.
+/// Largest age of the pose that a force report answers. The device refuses older forces, because the program does not
+/// know the position of the hand.
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
-/// From this heat on a motor's current limit falls, to its continuous current where the heat is 1.
+/// Heat above which the current limit of a motor falls. It reaches the continuous current at heat 1.
 inline constexpr float motor_heat_holds_back_from = 0.85f;
-/// At this heat, which holding back should not let come, the force goes off.
+/// Heat at which a fault switches the force off. The reduced current limit normally prevents this heat.
 inline constexpr float motor_heat_fault = 1.25f;
 
-/// From this part of speed_limit_m_per_s on, what of the force drives the motion gives way.
+/// Fraction of speed_limit_m_per_s above which the force component along the motion is reduced.
 inline constexpr float speed_holds_back_from = 0.8f;
-/// From this part on all of it does.
+/// Fraction of speed_limit_m_per_s above which the force component along the motion is zero.
 inline constexpr float speed_drives_no_more_from = 0.9f;
 
-/// Letters of a board's name, which is that of its folder in boards/.
+/// Longest board name. The name is that of the board's folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;
 
-/// The name in a field of a report or an image; empty if it is no name: without an end, or with what cannot be printed.
+/// Returns the board name in a field of a report or an image. Returns an empty name if the field has no terminating
+/// zero or a character that is not printable.
 constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1]) {
   const std::string_view name(field, std::find(field, std::end(field), '\0'));
   const bool is_sound = name.size() <= board_name_maximum &&
@@ -278,37 +282,37 @@ constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1
   return is_sound ? name : std::string_view{};
 }
 
-/// The version of the protocol from which on the device names its board.
+/// First protocol version in which the device reports its board name.
 inline constexpr std::uint16_t first_version_with_board = 12;
 
-/// Feature report: who the device is, and what it has counted since it started. What stands before the hashes keeps its
-/// place in every later version, so that a companion of another one can still say whom it met.
+/// Feature report: identity and counters of the device. The position of the fields before the hashes is the same in all
+/// later versions. A companion of another version can therefore still identify the device.
 struct InformationReport {
   ReportId report_id = ReportId::information;
   std::uint8_t reserved = 0;
   std::uint16_t version = protocol_version;
   std::uint8_t firmware_version[4];    ///< major, minor, patch, 0
-  char board[board_name_maximum + 1];  ///< the board that the firmware is for, zeros behind it
+  char board[board_name_maximum + 1];  ///< target board of the firmware, padded with zeros
   std::uint32_t parameter_table_hash;  ///< protocol::parameter_table_hash of the firmware
   std::uint32_t signal_table_hash;     ///< protocol::signal_table_hash of the firmware
   std::uint32_t servo_rate_Hz;
   std::uint32_t processor_clock_Hz;
-  std::uint32_t servo_cycles_longest;   ///< longest control interrupt since the start
-  std::uint32_t scope_samples_dropped;  ///< because the host did not read
-  std::uint32_t pose_reports_dropped;   ///< frames in which a host that otherwise polled did not
+  std::uint32_t servo_cycles_longest;   ///< longest control interrupt since start-up
+  std::uint32_t scope_samples_dropped;  ///< samples lost because the host did not read
+  std::uint32_t pose_reports_dropped;   ///< bus frames without a poll, from a host that polls otherwise
   std::uint32_t servo_overruns;
-  std::uint32_t force_reports;          ///< received since the start, refused ones included
-  std::uint32_t force_reports_lost;     ///< gaps in their sequence
-  std::uint32_t force_reports_late;     ///< came more than a millisecond after their interval
-  std::uint32_t force_reports_refused;  ///< what they said was not sound
-  std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24 as found at start-up
-  float motor_heat[3];                  ///< now; 1 is what the continuous current leads to
+  std::uint32_t force_reports;          ///< received since start-up, including refused ones
+  std::uint32_t force_reports_lost;     ///< gaps in the sequence of force reports
+  std::uint32_t force_reports_late;     ///< received more than 1 ms after the end of the previous report's interval
+  std::uint32_t force_reports_refused;  ///< reports with invalid values
+  std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24, as read at start-up
+  float motor_heat[3];                  ///< heat now; 1 is the heat at the continuous current
 };
 
 enum class ParameterOperation : std::uint8_t {
-  set = 0,               ///< the entries take effect together, the other parameters stay
-  restore_defaults = 1,  ///< every parameter gets its default; no entries
-  restore_stored = 2,    ///< every parameter gets what the next start would give it; no entries
+  set = 0,               ///< all entries take effect in the same period; other parameters do not change
+  restore_defaults = 1,  ///< sets every parameter to its default; without entries
+  restore_stored = 2,    ///< sets every parameter to its value after the next start; without entries
 };
 
 struct ParameterEntry {
@@ -320,56 +324,56 @@ struct ParameterEntry {
 inline constexpr std::size_t parameter_entries_maximum = 96;
 static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
-/// Feature report. On get, the entries are those of the table in its order, then those of the force law. On set,
-/// only the used part has to be sent: parameters_report_size(count) bytes. The same with ReportId::stored, get only,
-/// tells what the next start would give each parameter: what is stored, or its default; its operation is
-/// restore_stored.
+/// Feature report. The host reads all parameters in table order, followed by the parameters of the force law. To set
+/// parameters, the host sends at least the used part of parameters_report_size(count) bytes. With ReportId::stored (get
+/// only) the report has the parameter values after the next start and the operation restore_stored.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
   ParameterOperation operation;
   std::uint16_t version = protocol_version;
   std::uint16_t count;
-  std::uint16_t ticket = 0;  ///< chosen by the program; comes back in the TransactionReport
-  std::uint32_t claim = 0;   ///< of the program that sends it; 0 if it has none, and in answers
+  std::uint16_t ticket = 0;  ///< chosen by the program; TransactionReport repeats it
+  std::uint32_t claim = 0;   ///< claim of the sender; 0 if it has none, and in answers
   ParameterEntry entries[parameter_entries_maximum];
 };
 
-/// Feature report: what became of the last transaction.
+/// Feature report: result of the last transaction.
 struct TransactionReport {
   ReportId report_id = ReportId::transaction;
   Refusal refusal;
-  std::uint16_t parameter_id;        ///< the one that was refused, else 0
-  float value;                       ///< the value that was refused, else 0
-  std::uint32_t transactions;        ///< received since the start, refused ones included
-  std::uint32_t applied_at_periods;  ///< control period at which the last accepted one took effect
-  std::uint16_t ticket;              ///< ParametersReport::ticket of that transaction
+  std::uint16_t parameter_id;        ///< id of the refused parameter, otherwise 0
+  float value;                       ///< refused value, otherwise 0
+  std::uint32_t transactions;        ///< transactions received since start-up, including refused ones
+  std::uint32_t applied_at_periods;  ///< control period in which the last accepted transaction took effect
+  std::uint16_t ticket;              ///< ParametersReport::ticket of the last transaction
   std::uint16_t reserved;
 };
 
-/// Feature report: when the newest frame of the bus began, by the board's clock. Two of them tell how fast the host's
-/// milliseconds and the board's control periods run against each other.
+/// Feature report: start of the newest bus frame on the board's clock. The difference of two reports shows the ratio of
+/// host clock and board clock.
 struct FrameReport {
   ReportId report_id = ReportId::frame;
-  std::uint8_t is_known;       ///< 0: no frame runs, or the board has no time for it yet; then the rest is 0
-  std::uint16_t frame_number;  ///< 0..2047, as it came with the start of frame
-  std::uint32_t sequence;      ///< PoseReport::sequence of the report that was meant for this frame
-  std::uint32_t time_periods;  ///< the control period in which the frame began
-  std::uint32_t time_cycles;   ///< processor cycles from the begin of that period to the begin of the frame
+  std::uint8_t is_known;  ///< 0: there is no bus frame, or its time is not known yet; then all further fields are 0
+  std::uint16_t frame_number;  ///< 0..2047, from the start-of-frame packet
+  std::uint32_t sequence;      ///< PoseReport::sequence of the report for this bus frame
+  std::uint32_t time_periods;  ///< control period in which the bus frame began
+  std::uint32_t time_cycles;   ///< processor cycles from the start of that period to the start of the bus frame
 };
 
-/// How a shape feels.
+/// Surface properties of a shape.
 struct SurfaceEntry {
   float stiffness_N_per_m;  ///< above 0, to the maximum of wall_stiffness_N_per_m
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
-  float static_friction;    ///< 0..friction_maximum, a part of the normal force
+  float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
-  /// 0..shape_life_maximum_s from when it takes effect; infinite until the claim ends; 0 for a shape that is not there.
+  /// 0..shape_life_maximum_s, from the moment at which the shape takes effect. Infinite: until the claim ends. 0: no
+  /// shape.
   float life_s;
 };
 
 struct PlaneEntry {
-  float point_m[3];  ///< any point of it
-  float normal[3];   ///< into the free space, of any length but 0
+  float point_m[3];  ///< any point of the plane
+  float normal[3];   ///< points into the free space; any length except 0
   SurfaceEntry surface;
 };
 
@@ -381,37 +385,39 @@ struct SphereEntry {
 
 inline constexpr std::size_t shape_planes_maximum = 8;
 inline constexpr float shape_life_maximum_s = 10.0f;
-inline constexpr float shape_distance_maximum_m = 10.0f;  ///< of every length and coordinate
+inline constexpr float shape_distance_maximum_m = 10.0f;  ///< limit of every length and coordinate
 inline constexpr float friction_maximum = 3.0f;
 
-/// Feature report, set: the shapes from now on, each in a place of its own. They take the place of all that were there
-/// at the start of one control period, without a jump of the force. Only the used part has to be sent:
-/// shapes_report_size(plane_count) bytes. A report that is not valid, or of a program that does not drive the arm, is
-/// refused whole; RequestResultsReport has the result. All shapes end with the claim.
+/// Feature report, set: the new shapes, each in a separate slot. They replace all previous shapes at the start of one
+/// control period, without a jump of the force. The host has to send only the used part:
+/// shapes_report_size(plane_count) bytes. The device refuses an invalid report, or a report of another program than the
+/// driver, as a whole. RequestResultsReport has the result. All shapes end with the claim.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
-  std::uint32_t claim;   ///< of the program that drives the arm
-  std::uint32_t ticket;  ///< chosen by the program; RequestResultsReport names the result by it. 0 asks for no result
+  std::uint32_t claim;  ///< claim of the driver
+  /// Chosen by the program. RequestResultsReport lists the result under this number. With 0 the result is not recorded.
+  std::uint32_t ticket;
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
 };
 
-/// Feature report: the rows that the image's force law adds to the tables. Behind this head stand, each text with a
-/// zero at its end: the law's name and what it is; of each parameter three floats (minimum, maximum, default), then
-/// name, unit and help; of each signal name, unit and help. Its parameters' ids rise by one from force_law_first_id,
-/// and they are real numbers; its signals follow the table's last and are floats.
+/// Feature report: the rows that the image's force law adds to the tables. After this header follow the name and
+/// description of the force law. For each parameter follow three floats (minimum, maximum, default), then name, unit
+/// and help. For each signal follow name, unit and help. Every text is zero-terminated. The parameters are real
+/// numbers, and their ids count up from force_law_first_id. The signals are floats and follow the last row of the
+/// signal table.
 struct ForceLawReport {
   ReportId report_id = ReportId::force_law;
   std::uint8_t parameter_count;  ///< 0..force_law_parameters_maximum
   std::uint8_t signal_count;     ///< 0..force_law_signals_maximum
   std::uint8_t reserved = 0;
-  std::uint16_t size;  ///< of all of it, up to force_law_report_maximum
+  std::uint16_t size;  ///< size of the whole report, up to force_law_report_maximum
 };
 
-/// Some kernels take no report that is longer.
+/// Some kernels do not accept longer reports.
 inline constexpr std::size_t force_law_report_maximum = 2048;
 
 constexpr std::size_t shapes_report_size(std::size_t plane_count) {
@@ -459,7 +465,7 @@ constexpr std::uint32_t hash_signals(const Table& table) {
 }
 }  // namespace detail
 
-/// Equal on both ends exactly if ids, names and units agree (FNV-1a of the tables).
+/// FNV-1a hashes of the tables. They are equal at both ends if ids, names and units agree.
 inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters(parameter_table);
 inline constexpr std::uint32_t signal_table_hash = detail::hash_signals(signal_table);
 

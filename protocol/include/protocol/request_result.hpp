@@ -1,6 +1,7 @@
-// The board's answers to requests that have no report of their own for them: commands, shapes and black-box rows.
+// Results of requests that have no separate result report: commands, shapes and black-box rows.
 //
-// A busy board and a refusal are results, never a stall: some hosts cannot tell a stall from an unplugged device.
+// A busy board and a refusal are results, never a stall. Some hosts cannot distinguish a stall from an unplugged
+// device.
 #pragma once
 
 #include <array>

@@ -1,18 +1,21 @@
-// Scope frames: what goes over the vendor bulk interface.
+// Scope frames, sent over the vendor bulk interface.
 //
-// A frame is one bulk transfer: a header and the samples of consecutive control periods, at most
-// scope_frame_maximum bytes and scope_frame_samples_maximum samples, ended by a short packet (or an empty one where the
-// length is a multiple of 64). Between two transfers the bus stands idle until the device has loaded the next one, so
-// they are long: 14 floats leave room for two packets there, 36 samples would leave less than half of one. A gap in
-// `sequence` is a lost frame; the next frame's `first_period` then tells how many samples.
+// A frame is one bulk transfer: a header and the samples of consecutive control periods. A frame has at most
+// scope_frame_maximum bytes and scope_frame_samples_maximum samples. A short packet ends the transfer, or an empty
+// packet if the length is a multiple of 64.
 //
-//   full     every sample holds the value of every selected signal, in the order of the selection
-//   changes  every sample is a 32-bit mask, bit i standing for the i-th selected signal, followed by
-//            the values that differ from the sample before, in rising order of i. The first sample of a
-//            frame has every bit set, so a frame is read without the one before it.
+// Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
+// floats per sample, the time of two packets remains for this gap. With only 36 samples per frame it would be the time
+// of less than half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the
+// number of lost samples.
 //
-// `full` is used while a sample takes at most scope_full_sample_maximum bytes: 14 floats at 20 kHz are
-// 1.12 MB/s, which full speed (1.216 MB/s) carries beside the pose. A longer selection goes out as changes.
+//   full     A sample has the value of every selected signal, in the order of the selection.
+//   changes  A sample is a 32-bit mask, in which bit i is the i-th selected signal, followed by the values that
+//            differ from the previous sample, in rising order of i. The first sample of a frame has every bit set,
+//            so that a reader can decode each frame alone.
+//
+// The encoding is `full` for samples of up to scope_full_sample_maximum bytes. 14 floats at 20 kHz are 1.12 MB/s, and
+// full-speed USB transmits 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
 #pragma once
 
 #include <cstddef>
@@ -24,29 +27,29 @@ namespace inkwell::protocol {
 
 enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
 
-inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" as it lies in memory
+inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" in little-endian byte order
 inline constexpr std::size_t scope_frame_maximum = 6144;
-/// 5.5 ms: what a reader waits for, however few signals there are.
+/// 5.5 ms. This bounds the latency for a selection of few signals.
 inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
 inline constexpr std::size_t scope_full_sample_maximum = 56;
 
 #pragma pack(push, 1)
 struct ScopeFrameHeader {
   std::uint32_t magic = scope_magic;
-  std::uint32_t sequence;         ///< counts frames since the selection
+  std::uint32_t sequence;         ///< number of frames since the selection
   std::uint32_t first_period;     ///< control period of the first sample, as PoseReport::time_periods
-  std::uint32_t samples_dropped;  ///< since the board started, because the host did not read
-  std::uint16_t length;           ///< bytes of the frame, header included
+  std::uint32_t samples_dropped;  ///< samples lost since start-up because the host did not read
+  std::uint16_t length;           ///< bytes of the frame, including the header
   std::uint16_t sample_count;
   ScopeEncoding encoding;
   std::uint8_t signal_count;
-  std::uint8_t selection_token;  ///< token of the select_signals command that this frame answers
+  std::uint8_t selection_token;  ///< token of the select_signals command that started this stream
   std::uint8_t reserved = 0;
 };
 #pragma pack(pop)
 static_assert(sizeof(ScopeFrameHeader) == 24);
 
-/// Bytes of one sample of the signals when all of them are written, without a mask.
+/// Returns the bytes of one sample in the encoding `full`.
 constexpr std::size_t full_sample_size(const SignalSelection& selection) {
   std::size_t size = 0;
   for (std::size_t i = 0; i < selection.count; ++i)

@@ -1,7 +1,7 @@
-// The board's self-test: what it looks at, what it found of each, and the report that tells.
+// Self-test of the board: its items, their results, and the report.
 //
-// It runs by itself after each start, once the current sensors are measured, and on command: state `testing`. Flash,
-// RAM and watchdog are looked at only as the board starts; what they gave then stays in the report.
+// The self-test runs after each start, as soon as the current sensor offsets are measured, and on command. The state is
+// then `testing`. Flash, RAM and watchdog are tested only at start-up, and their results do not change afterwards.
 #pragma once
 
 #include <array>
@@ -21,11 +21,12 @@ inline constexpr std::string_view fault_wire_remedy = "Repair the wire between t
 inline constexpr std::string_view wiper = "The wiper of the gimbal potentiometer is within its track.";
 inline constexpr std::string_view wiper_remedy =
     "Check the three wires of the potentiometer. The force does not need it, but this gimbal angle is wrong.";
-inline constexpr std::string_view motor =
-    "Short voltage pulses cause the current that the motor resistance predicts.";
+inline constexpr std::string_view motor = "Short voltage pulses cause the current that the motor resistance predicts.";
 inline constexpr std::string_view motor_remedy =
-    "Resistance too high: check the wires and brushes of the motor and its half bridges. Too low: the winding may be shorted. "
-    "In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, which `inkwell tune current-loop` measures. "
+    "Resistance too high: check the wires and brushes of the motor and its half bridges. Too low: the winding may be "
+    "shorted. "
+    "In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, which `inkwell tune current-loop` "
+    "measures. "
     "If the motor is not installed, set its current_limit_n_A to 0.";
 inline constexpr std::string_view bridge = "The half bridges switch within their dead time.";
 inline constexpr std::string_view bridge_remedy =
@@ -33,7 +34,7 @@ inline constexpr std::string_view bridge_remedy =
 }  // namespace self_test_text
 
 // clang-format off
-/// X(id, name, unit of its figure, whether a failure takes the force away, what it means if it passes, remedy)
+/// X(id, name, unit of the figure, true if a failure prevents force, meaning of a pass, remedy)
 #define INKWELL_SELF_TEST_ITEMS(X)                                                                                     \
   X(0, flash, "", true, "The firmware in flash, its copies in RAM and the active parameters are undamaged.", "Reset the board. If the failure returns, flash the firmware again. If it still returns, replace the chip.") \
   X(1, ram, "", true, "The RAM retains each bit of a pattern. The RAM is tested at power-on, not at a reset.", "Switch the power off and on. If the failure returns, replace the chip.") \
@@ -69,7 +70,7 @@ inline constexpr std::string_view bridge_remedy =
   X(5, broken_off, "Not tested: the bridges had no supply, or another fault interrupted the test.")
 // clang-format on
 
-/// Its value is its place in the table and in SelfTestReport::entries.
+/// The value of an enumerator is the index of its row and of its entry in SelfTestReport::entries.
 enum class SelfTestItem : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_SELF_TEST_ITEMS(X)
@@ -84,7 +85,7 @@ enum class SelfTestResult : std::uint8_t {
 
 struct SelfTestItemInfo {
   std::string_view name;
-  std::string_view unit;  ///< of its figure; empty if it has none
+  std::string_view unit;  ///< unit of the figure; empty if the item has no figure
   bool takes_force;
   std::string_view meaning;
   std::string_view remedy;
@@ -130,13 +131,13 @@ INKWELL_SELF_TEST_RESULTS(X)
 #undef X
 }  // namespace detail
 
-/// One of three motors, bridges or gimbal angles, named by the first; `axis` is 0, 1 or 2.
+/// Returns the item of motor, bridge or gimbal angle `axis` (0, 1 or 2). `first` is the item of the first one.
 constexpr SelfTestItem of_axis(SelfTestItem first, std::size_t axis) {
   return static_cast<SelfTestItem>(static_cast<std::size_t>(first) + axis);
 }
 
 struct SelfTestEntry {
-  float figure;  ///< 0 where the item has none, or was not looked at
+  float figure;  ///< measured value; 0 if the item has no figure or was not tested
   SelfTestResult result;
   std::uint8_t reserved[3];
 };
@@ -146,16 +147,16 @@ struct SelfTestReport {
   ReportId report_id = ReportId::self_test;
   std::uint8_t is_running;
   std::uint16_t item_count = self_test_item_count;
-  std::uint32_t tests_begun;   ///< since the board started, the one after the start included
-  std::uint32_t tests_ended;   ///< those of them that came to a verdict
-  std::uint32_t time_periods;  ///< now
+  std::uint32_t tests_begun;   ///< self-tests since start-up, including the one at start-up
+  std::uint32_t tests_ended;   ///< self-tests since start-up that reached a result
+  std::uint32_t time_periods;  ///< board time of this report
   SelfTestEntry entries[self_test_item_count];
 };
 
 static_assert(sizeof(SelfTestEntry) == 8);
 static_assert(sizeof(SelfTestReport) == 16 + 8 * self_test_item_count);
 
-/// An item has failed without which there is no force.
+/// True if an item failed that the force depends on.
 constexpr bool takes_force(const SelfTestReport& report) {
   for (std::size_t i = 0; i < self_test_item_count; ++i)
     if (self_test_item_table[i].takes_force && report.entries[i].result == SelfTestResult::failed) return true;

@@ -1,9 +1,9 @@
-// The table of signals that the scope can stream at every control period: X(id, name, unit, wire, help).
+// Table of the signals that the scope can stream in every control period: X(id, name, unit, wire, help).
 //
-// The names are also the columns of recordings. A signal goes over the wire as a float, or, where it
-// changes in every period and its source has few bits anyway, as a scaled 16-bit number.
+// Recordings use the names as column names. A signal is transmitted as a float. A signal that changes in every period
+// and whose source has few bits is transmitted as a scaled 16-bit integer.
 //
-// Behind these rows stand those of the force law that the image was built with (docs/force-laws.md).
+// The signals of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
 
 // To add a signal:
@@ -26,15 +26,15 @@
 
 namespace inkwell::protocol {
 
-/// How one value of a signal is written into a scope frame.
+/// Encoding of a signal value in a scope frame.
 enum class SignalWire : std::uint8_t {
-  float32,        ///< 4 bytes, IEEE 754 little-endian
+  float32,        ///< 4 bytes, IEEE 754, little-endian
   current_int16,  ///< 2 bytes, in steps of `current_step_A`
   duty_int16,     ///< 2 bytes, in steps of `duty_step`
 };
 
-inline constexpr float current_step_A = 0.0002f;     ///< +-6.5 A, finer than the ADC's 2 mA
-inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the timer's 1/1400
+inline constexpr float current_step_A = 0.0002f;     ///< range +-6.5 A, finer than the ADC's 2 mA
+inline constexpr float duty_step = 1.0f / 32767.0f;  ///< range +-1, finer than the timer's 1/1400
 
 // clang-format off
 #define INKWELL_SIGNALS(X)                                                                                     \
@@ -93,7 +93,8 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(52, limits, "", float32, "Active limits, as a sum: 1 force, 2 current, 4 change, 8 energy, 16 heat, 32 speed.")
 // clang-format on
 
-/// Index of a signal in the table, which is also its id on the wire. Values behind the last are rows of a force law.
+/// Index of a signal in the table. The index is also the id in the protocol. Values after the last enumerator are
+/// signals of the force law.
 enum class Signal : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_SIGNALS(X)
@@ -119,7 +120,7 @@ inline constexpr std::size_t signal_count = signal_table.size();
 inline constexpr std::size_t force_law_signals_maximum = 8;
 static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id has eight bits");
 
-/// The table, and the signals of the force law as far as it is known.
+/// Returns the table and, if the force law is known, its signals.
 inline KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
 
 constexpr const SignalInfo& info(Signal signal) {
@@ -129,12 +130,12 @@ constexpr const SignalInfo& info(Signal signal) {
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
 
-/// The signal of one of three motors, joints or axes, `rows` named by that of the first; `axis` is 0, 1 or 2.
+/// Returns the signal of motor, joint or axis `axis` (0, 1 or 2). `rows` is the signal of the first one.
 constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[axis]; }
-/// The same for a `number` 1, 2 or 3, as in the rows' names.
+/// Returns the signal of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }
 
-/// The value of every signal in one control period, in the table's order, and of those of a force law.
+/// Values of all signals in one control period in table order, followed by the signals of the force law.
 struct SignalValues {
   std::array<float, signal_count + force_law_signals_maximum> values;
 
@@ -158,7 +159,7 @@ constexpr bool id_is_place(std::size_t id, std::string_view name) {
 #define X(id, name, unit, wire, help)                                                                            \
   static_assert(detail::id_is_place(id, #name),                                                                  \
                 #name ": its id is not its place in the table; a new signal is the last row, with the next id"); \
-  static_assert(detail::neighbors_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),              \
+  static_assert(detail::neighbors_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),               \
                 #name ": rows 1 to 3, or x to z, must all be there and agree in unit and wire");
 INKWELL_SIGNALS(X)
 #undef X

@@ -1,7 +1,7 @@
-// The table of what only a simulation knows, beyond the signals that the firmware streams: X(name, unit, help).
+// Table of quantities that only a simulation knows, in addition to the signals of the firmware: X(name, unit, help).
 //
-// A virtual board traces these quantities at every control period, in the table's order. The names are also the
-// columns of recordings, beside those of the signals.
+// A virtual board records these quantities in every control period, in table order. Recordings use the names as column
+// names.
 #pragma once
 
 // To add a quantity, add a row here and a case to value_of() in boards/virtual/plant/truth.cpp. The compiler
@@ -45,7 +45,7 @@ namespace inkwell::protocol {
   X(true_supply_V, "V", "Supply voltage of the simulated bridges.")
 // clang-format on
 
-/// Its value is its place in the table.
+/// The value of an enumerator is the index of its row.
 enum class SimulatedQuantity : std::uint8_t {
 #define X(name, ...) name,
   INKWELL_SIMULATED_QUANTITIES(X)

@@ -1,7 +1,7 @@
-// The parameter store: what the board keeps in its flash, and the report that tells of it.
+// The parameter store: stored parameters in the flash of the board, and the report about them.
 //
-// The set that was stored last is what the parameters have after a start. A command stores the set that is held, or
-// forgets what is stored; both only while there is no force and none may come at once (may_store()).
+// The board loads the last stored set at start-up. One command stores the current set, and another command erases the
+// stored set. Both are allowed only while the force is off and no queued command switches it on (may_store()).
 #pragma once
 
 #include <array>
@@ -33,14 +33,14 @@ namespace inkwell::protocol {
   X(3, other_schema, "The records were written by a firmware with another schema and cannot be read. The next start sets every parameter to its default.")
 // clang-format on
 
-/// What became of the last command to store or to forget.
+/// Result of the last command to store or to erase.
 enum class StoreResult : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_STORE_RESULTS(X)
 #undef X
 };
 
-/// What the newest whole record of the flash is.
+/// Kind of the newest complete record in the flash.
 enum class StoreContents : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_STORE_CONTENTS(X)
@@ -96,42 +96,44 @@ INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail
 
-/// Whether the board may be told to store or to forget: there is no force, and none comes without a further command.
+/// True in states in which the board may store or erase parameters. In these states the force is off, and only a
+/// further command switches it on.
 constexpr bool may_store(State state) {
   return state == State::unreferenced || state == State::ready || state == State::fault;
 }
 
-/// How records are laid out; a firmware reads those of its own schema.
+/// Layout of the records. A firmware reads only records with the same schema.
 inline constexpr std::uint16_t store_schema = 1;
-/// The sectors of the flash between which the records go to and fro.
+/// Number of flash sectors. The records alternate between the sectors.
 inline constexpr std::size_t store_sectors = 2;
-/// As many ids of entries that the firmware does not know are told.
+/// Number of unknown parameter ids that the report lists.
 inline constexpr std::size_t store_unknown_ids_maximum = 16;
 
 /// Feature report: the state of the store.
 struct StoreReport {
   ReportId report_id = ReportId::store;
-  StoreResult result;               ///< of the last command to store or to forget
-  StoreContents contents;           ///< now
-  StoreContents contents_at_start;  ///< what this start found
-  std::uint16_t differing;          ///< parameters that do not hold what the next start would give them
-  std::uint16_t stores_left;        ///< how many more fit before the next start, which makes room
-  std::uint32_t commands;           ///< to store or to forget, received since the start, refused ones included
-  std::uint32_t records_written;    ///< in the board's life
-  std::uint32_t sector_erases[store_sectors];  ///< in the board's life
-  std::uint8_t firmware_version[4];            ///< that wrote what this start found: major, minor, patch, 0
-  std::uint32_t parameter_table_hash;          ///< of that firmware
-  std::uint32_t force_law_hash;                ///< of that firmware's force law's name; force_law_name_hash()
-  std::uint16_t schema;                        ///< of what this start found; 0 for nothing
-  std::uint16_t entries;                       ///< parameters in what this start found
-  std::uint16_t out_of_range;  ///< of them those that took their default, because this firmware refuses their value
-  std::uint16_t unknown;       ///< of them those that this firmware does not know; kept but for another force law's
-  std::uint16_t unknown_ids[store_unknown_ids_maximum];  ///< the first of them, else 0
+  StoreResult result;                          ///< result of the last command to store or to erase
+  StoreContents contents;                      ///< now
+  StoreContents contents_at_start;             ///< contents at start-up
+  std::uint16_t differing;                     ///< parameters whose value differs from their value after the next start
+  std::uint16_t stores_left;                   ///< number of records that fit before the next start, which frees space
+  std::uint32_t commands;                      ///< commands to store or to erase since start-up, including refused ones
+  std::uint32_t records_written;               ///< over the life of the board
+  std::uint32_t sector_erases[store_sectors];  ///< over the life of the board
+  std::uint8_t firmware_version[4];            ///< firmware that wrote the contents at start-up: major, minor, patch, 0
+  std::uint32_t parameter_table_hash;          ///< parameter_table_hash of that firmware
+  std::uint32_t force_law_hash;                ///< force_law_name_hash() of that firmware's force law
+  std::uint16_t schema;                        ///< schema of the contents at start-up; 0 for `nothing`
+  std::uint16_t entries;                       ///< number of parameters in the contents at start-up
+  std::uint16_t out_of_range;                  ///< entries with a refused value; they got their default
+  /// Entries with an unknown id. New records retain these entries, except those of another force law.
+  std::uint16_t unknown;
+  std::uint16_t unknown_ids[store_unknown_ids_maximum];  ///< first unknown ids, padded with 0
 };
 
 static_assert(sizeof(StoreReport) == 76);
 
-/// FNV-1a of a force law's name; 0 is no law's.
+/// Returns the FNV-1a hash of a force law's name. 0 is not the hash of any force law.
 constexpr std::uint32_t force_law_name_hash(std::string_view name) { return detail::fnv1a(2166136261u, name); }
 
 }  // namespace inkwell::protocol

@@ -1,5 +1,5 @@
-// What the board's supervisor does, in three tables: its states, the ways between them, and what it watches in each.
-// The firmware runs by them (control/supervisor.hpp), its tests go through every cell, `inkwell reference` prints them.
+// Supervisor of the board, in three tables: states, transitions, and the monitored faults of each state. The firmware
+// uses these tables (control/supervisor.hpp), its tests cover every cell, and `inkwell reference` prints them.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace inkwell::protocol {
 // ---- states ------------------------------------------------------------------------------------------------
 
 // clang-format off
-/// X(id, name, whether the hand feels a force, meaning)
+/// X(id, name, true if the hand feels a force, meaning)
 #define INKWELL_STATES(X)                                                                                          \
   X(0, starting, false, "The board measures the offsets of its current sensors. This takes 0.1 s.")                 \
   X(1, unreferenced, false, "The arm position is not known. Put the stylus into the inkwell once. If the stylus is in the inkwell, take it out first.") \
@@ -28,7 +28,7 @@ namespace inkwell::protocol {
   X(9, testing, false, "The self-test runs, with short pulses on the motors. Hold the arm still.")
 // clang-format on
 
-/// What the device is doing.
+/// State of the supervisor.
 enum class State : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_STATES(X)
@@ -56,7 +56,7 @@ constexpr const StateInfo& info(State state) {
   return index < state_count ? state_table[index] : unknown_state;
 }
 
-/// Several states, a bit for each.
+/// Set of states, as one bit per state.
 class States {
  public:
   constexpr States() = default;
@@ -83,10 +83,10 @@ inline constexpr States with_force = []() {
   return states;
 }();
 
-/// Without a look into the table, since a control interrupt asks.
+/// Does not read the table, because the control interrupt calls this function.
 constexpr bool force_is_on(State state) { return with_force.contains(state); }
 
-// ---- the ways between them ---------------------------------------------------------------------------------
+// ---- transitions -------------------------------------------------------------------------------------------
 
 // clang-format off
 /// X(bit, name, meaning)
@@ -107,7 +107,7 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(8192, told, "a fault was raised before and has not been cleared")
 // clang-format on
 
-/// What the supervisor decides by.
+/// Inputs of the supervisor's decisions.
 enum class Event : std::uint16_t {
 #define X(bit, name, ...) name = bit,
   INKWELL_EVENTS(X)
@@ -126,7 +126,7 @@ inline constexpr auto event_table = std::to_array<EventInfo>({
 #undef X
 });
 
-/// Several events, a bit for each.
+/// Set of events, as one bit per event.
 using Events = std::uint32_t;
 template <class... More>
 constexpr Events events(More... some) {
@@ -134,7 +134,7 @@ constexpr Events events(More... some) {
 }
 constexpr Events when(Event event, bool is_so) { return is_so ? static_cast<Events>(event) : 0u; }
 
-/// A way is taken if all of `needs` are there and none of `unless`.
+/// State transition. It occurs if all events of `needs` and no event of `unless` are present.
 struct Way {
   State from;
   State to;
@@ -143,8 +143,8 @@ struct Way {
   constexpr bool is_open(Events now) const { return (now & (needs | unless)) == needs; }
 };
 
-/// Those of a state stand together; the first that is open is taken. From each state but `fault` and `update` a fault
-/// leads to `fault`, before any of these.
+/// Rows with the same `from` are consecutive, and the first open transition occurs. A fault has precedence: it leads to
+/// `fault` from each state except `fault` and `update`.
 inline constexpr auto way_table = std::to_array<Way>({
     {State::starting, State::update, events(Event::update), 0},
     {State::starting, State::testing, events(Event::measured), 0},
@@ -186,21 +186,23 @@ inline constexpr auto way_table = std::to_array<Way>({
     {State::update, State::ready, events(Event::tested, Event::referenced), events(Event::update)},
 });
 
-// ---- what is watched ---------------------------------------------------------------------------------------
+// ---- monitored faults --------------------------------------------------------------------------------------
 
-/// When a fault can be cleared.
+/// Condition for clearing a fault.
 enum class Clearing : std::uint8_t {
-  when_gone,  ///< once its cause is gone
-  at_once,    ///< its cause is over when it is seen, or cannot be seen while the motors are off
-  by_reset,   ///< nothing that the firmware does makes its cause go away
+  when_gone,  ///< after its cause is gone
+  at_once,    ///< at any time: the cause was a single event, or cannot be measured while the motors are off
+  by_reset,   ///< only by a reset: the firmware cannot remove the cause
 };
 
-/// What becomes of the motors while a fault takes the force away from a hand that moves.
+/// Switch-off of the motors by a fault.
 enum class Off : std::uint8_t {
-  coast,  ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
-  brake,  ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow; bridges off in
-          ///< each period in which a motor was measured above what the force limit takes
-  brake_gently,  ///< likewise, but above a part of that: a hand may well go on
+  coast,  ///< bridges off: for faults that make currents, bridges, supply or speed unreliable
+  /// Low sides on until the probe is slow, so that the back EMF brakes the motors. The bridges are off in each period
+  /// with a measured motor current above the current for the force limit.
+  brake,
+  /// As `brake`, but with a lower current threshold, because the hand may continue its motion.
+  brake_gently,
 };
 
 struct Watch {
@@ -208,11 +210,12 @@ struct Watch {
   States watched_in;
   Clearing clearing;
   Off off;
-  bool voids_reference = false;  ///< counts may be lost: only the inkwell can tell again where the arm is
+  /// Counts may be lost. The position of the arm is unknown until the stylus is in the inkwell again.
+  bool voids_reference = false;
 };
 
-/// Of several in one period the first is shown, because it explains the others. The first that was shown stays until
-/// it is cleared.
+/// If several faults occur in one period, the board reports the first one in this table, because it explains the
+/// others. The reported fault remains until it is cleared.
 inline constexpr auto watch_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};
@@ -227,7 +230,7 @@ inline constexpr auto watch_table = []() {
       {Fault::watchdog, every, at_once, coast},
       {Fault::servo_overrun, every, at_once, coast},
       {Fault::heartbeat_missed, every, at_once, coast},
-      // Not in `starting`: the control interrupt runs a while before the main loop does.
+      // Not in `starting`, because the control interrupt starts before the main loop.
       {Fault::main_loop_stalled, started, at_once, coast},
       {Fault::not_finite, every, when_gone, coast},
       {Fault::force_law, every, at_once, brake},
@@ -254,12 +257,12 @@ inline constexpr auto watch_table = []() {
   });
 }();
 
-/// Several rows of the table, bit 0 for the first.
+/// Set of rows of the table. Bit 0 is the first row.
 using Watches = std::uint32_t;
 static_assert(watch_table.size() <= 32);
 
 namespace detail {
-/// By the fault's code. A search would not be over before the firmware runs once the table is long.
+/// Index of each fault code. With a long table the compiler does not evaluate a search at compile time.
 inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(watch_table.size()));
@@ -269,7 +272,7 @@ inline constexpr auto places = []() {
 }();
 }  // namespace detail
 
-/// The place of a fault in the table.
+/// Returns the index of a fault in the table.
 constexpr std::size_t place_of(Fault fault) {
   const auto code = static_cast<std::size_t>(fault);
   return code < detail::places.size() ? detail::places[code] : watch_table.size();
@@ -277,7 +280,7 @@ constexpr std::size_t place_of(Fault fault) {
 constexpr Watches watch(Fault fault) { return 1u << place_of(fault); }
 constexpr Watches watch(Fault fault, bool is_found) { return static_cast<Watches>(is_found) << place_of(fault); }
 
-/// The rows for which `is_so` holds.
+/// Returns the rows for which `is_so` returns true.
 template <class Predicate>
 constexpr Watches watches(Predicate is_so) {
   Watches bits = 0;
@@ -286,10 +289,10 @@ constexpr Watches watches(Predicate is_so) {
   return bits;
 }
 
-/// What says that counts may be lost, whatever else is found and in whatever state.
+/// Faults that void the reference, in every state and together with any other fault.
 inline constexpr Watches voiding_watches = watches([](const Watch& row) { return row.voids_reference; });
 
-// ---- the tables are whole ----------------------------------------------------------------------------------
+// ---- consistency of the tables -----------------------------------------------------------------------------
 
 namespace detail {
 constexpr bool every_fault_is_watched_once() {

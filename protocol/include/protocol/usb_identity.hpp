@@ -1,12 +1,12 @@
-// How the device shows itself on USB: identifiers, interfaces and endpoints.
+// USB identity of the device: identifiers, interfaces and endpoints.
 #pragma once
 
 #include <cstdint>
 
 namespace inkwell::protocol::usb {
 
-/// pid.codes' vendor identifier with its product identifier for private tests, until Inkwell has one of its own:
-/// docs/flashing.md says what has to be registered for that.
+/// The vendor identifier of pid.codes with its product identifier for private tests. docs/flashing.md lists the steps
+/// for registering a separate identifier for Inkwell.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
 inline constexpr bool is_test_identity = true;
@@ -19,16 +19,16 @@ inline constexpr std::uint8_t hid_out_endpoint = 0x01;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t scope_interface = 1;
 inline constexpr std::uint8_t scope_in_endpoint = 0x82;  ///< bulk, 64 bytes
 
-/// An input device for every program, apart from the HID interface above: two collections of one interface share its
-/// endpoint, and poses would be lost to it.
+/// Multi-axis controller for programs that support joysticks. It is a separate interface, because two collections of
+/// one interface share an endpoint, and the device would then lose poses.
 inline constexpr std::uint8_t controller_interface = 2;
 inline constexpr std::uint8_t controller_in_endpoint = 0x83;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t controller_interval_ms = 8;
 
-/// USB device firmware upgrade 1.1, run-time part: DFU_DETACH starts the boot loader in the chip.
+/// Run-time interface of USB device firmware upgrade 1.1. DFU_DETACH starts the boot loader in the chip's ROM.
 inline constexpr std::uint8_t firmware_update_interface = 3;
 
-/// The boot loader in the chip (AN2606), which every STM32 has alike.
+/// Boot loader in the chip's ROM (AN2606). It is the same in every STM32.
 inline constexpr std::uint16_t boot_loader_vendor_id = 0x0483;
 inline constexpr std::uint16_t boot_loader_product_id = 0xDF11;
 inline constexpr char boot_loader_product[] = "boot loader";

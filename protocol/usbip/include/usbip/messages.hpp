@@ -1,5 +1,5 @@
-// The messages of USB/IP 1.1.1 (Linux kernel, Documentation/usb/usbip_protocol.rst). Each struct is its message as it
-// lies on the wire, byte for byte: filling one in encodes it, `read` decodes it.
+// The messages of USB/IP 1.1.1 (Linux kernel, Documentation/usb/usbip_protocol.rst). Each struct has the memory layout
+// of its message. A filled-in struct is an encoded message, and `read` decodes a message.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace inkwell::usbip {
 
-/// A number or an enumeration, stored big-endian at any address.
+/// A number or an enumeration, stored as big-endian bytes without alignment.
 template <class Value>
 class BigEndian {
   using Bits = std::conditional_t<sizeof(Value) == 2, std::uint16_t, std::uint32_t>;
@@ -39,16 +39,16 @@ class BigEndian {
 using Big16 = BigEndian<std::uint16_t>;
 using Big32 = BigEndian<std::uint32_t>;
 
-/// Text in a field of `size` bytes that ends with a zero.
+/// Zero-terminated text in a field of `size` bytes.
 template <std::size_t size>
 class Text {
  public:
   constexpr Text() = default;
-  /// What does not fit is cut off.
+  /// Truncates a longer text.
   constexpr Text(std::string_view text) {
     std::copy_n(text.begin(), std::min(text.size(), size - 1), characters_.begin());
   }
-  /// Up to the first zero, or to the end of a field without one.
+  /// Returns the text up to the first zero, or the whole field if the field has no zero.
   constexpr std::string_view view() const {
     const auto end = std::find(characters_.begin(), characters_.end(), '\0');
     return {characters_.data(), static_cast<std::size_t>(end - characters_.begin())};
@@ -58,7 +58,7 @@ class Text {
   std::array<char, size> characters_{};
 };
 
-// --- Before the import: lists and imports ------------------------------------------------------------------
+// --- Device lists and imports --------------------------------------------------------------------------------
 
 inline constexpr std::uint16_t protocol_version = 0x0111;
 
@@ -69,7 +69,7 @@ enum class Operation : std::uint16_t {
   reply_import = 0x0003,
 };
 
-/// Of a reply; 0 in requests. The numbers are those of Linux' usbip tools (ST_OK, ST_DEV_BUSY, ST_NODEV).
+/// Status of a reply; 0 in requests. The Linux usbip tools define the values (ST_OK, ST_DEV_BUSY, ST_NODEV).
 enum class OperationStatus : std::uint32_t { success = 0, busy = 2, no_device = 4 };
 
 struct OperationHeader {
@@ -85,10 +85,10 @@ struct ImportRequest {
   BusId bus_id;
 };
 
-/// Linux' enum usb_device_speed.
+/// Values of the Linux enum usb_device_speed.
 enum class Speed : std::uint32_t { full = 2 };
 
-/// Follows an OperationHeader in the reply to an import that succeeded.
+/// Follows the OperationHeader in the reply to a successful import.
 struct Device {
   Text<256> path;  ///< on the server
   BusId bus_id;
@@ -113,51 +113,50 @@ struct Interface {
   std::uint8_t padding = 0;
 };
 
-/// Followed by `device_count` times a Device and its `interface_count` interfaces.
+/// `device_count` devices follow. Each Device is followed by its `interface_count` interfaces.
 struct DeviceListReply {
   OperationHeader header{.operation = Operation::reply_device_list};
   Big32 device_count;
 };
 
-// --- After it: transfers of the imported device --------------------------------------------------------------
+// --- Transfers of the imported device ------------------------------------------------------------------------
 
 enum class Command : std::uint32_t { submit = 1, unlink = 2, return_submit = 3, return_unlink = 4 };
 enum class Direction : std::uint32_t { out = 0, in = 1 };
 
-/// The first bytes of every command and answer. In answers all beyond the sequence is 0.
+/// The first bytes of every command and answer. In answers, all fields after `sequence` are 0.
 struct TransferHeader {
   BigEndian<Command> command;
-  Big32 sequence;  ///< chosen by the importer; the answer has it, too
-  Big32 device;    ///< `device_of` what was imported
+  Big32 sequence;  ///< chosen by the client; the answer repeats it
+  Big32 device;    ///< device_of() the imported device
   BigEndian<Direction> direction;
   Big32 endpoint;  ///< number, 0 to 15, without the direction bit
 };
 
-/// How a transfer names the imported device.
+/// Returns the number of an imported device in transfer headers.
 constexpr std::uint32_t device_of(std::uint32_t bus_number, std::uint32_t device_number) {
   return bus_number << 16 | device_number;
 }
 
-/// `packet_count` of what is no isochronous transfer. Linux itself sends 0.
+/// `packet_count` of a transfer that is not isochronous. Linux itself sends 0.
 inline constexpr std::uint32_t not_isochronous = 0xFFFF'FFFF;
 
-/// `length` bytes of data follow if the direction is OUT, and behind them as many IsochronousPacket as `packet_count`
-/// says.
+/// If the direction is OUT, `length` bytes of data follow. The `packet_count` IsochronousPackets follow the data.
 struct Submit {
   TransferHeader header{.command = Command::submit};
-  Big32 transfer_flags;  ///< Linux' URB_ flags
-  Big32 length;          ///< of the data, or the room for it, in bytes
+  Big32 transfer_flags;  ///< Linux URB_ flags
+  Big32 length;          ///< bytes of data (OUT), or size of the buffer (IN)
   Big32 start_frame;
   Big32 packet_count;
   Big32 interval;
-  std::array<std::byte, 8> setup{};  ///< of a control transfer, little-endian as on USB
+  std::array<std::byte, 8> setup{};  ///< setup packet of a control transfer, little-endian as on USB
 };
 
-/// `actual_length` bytes of data follow if the direction of the transfer was IN, and behind them the packets of an
-/// isochronous transfer.
+/// If the direction of the transfer was IN, `actual_length` bytes of data follow. The packets of an isochronous
+/// transfer follow the data.
 struct ReturnSubmit {
   TransferHeader header{.command = Command::return_submit};
-  BigEndian<std::int32_t> status;  ///< 0, or a negated errno of Linux
+  BigEndian<std::int32_t> status;  ///< 0, or a negative errno value of Linux
   Big32 actual_length;
   Big32 start_frame;
   Big32 packet_count;
@@ -166,21 +165,21 @@ struct ReturnSubmit {
 };
 
 struct IsochronousPacket {
-  Big32 offset;  ///< in the transfer's data, in bytes
+  Big32 offset;  ///< offset in the data of the transfer, in bytes
   Big32 length;
   Big32 actual_length;
-  BigEndian<std::int32_t> status;  ///< as of a transfer
+  BigEndian<std::int32_t> status;  ///< as in ReturnSubmit
 };
 
 struct Unlink {
   TransferHeader header{.command = Command::unlink};
-  Big32 unlinked_sequence;  ///< of the transfer to take back
+  Big32 unlinked_sequence;  ///< sequence of the transfer to cancel
   std::array<std::byte, 24> padding{};
 };
 
 struct ReturnUnlink {
   TransferHeader header{.command = Command::return_unlink};
-  BigEndian<std::int32_t> status;  ///< -ECONNRESET if the transfer was taken back, 0 if it had been answered
+  BigEndian<std::int32_t> status;  ///< -ECONNRESET if the transfer was canceled, 0 if it had already been answered
   std::array<std::byte, 24> padding{};
 };
 
@@ -201,13 +200,13 @@ static_assert(sizeof(IsochronousPacket) == 16 && lies_as_on_the_wire<Isochronous
 static_assert(sizeof(Unlink) == 48 && lies_as_on_the_wire<Unlink>);
 static_assert(sizeof(ReturnUnlink) == 48 && lies_as_on_the_wire<ReturnUnlink>);
 
-/// The bytes of a message that outlives them.
+/// Returns the bytes of a message. The message must outlive the result.
 template <class Message>
 requires lies_as_on_the_wire<Message> std::span<const std::byte, sizeof(Message)> bytes_of(const Message& message) {
   return std::as_bytes(std::span<const Message, 1>(&message, 1));
 }
 
-/// The message that `bytes` begin with; they must hold all of it.
+/// Returns the message at the beginning of `bytes`, which must contain the complete message.
 template <class Message>
 requires lies_as_on_the_wire<Message> Message read(std::span<const std::byte> bytes) {
   Message message;
