@@ -15,7 +15,7 @@
 namespace inkwell::arms {
 namespace {
 
-/// A number of [motor] or [simulation]: where it goes and what it may be.
+/// A number of [motor] or [simulation]: its target and its range.
 struct Number {
   std::string_view name;
   double* value;
@@ -23,7 +23,7 @@ struct Number {
   double maximum;
 };
 
-/// Reads one section of the file; every error names the file and the line.
+/// Reads one section of the file. Each error names the file and the line.
 class Section {
  public:
   Section(const toml::table& file, std::string_view name, const std::string& source) : name_(name), source_(source) {
@@ -51,7 +51,7 @@ class Section {
 
   double number(std::string_view key, double minimum, double maximum) const {
     const auto& node = get(key);
-    // A boolean or a text is no number, even where TOML could convert it.
+    // TOML could convert a boolean or a string, but neither is accepted as a number.
     if (!node.is_number()) fail(node, fmt::format("{} must be a number", key));
     const double value = *node.value<double>();
     if (!std::isfinite(value)) fail(node, fmt::format("{} must be a finite number", key));

@@ -1,4 +1,4 @@
-// Finds what was meant by a key that no section knows.
+// Suggestions for unknown keys.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace inkwell::arms {
 
-/// Advice for an unknown key: the known one of the same quantity in its own unit ("lengths are in metres:
-/// link_2_m"), the nearest known one ("did you mean ...?"), or the known ones if nothing is near.
+/// Advice for an unknown key: the known key of the same quantity ("lengths are in metres: link_2_m"), the nearest known
+/// key ("did you mean ...?"), or the list of known keys.
 std::string advice_for(std::string_view key, std::span<const std::string_view> known);
 
 }  // namespace inkwell::arms

@@ -1,5 +1,5 @@
-// usage: board-facts NAME. Prints a board's pins for scripts, a line for each use: name of the fact, pin, function, and
-// for timers the channel.
+// usage: board-facts NAME. Prints the pin uses of a board for scripts, one per line: fact, pin, function and timer
+// channel.
 //
 //   encoders[0].a PA0 AF2 TIM5_CH1
 //   supply PB0 IN8 -

@@ -1,5 +1,5 @@
-// Which accesses fault, and how: where nothing answers, where the memory protection unit says no, where an address is
-// not aligned (ARMv7-M, A3.2.1, B3.1, B3.5).
+// Faulting accesses: unmapped addresses, accesses that the memory protection unit refuses, and misaligned addresses
+// (ARMv7-M, A3.2.1, B3.1, B3.5).
 #include "bus.hpp"
 #include "flash.hpp"
 #include "processor.hpp"
@@ -7,16 +7,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Devices and the system's own region: the default memory map executes nothing there, and wants every access aligned.
+/// Device and system regions. The default memory map forbids execution there and requires aligned accesses.
 bool is_of_devices(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;
 }
 
 }  // namespace
 
-// Unicorn's own memory protection unit stays off: it would know regions and rights, but neither what a bus answers nor
-// which registers are where, and its pages are what is asked for here in any case. A page with one set of rights costs
-// nothing from its second access on; only of one that a region divides is each access asked for.
+// Unicorn's own memory protection unit is not used, because it does not know which addresses respond. The engine caches
+// the rights of a page. The engine checks single accesses only in a page that an MPU region divides.
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
@@ -43,7 +42,7 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
     if (!core_coupled_on_ && byte - ccm_base < ccm_bytes) machine_.violations.violate(Rule::ccm_clock_off);
     return true;
   }
-  // A read that has begun cannot be given up for an interrupt.
+  // A started read cannot be aborted by an interrupt.
   if (access == Access::load && flash_is_busy_ && is_in_flash(address)) machine_.flash->hold_up();
   return false;
 }
@@ -51,11 +50,11 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
-  // The engine asks about the alignment of an access only where it has to ask about each.
+  // The engine checks alignment only in pages where it checks single accesses.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
-  // While the flash is busy each first read of a page is asked about, and then waits until it is not.
+  // While the flash is busy, its pages have no read right. The first read then reaches refuses(), which waits.
   const bool waits = flash_is_busy_ && is_in_flash(page);
   if (!waits && !refusal_of(page, Access::load, role)) rights |= may_read;
   if (!refusal_of(page, Access::store, role)) rights |= may_write;
@@ -63,7 +62,7 @@ int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role
   return rights;
 }
 
-// ARMv7-M, A3.2.1 and A3.5: of Device and Strongly-ordered memory, by the default map or as a region has it.
+// Device and Strongly-ordered memory from the default map or an MPU region (ARMv7-M, A3.2.1 and A3.5).
 bool Processor::is_device(std::uint32_t address, Role role) const {
   const auto& protection = machine_.memory_protection;
   const bool on_private_bus = address - private_bus_base < private_bus_bytes;
@@ -73,7 +72,7 @@ bool Processor::is_device(std::uint32_t address, Role role) const {
 }
 
 bool Processor::runs_above_faults() const {
-  if (!machine_.memory_protection.is_on(false)) return false;  // for nobody asks
+  if (!machine_.memory_protection.is_on(false)) return false;  // the result is not used while the MPU is off
   return current_exception_ == exception_nmi || current_exception_ == exception_hard_fault ||
          (read(UC_ARM_REG_FAULTMASK) & 1) != 0;
 }
@@ -91,7 +90,7 @@ void Processor::misaligned(std::uint32_t address) {
 
 bool Processor::must_be_aligned(std::uint16_t first, std::uint16_t second) const {
   if (translates_aligned_) return true;
-  if ((first & 0xF000) == 0xC000) return true;  // LDM, STM of 16 bits
+  if ((first & 0xF000) == 0xC000) return true;  // 16-bit LDM, STM
   if ((first & 0xFE00) == 0xEC00) return true;  // VLDR, VSTR, VLDM, VSTM
   const bool table_branch = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000;
   return (first & 0xFE00) == 0xE800 && !table_branch;  // LDM, STM, LDRD, STRD, LDREX, STREX
@@ -105,7 +104,7 @@ void Processor::take_new_rights() {
   }
   if (!std::exchange(rights_changed_, false)) return;
   forget_pages();
-  write(UC_ARM_REG_APSR_NZCV, read(UC_ARM_REG_APSR_NZCV));  // lets the engine ask runs_above_faults()
+  write(UC_ARM_REG_APSR_NZCV, read(UC_ARM_REG_APSR_NZCV));  // makes the engine call runs_above_faults()
 }
 
 }  // namespace inkwell::virtual_board

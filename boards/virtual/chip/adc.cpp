@@ -1,4 +1,3 @@
-// One converter.
 #include "adc.hpp"
 
 #include <algorithm>
@@ -61,7 +60,7 @@ unsigned Adc::sampling_cycles(unsigned channel) const {
 
 void Adc::start_injected(Ticks now) {
   if (!is_on() || stopped_ || group_ == Group::injected) return;
-  // An injected group interrupts a regular one, whose conversion is made again afterwards.
+  // An injected group interrupts a regular one, whose conversion is repeated afterwards.
   resume_regular_ = group_ == Group::regular;
   group_ = Group::injected;
   sr_ |= adc.sr.jstrt.mask();
@@ -103,7 +102,7 @@ void Adc::begin_conversion(Ticks now) {
   began_ = now;
   const Ticks sampled = now + duration(sampling_cycles(channel));
   const Ticks done = sampled + duration(resolution_bits());
-  // Without an interrupt or DMA nobody needs to be stopped for the result.
+  // Without an interrupt or DMA the processor does not have to stop for the result.
   Ticks wake = never;
   if (group_ == Group::injected) {
     if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;
@@ -119,14 +118,14 @@ void Adc::begin_conversion(Ticks now) {
 }
 
 std::uint32_t Adc::convert(double voltage_V) const {
-  constexpr double least_V = 1e-3;  // a converter without a reference shows what is there as more than it can
+  constexpr double least_V = 1e-3;  // without a reference the converter reads full scale
   const double counts = std::floor(voltage_V / std::max(machine_.analog_supply_V, least_V) * 4096.0);
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
-/// The sampling capacitor still holds the channel before. At first it shares its charge with the capacitor at the pin,
-/// through the switch; then the source makes up for what that one has lost (data sheet, figure "Typical connection
-/// diagram using the ADC", with its largest switch resistance).
+/// Charges the sampling capacitor, which starts with the voltage of the previous channel. First the sampling capacitor
+/// shares charge with the capacitor at the pin through the switch. Then the source replaces the lost charge (data
+/// sheet, figure "Typical connection diagram using the ADC", with the largest switch resistance).
 double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;
   const double both_F = source.capacitance_F + sampling_F;
@@ -138,12 +137,12 @@ double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   return sampled_V_;
 }
 
-/// No value that firmware could take for a true one for long.
+/// Random value that firmware does not mistake for a valid result for long.
 std::uint32_t Adc::nonsense(Ticks now) const {
   return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
 }
 
-/// Temperature sensor and reference want 10 us, to start and for each sample (data sheet, their characteristics).
+/// The temperature sensor and the reference need 10 us to start and 10 us per sample (data sheet).
 std::uint32_t Adc::sample_internal(double volts, Ticks now) {
   if (index_ != 0) return 0;
   if (!adcs_.temperature_on()) {
@@ -178,7 +177,7 @@ void Adc::step(Ticks now) {
   if (phase_ == Phase::sampling) {
     sample_ = sample(channel, now);
     phase_ = Phase::converting;
-    // The clock may have changed since the conversion began.
+    // The clock may have changed since the start of the conversion.
     const Ticks done = now + duration(resolution_bits());
     machine_.timeline.set(slot_, done, wake_lag_ == never ? never : done + wake_lag_);
     return;
@@ -221,7 +220,7 @@ void Adc::finish_injected(Ticks now) {
 void Adc::finish_regular(Ticks now) {
   const bool checks_overrun = adc.cr2.dma.in(cr2_) || adc.cr2.eocs.in(cr2_) || adcs_.shares_dma();
   if (checks_overrun && (sr_ & end_of_conversion) != 0) {
-    // The old result was not read: no more requests until firmware clears OVR.
+    // The old result was not read. There are no DMA requests until firmware clears OVR.
     sr_ |= overrun;
     regular_rank_ = 0;
     idle();

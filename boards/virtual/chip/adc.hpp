@@ -1,5 +1,5 @@
 // ADC1 to ADC3 (RM0090, "Analog-to-digital converter"): regular and injected groups, simultaneous and
-// interleaved modes. Not modelled: alternate-trigger modes.
+// interleaved modes. Not modeled: alternate-trigger modes.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ namespace inkwell::virtual_board {
 
 class Adcs;
 
-/// This part's own VREFINT, at any supply; the data sheet allows 1.18 V to 1.24 V.
+/// VREFINT of this simulated part at any supply voltage; the data sheet allows 1.18 V to 1.24 V.
 inline constexpr double internal_reference_V = 1.19;
-/// That and the temperature sensor take as long to start, and to be sampled.
+/// Start-up time and shortest sampling time of VREFINT and the temperature sensor.
 inline constexpr Ticks internal_source_time = 10 * (ticks_per_s / 1'000'000);
-/// What its maker has measured of it, in counts of a converter with a reference of 3.3 V.
+/// Factory calibration of VREFINT, in counts at VDDA = 3.3 V.
 inline constexpr auto internal_reference_calibration =
     static_cast<std::uint16_t>(internal_reference_V / logic_supply_V * 4096.0);
 
@@ -32,20 +32,20 @@ class Adc final : public TimedPart {
   void write(std::uint32_t offset, std::uint32_t value);
   std::uint32_t stored(std::uint32_t offset) const;
 
-  /// Firmware or DMA has read the result.
+  /// Call this when firmware or DMA has read the result.
   void result_taken();
-  /// A fault that lasts: no conversion begins any more.
+  /// Injected fault: prevents new conversions.
   void stop(bool stopped);
   bool is_on() const { return adc.cr2.adon.in(cr2_); }
-  /// External trigger selections, or -1 while triggers are off.
+  /// External trigger selection, or -1 while external triggers are off.
   int injected_trigger() const { return adc.cr2.jexten.in(cr2_) ? static_cast<int>(adc.cr2.jextsel.of(cr2_)) : -1; }
   int regular_trigger() const { return adc.cr2.exten.in(cr2_) ? static_cast<int>(adc.cr2.extsel.of(cr2_)) : -1; }
   void start_injected(Ticks now);
   void start_regular(Ticks now);
-  /// After a delay: the turn of a slave in an interleaved mode.
+  /// Starts a regular group later, for a slave in an interleaved mode.
   void start_regular_at(Ticks when);
   unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
-  /// A trigger of this ADC is followed by something that the processor must see.
+  /// True if the processor must stop for the result of this group.
   bool injected_matters() const { return adc.cr1.jeocie.in(cr1_); }
   bool regular_matters() const { return adc.cr1.eocie.in(cr1_) || adc.cr2.dma.in(cr2_); }
   std::uint32_t status() const { return sr_; }
@@ -87,41 +87,41 @@ class Adc final : public TimedPart {
   bool stopped_ = false;
   bool resume_regular_ = false, automatic_injected_ = false;
   std::uint32_t sample_ = 0;
-  double sampled_V_ = 0.0;  ///< what the sampling capacitor is left with
+  double sampled_V_ = 0.0;  ///< final voltage of the sampling capacitor
   Ticks stable_at_ = 0;
-  Ticks began_ = 0;         ///< the conversion
-  Ticks wake_lag_ = never;  ///< of the processor, behind the end of the conversion
-  bool spoilt_ = false;     ///< the conversion cannot give a true result
+  Ticks began_ = 0;         ///< start of the conversion
+  Ticks wake_lag_ = never;  ///< delay of the processor stop after the end of the conversion
+  bool spoilt_ = false;     ///< the conversion has no valid result
 };
 
 class Adcs final : public RegisterBlock {
  public:
   explicit Adcs(Machine& machine);
-  /// RCC_APB2ENR, with a bit for each converter.
+  /// Sets the pointer to RCC_APB2ENR, which has one clock bit per converter.
   void clock_by(const std::uint32_t* enable_register) { enable_register_ = enable_register; }
   void reset() override;
-  /// `channel` 1..4 of a timer matched, or trigger_output of timers.hpp.
+  /// A match of timer channel 1 to 4, or trigger_output of timers.hpp.
   void timer_trigger(unsigned timer, unsigned channel) {
     if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
   }
   void external_line(unsigned line);
   Adc& converter(unsigned index) { return adcs_[index]; }
-  /// A match or trigger output of the timer starts conversions that the processor waits for.
+  /// True if the processor waits for conversions that this timer event starts.
   bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
-  /// After a change of triggers or interrupts.
+  /// Call this after a change of triggers or interrupts.
   void connect_triggers();
   unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
   bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
-  /// Temperature sensor and internal reference have started.
+  /// Time at which temperature sensor and internal reference are ready.
   Ticks internal_ready_at() const { return internal_ready_at_; }
   bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
-  /// Results of regular groups go through the common data register (CCR.DMA).
+  /// True if results of regular groups use the common data register (CCR.DMA).
   bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && converts_together(); }
-  /// The converters take turns at their regular groups.
+  /// True if the converters alternate in their regular groups.
   bool interleaved() const;
-  /// From one turn of a converter to its next, if it is not still busy.
+  /// Time between two starts of the same converter, unless the converter is still busy.
   Ticks interleaving_turn() const { return group_size() * interleaving_delay(); }
-  /// One more of them.
+  /// Adds a result for the common data register.
   void share(std::uint32_t result);
   void note_injected_sequence(Ticks now);
   void start_injected(unsigned index, Ticks now);
@@ -151,7 +151,7 @@ class Adcs final : public RegisterBlock {
   const std::uint32_t* enable_register_ = nullptr;
   std::uint32_t ccr_ = 0;
   Ticks internal_ready_at_ = 0;
-  std::deque<std::uint32_t> shared_;  ///< results that wait to go through the common data register
+  std::deque<std::uint32_t> shared_;  ///< results that wait for the common data register
   std::uint32_t common_data_ = 0;
   std::uint64_t injected_sequences_ = 0;
   Ticks last_injected_ = never;

@@ -1,4 +1,4 @@
-// Registers of a converter and those that the three share (RM0090, ADC_SR ... ADC_CDR).
+// Registers of one converter and the common registers (RM0090, ADC_SR ... ADC_CDR).
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -72,11 +72,11 @@ struct AdcCommonRegisters {
 };
 inline constexpr AdcCommonRegisters adc_common;
 
-/// ADC_CCR.MULTI without its highest bit, which takes the third converter in.
+/// ADC_CCR.MULTI without its highest bit, which includes the third converter.
 enum class MultiMode : std::uint8_t {
   independent = 0,
-  regular_and_injected = 1,   ///< both simultaneous
-  regular_and_alternate = 2,  ///< regular simultaneous, injected by alternate triggers
+  regular_and_injected = 1,   ///< both groups simultaneous
+  regular_and_alternate = 2,  ///< regular group simultaneous, injected group by alternate triggers
   injected = 5,
   regular = 6,
   interleaved = 7,

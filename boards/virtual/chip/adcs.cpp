@@ -1,4 +1,4 @@
-// The three converters together: triggers, simultaneous and interleaved modes, common registers.
+// Common part of the three converters: triggers, simultaneous and interleaved modes, common registers.
 #include "adc.hpp"
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace {
 
 struct TriggerSource {
   std::uint8_t timer;    ///< 0: EXTI line
-  std::uint8_t channel;  ///< of the timer (0: trigger output), or the EXTI line
+  std::uint8_t channel;  ///< of the timer (0: trigger output); EXTI line if `timer` is 0
 };
 // RM0090, ADC_CR2: JEXTSEL and EXTSEL.
 constexpr TriggerSource injected_sources[16] = {{1, 4}, {1, 0}, {2, 1}, {2, 0}, {3, 2}, {3, 4}, {4, 1}, {4, 2},
                                                 {4, 3}, {4, 0}, {5, 4}, {5, 0}, {8, 2}, {8, 3}, {8, 4}, {0, 15}};
 constexpr TriggerSource regular_sources[16] = {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {2, 4}, {2, 0}, {3, 1},
                                                {3, 0}, {4, 4}, {5, 1}, {5, 2}, {5, 3}, {8, 1}, {8, 0}, {0, 11}};
-/// Two results in a half word of ADC_CDR, as DMA mode 3 moves them.
+/// Two results in a half-word of ADC_CDR, for DMA mode 3.
 constexpr Field byte_pair{"BYTE#", 0, 8, Access::r, {2, 8, 0}};
 constexpr std::uint32_t converter_bytes = 0x100, common = 3 * converter_bytes;
 
@@ -58,8 +58,8 @@ bool Adcs::regular_simultaneous() const {
 
 bool Adcs::interleaved() const { return mode() == MultiMode::interleaved; }
 
-// From one converter's start to the next one's: what DELAY says, but never while another one samples (RM0090,
-// "Interleaved mode").
+// Delay between the starts of two converters: DELAY, or longer while another converter samples (RM0090, "Interleaved
+// mode").
 Ticks Adcs::interleaving_delay() const {
   const unsigned asked = 5 + adc_common.ccr.delay.of(ccr_), sampling = adcs_[0].regular_sampling_cycles() + 2;
   return machine_.clocks.pclk2.duration(std::uint64_t{std::max(asked, sampling)} * prescaler());
@@ -71,7 +71,7 @@ bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
 }
 
-// RM0090, "Multi ADC mode": mode 1 moves each result by itself, modes 2 and 3 two of them, as half words and as bytes.
+// RM0090, "Multi ADC mode": mode 1 transfers single results, mode 2 two results as half-words, mode 3 two as bytes.
 void Adcs::share(std::uint32_t result) {
   shared_.push_back(result);
   const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);
@@ -94,7 +94,7 @@ void Adcs::note_injected_sequence(Ticks now) {
 }
 
 void Adcs::start_injected(unsigned index, Ticks now) {
-  if (is_slave(index, true)) return;  // the master starts it
+  if (is_slave(index, true)) return;  // started together with the master
   if (adcs_[index].is_on()) note_injected_sequence(now);
   adcs_[index].start_injected(now);
   if (index == 0 && injected_simultaneous())

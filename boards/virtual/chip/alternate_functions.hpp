@@ -1,11 +1,11 @@
-// Which pin is which input or output of a timer (data sheet STM32F405, table "Alternate function mapping").
+// Alternate functions of the pins (data sheet STM32F405, table "Alternate function mapping").
 #pragma once
 
 #include <cstdint>
 
 namespace inkwell::virtual_board {
 
-/// Lines of a timer that reach pins.
+/// Timer signals with pins.
 enum TimerLine : std::uint8_t {
   channel_1,
   channel_2,
@@ -63,7 +63,7 @@ inline constexpr TimerPin timer_pins[] = {
 };
 // clang-format on
 
-/// Pins that a USART can send on.
+/// Pins on which a USART can transmit.
 struct TransmitPin {
   unsigned usart;
   char port;
@@ -75,8 +75,8 @@ inline constexpr TransmitPin transmit_pins[] = {
     {3, 'D', 8, 7}, {4, 'A', 0, 8}, {4, 'C', 10, 8}, {5, 'C', 12, 8}, {6, 'C', 6, 8},  {6, 'G', 14, 8},
 };
 
-/// Pins of the ADCs' external channels (data sheet, pin table): ADC1 and ADC2 share theirs, ADC3 has others at 4..9
-/// and 14, 15. Port 0: no pin.
+/// Pins of the ADCs' external channels (data sheet, pin table). ADC1 and ADC2 share their pins; ADC3 differs at
+/// channels 4 to 9, 14 and 15.
 struct AnalogPin {
   char port;
   std::uint8_t pin;

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t loader_stack = sram_base + 0x2000;
 
-/// The hands of the loader: asks for an order, carries it out, and asks again. R0 is LoaderOrder::Kind, R1 the address,
-/// R2 the word or where the data are, R3 the number of words.
+/// Main loop of the loader: requests an order, executes it, and repeats. R0 is LoaderOrder::Kind, R1 the address, R2
+/// the word or the address of the data, R3 the number of words.
 constexpr std::uint16_t hands[] = {
     0xF240, 0x1001,  // ask: movw r0, #semihosting_ask_for_order
     0xBEAB,          // bkpt 0xAB
@@ -20,7 +20,7 @@ constexpr std::uint16_t hands[] = {
     0xD00B,          // beq program
     0x2803,          // cmp r0, #go
     0xD013,          // beq go
-    0xF44F, 0x70FA,  // mov r0, #500: a tenth of a millisecond
+    0xF44F, 0x70FA,  // mov r0, #500: 0.1 ms
     0x3801,          // subs r0, #1
     0xD1FD,          // bne, one back
     0xE7F0,          // b ask
@@ -42,25 +42,26 @@ constexpr std::uint16_t hands[] = {
 };
 constexpr std::uint32_t hands_literals[] = {0x4002'3C0C, loader_go + 1};
 
-/// Leaves the chip as a loader may: voltage scale 2, 60 MHz from crystal and PLL, the internal oscillator off, no clock
-/// for CCM, the vector table its own, the clock of the USB core's PHY stopped, as while the bus slept.
+/// Sets the chip to a state in which a boot loader may leave it: voltage scale 2, 60 MHz from crystal and PLL, HSI
+/// off. CCM has no clock, and the vector table is that of the boot loader. The clock of the USB PHY is stopped, as in
+/// USB suspend.
 constexpr std::uint16_t go[] = {
     0xF643, 0x0000,  // movw r0, #RCC
     0xF2C4, 0x0002,  // movt r0, #RCC
     0x6B41,          // ldr r1, [r0, #AHB2ENR]
     0xF041, 0x0180,  // orr r1, #OTGFSEN
     0x6341,          // str r1, [r0, #AHB2ENR]
-    0x6B41,          // ldr r1, [r0, #AHB2ENR]: the clock arrives meanwhile
+    0x6B41,          // ldr r1, [r0, #AHB2ENR]: gives the clock time to start
     0xF640, 0x6300,  // movw r3, #PCGCCTL
     0xF2C5, 0x0300,  // movt r3, #PCGCCTL
     0x2101,          // movs r1, #STPPCLK
     0x6019,          // str r1, [r3]
-    0xBF00,          // nop: the constants below stay aligned
+    0xBF00,          // nop: aligns the constants below
     0x481A,          // ldr r0, =RCC
     0x6C01,          // ldr r1, [r0, #APB1ENR]
     0xF041, 0x5180,  // orr r1, #PWREN
     0x6401,          // str r1, [r0, #APB1ENR]
-    0x6C01,          // ldr r1, [r0, #APB1ENR]: the clock arrives meanwhile
+    0x6C01,          // ldr r1, [r0, #APB1ENR]: gives the clock time to start
     0x4B18,          // ldr r3, =PWR
     0x2100,          // movs r1, #0: VOS
     0x6019,          // str r1, [r3, #CR]
@@ -105,7 +106,7 @@ constexpr std::uint16_t go[] = {
     0x4710,          // bx r2
 };
 
-/// The VCO at 240 MHz, divided by 4 for the core and by 5 for USB.
+/// VCO at 240 MHz, divided by 4 for the core and by 5 for USB.
 constexpr std::uint32_t pll_for_60_MHz(std::uint32_t crystal_Hz) {
   return crystal_Hz / 1'000'000 | 240 << 6 | 1 << 16 | 1 << 22 | 5 << 24;
 }

@@ -13,7 +13,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr std::uint32_t apb_base = 0x4000'0000, apb_bytes = 0x8'0000;
-constexpr std::uint32_t apb_end = 0x4002'0000;  ///< what follows is AHB1
+constexpr std::uint32_t apb_end = 0x4002'0000;  ///< start of AHB1
 constexpr std::uint32_t ahb2_base = 0x5000'0000, ahb2_bytes = 0x6'1000;
 constexpr std::uint32_t private_base = 0xE000'0000, private_bytes = 0x10'0000;
 constexpr std::uint32_t external_base = 0xA000'0000, external_bytes = 0x1000;
@@ -35,8 +35,8 @@ constexpr Bus::Window window() {
   return {base, bytes, read_window<base>, write_window<base>};
 }
 
-/// The fewest bytes that the manual lets one write to registers of peripherals whose names begin so. Where silicon does
-/// as well with fewer, as with the data registers of serial ports, there is no row.
+/// Smallest allowed write in bytes, per name prefix of the peripheral (reference manual). Peripherals that also work
+/// with smaller writes, such as the data registers of serial ports, have no row.
 unsigned narrowest_write(std::string_view name) {
   struct Row {
     std::string_view begin;
@@ -137,7 +137,7 @@ void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned si
     return;
   }
   if (!is_clocked(*slot, address)) return;
-  // A bridge to an APB makes a word of every write, with the bytes repeated (RM0090, "AHB/APB bridges").
+  // A bridge to an APB turns every write into a word with repeated bytes (RM0090, "AHB/APB bridges").
   if (size < slot->narrowest_write && address < apb_end) {
     const std::uint32_t repeated = size == 1 ? 0x0101'0101u * (value & 0xFF) : 0x0001'0001u * (value & 0xFFFF);
     slot->peripheral->write((address & ~3u) - slot->base, repeated, 4);

@@ -1,4 +1,4 @@
-// From addresses to registers: peripheral blocks, bit-band aliases and the private peripheral bus.
+// Address decoding: peripheral blocks, bit-band aliases and the private peripheral bus.
 #pragma once
 
 #include <unicorn/unicorn.h>
@@ -13,7 +13,7 @@ namespace inkwell::virtual_board {
 
 class SystemControl;
 
-/// A block of 32-bit registers. Narrow reads take a part of the word; narrow writes replace a part of `stored`.
+/// A block of 32-bit registers. Narrow reads return a part of the word; narrow writes replace a part of `stored`.
 class RegisterBlock : public Peripheral {
  public:
   std::uint32_t read(std::uint32_t offset, unsigned size) final {
@@ -31,9 +31,9 @@ class RegisterBlock : public Peripheral {
  protected:
   virtual std::uint32_t read_word(std::uint32_t offset) = 0;
   virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
-  /// What a narrow write leaves in place; without the side effects of reading.
+  /// Register value for merging a narrow write, without the side effects of a read.
   virtual std::uint32_t stored(std::uint32_t) const { return 0; }
-  /// The registers that this block declares: shown<...>() of its map.
+  /// Declared registers: shown<...>() of the register map.
   virtual std::span<const MapEntry> registers() const { return {}; }
 };
 
@@ -45,7 +45,6 @@ class Bus {
   void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
            const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
   void reset_peripherals();
-  /// Of all peripherals.
   std::vector<RegisterMap> register_maps() const;
 
   struct Window {
@@ -54,7 +53,7 @@ class Bus {
     uc_cb_mmio_write_t write;
   };
   static const Window windows[6];
-  /// One of the windows holds the address.
+  /// True if one of the windows contains the address.
   static bool answers(std::uint32_t address) {
     for (const Window& window : windows)
       if (address - window.base < window.bytes) return true;
@@ -63,7 +62,7 @@ class Bus {
 
   std::uint32_t read(std::uint32_t address, unsigned size);
   void write(std::uint32_t address, std::uint32_t value, unsigned size);
-  /// For DMA: registers of peripherals without the processor's side of it.
+  /// Register access by DMA, without the timing of the processor.
   std::uint32_t read_register(std::uint32_t address, unsigned size);
   void write_register(std::uint32_t address, std::uint32_t value, unsigned size);
 
@@ -84,10 +83,10 @@ class Bus {
 
   Machine& machine_;
   SystemControl& system_control_;
-  std::vector<Slot> apb_and_ahb1_;  ///< by kilobyte from 0x40000000
-  std::vector<Slot> ahb2_;          ///< by kilobyte from 0x50000000
+  std::vector<Slot> apb_and_ahb1_;  ///< one per kilobyte from 0x40000000
+  std::vector<Slot> ahb2_;          ///< one per kilobyte from 0x50000000
   std::vector<Peripheral*> peripherals_;
-  std::uint64_t access_began_ = 0;  ///< cycle in which the processor asked
+  std::uint64_t access_began_ = 0;  ///< first cycle of the processor's access
 };
 
 }  // namespace inkwell::virtual_board

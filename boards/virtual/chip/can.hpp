@@ -1,6 +1,6 @@
-// CAN1 and CAN2 at a transceiver without a bus (RM0090, "Controller area network"): the controller enters and leaves
-// its modes; what it sends nobody acknowledges, so the errors count up to error passive. In loop-back it hears itself,
-// through the filters.
+// CAN1 and CAN2 with a transceiver but without a bus (RM0090, "Controller area network"). Mode changes work. No node
+// acknowledges a frame, so the error counter rises until the controller is error passive. In loop-back mode the
+// controller receives its own frames through the filters.
 #pragma once
 
 #include <utility>
@@ -13,8 +13,8 @@ namespace inkwell::virtual_board {
 
 class Can final : public RegisterBlock, public Freezable {
  public:
-  /// Interrupts stand at four positions in a row: transmission, both FIFOs, errors and modes.
-  /// CAN2 has CAN1's filters.
+  /// Interrupts occupy four consecutive positions: transmission, FIFO 0, FIFO 1, errors and mode changes. CAN2 uses
+  /// the filters of CAN1 (`first`).
   Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position, const Can* first = nullptr)
       : machine_(machine),
         events_(events),
@@ -24,7 +24,7 @@ class Can final : public RegisterBlock, public Freezable {
     constexpr unsigned first_stop_bit = 25;  // DBG_CAN1_STOP
     machine.debug_halt.add(*this, DebugHalt::apb1, first_stop_bit + number - 1);
   }
-  /// The bus stands still too while CAN_MCR.DBF asks for it; a frame that was on its way begins again.
+  /// The bus freezes too if CAN_MCR.DBF is set. An interrupted frame restarts.
   void freeze(bool frozen) override {
     frozen_ = frozen && can.mcr.dbf.in(word(can.mcr));
     if (frozen_ && sending_ != 0) events_.cancel(std::exchange(sending_, 0));
@@ -97,7 +97,7 @@ class Can final : public RegisterBlock, public Freezable {
     const std::uint64_t quanta = 3 + can.btr.ts1.of(timing) + can.btr.ts2.of(timing);
     return machine_.clocks.pclk1.duration(count * quanta * (can.btr.brp.of(timing) + 1));
   }
-  // A mode is entered when the bus, which is always recessive, has been so for eleven bits.
+  // A mode change takes effect after eleven recessive bits. The bus is always recessive.
   void change_mode() {
     if (changing_ != 0) events_.cancel(changing_);
     changing_ = events_.at(machine_.timeline.now() + bits(11), [this] {
@@ -113,7 +113,7 @@ class Can final : public RegisterBlock, public Freezable {
   void write_transmit_status(std::uint32_t value) {
     word(can.tsr) &= ~(value & bits_of(can.tsr, Access::rc_w1));
     for (unsigned i = 0; i < 3; ++i) {
-      // A completed request takes its result along; an abort ends what nobody acknowledges.
+      // RQCP also clears the result flags; ABRQ aborts a frame without acknowledgment.
       if (can.tsr.rqcp.in(value, i))
         word(can.tsr) &= ~(can.tsr.txok.mask(i) | can.tsr.alst.mask(i) | can.tsr.terr.mask(i));
       if (can.tsr.abrq.in(value, i)) give_up(i);
@@ -142,7 +142,7 @@ class Can final : public RegisterBlock, public Freezable {
       update();
     });
   }
-  /// Of those that wait, the one with the lowest identifier.
+  /// Mailbox with the lowest identifier among the pending ones.
   unsigned next_mailbox() {
     unsigned next = 0;
     std::uint32_t lowest = ~0u;
@@ -155,7 +155,7 @@ class Can final : public RegisterBlock, public Freezable {
     return next;
   }
   void hear_itself() {
-    if ((word(can.tsr) & can.tsr.tme.masks()) == can.tsr.tme.masks()) return;  // given up meanwhile
+    if ((word(can.tsr) & can.tsr.tme.masks()) == can.tsr.tme.masks()) return;  // aborted in the meantime
     const unsigned mailbox = next_mailbox();
     const auto sent = [&](const auto& registers) { return word(registers + mailbox * registers.stride); };
     CanFrame frame{sent(can.tir) & ~can.tir.txrq.mask(), can.tdtr.dlc.of(sent(can.tdtr)), sent(can.tdlr),
@@ -167,7 +167,7 @@ class Can final : public RegisterBlock, public Freezable {
     frame.length |= can.rdtr.fmi.with(match->index);
     fifos_[match->fifo].put(frame, can.mcr.rflm.in(word(can.mcr)));
   }
-  // Each such error counts 8, until the controller is error passive: then it counts no more (ISO 11898-1).
+  // Each missing acknowledgment adds 8, until the controller is error passive (ISO 11898-1).
   void miss_acknowledgement() {
     constexpr std::uint32_t no_acknowledgement = 3, warning = 96, passive = 128;
     std::uint32_t& errors = word(can.esr);

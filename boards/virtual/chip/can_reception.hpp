@@ -1,4 +1,4 @@
-// The receiving side of a CAN controller: filter banks and two FIFOs of three frames (RM0090, "Identifier filtering",
+// Reception of a CAN controller: filter banks and two FIFOs of three frames (RM0090, "Identifier filtering",
 // "Reception handling").
 #pragma once
 
@@ -13,17 +13,18 @@
 
 namespace inkwell::virtual_board {
 
-/// A frame as the mailboxes have it: identifier register, length, data.
+/// A frame in the format of the mailboxes.
 struct CanFrame {
-  std::uint32_t identifier;  ///< as RIxR: STID, EXID, IDE, RTR
-  std::uint32_t length;      ///< as RDTxR: DLC, and FMI when it was received
+  std::uint32_t identifier;  ///< format of RIxR: STID, EXID, IDE, RTR
+  std::uint32_t length;      ///< format of RDTxR: DLC, and FMI for received frames
   std::uint32_t low, high;
 };
 
-/// What a filter of 16 bits sees of an identifier (RM0090, "Filter bank scale configuration - register organization").
+/// Part of an identifier that a 16-bit filter compares (RM0090, "Filter bank scale configuration - register
+/// organization").
 struct CanHalfFilter {
   Field exid{"EXID", 0, 3}, ide{"IDE", 3}, rtr{"RTR", 4}, stid{"STID", 5, 11};
-  /// The three highest bits of EXID.
+  /// Identifier in the format of a 16-bit filter, which has only the three highest bits of EXID.
   constexpr std::uint32_t seen(std::uint32_t identifier) const {
     const auto& from = can.rir;
     return stid.with(from.stid.of(identifier)) | rtr.with(from.rtr.of(identifier)) | ide.with(from.ide.of(identifier)) |
@@ -32,7 +33,7 @@ struct CanHalfFilter {
 };
 inline constexpr CanHalfFilter can_half_filter;
 
-/// The filter banks of both controllers, which are CAN1's: registers FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
+/// Filter banks of both controllers, in the registers of CAN1: FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
 struct CanFilters {
   static constexpr unsigned banks = 28;
   struct Bank {
@@ -45,9 +46,9 @@ struct CanFilters {
 
   struct Match {
     unsigned fifo;
-    unsigned index;  ///< FMI: counts the filters of that FIFO, those that are off too
+    unsigned index;  ///< FMI: counts all filters of the FIFO, including inactive ones
   };
-  /// Whole words go before halves, lists before masks, lower numbers before higher ones.
+  /// Finds the filter with the highest priority: 32-bit before 16-bit, list before mask, lower number first.
   std::optional<Match> match(std::uint32_t identifier, unsigned controller) const {
     if (initialising) return {};
     const unsigned begin = controller == 1 ? 0 : first_of_second_controller;
@@ -94,7 +95,7 @@ struct CanFilters {
   }
 };
 
-/// RFxR and what is behind it.
+/// Receive FIFO with its register RFxR.
 class CanFifo {
  public:
   void clear() {

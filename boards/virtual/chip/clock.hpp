@@ -10,13 +10,13 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 
-/// A cycle lasts numerator / denominator ticks. Most clocks of the chip divide ticks_per_s, then the
-/// denominator is 1; the others stay exact as fractions.
+/// A clock period lasts numerator / denominator ticks. Most clocks of the chip divide ticks_per_s, so the denominator
+/// is 1. The other clocks stay exact as fractions.
 struct Clock {
-  /// The clock of a crystal that is off by some parts in a million has large terms.
+  /// The clock of a crystal with a frequency deviation has a large numerator and denominator.
   __extension__ using Wide = unsigned __int128;
 
-  std::uint64_t numerator = 0;  ///< 0: the clock stands still
+  std::uint64_t numerator = 0;  ///< 0: the clock is stopped
   std::uint64_t denominator = 1;
 
   static Clock of(std::uint32_t frequency_Hz) {
@@ -27,18 +27,18 @@ struct Clock {
   bool runs() const { return numerator != 0; }
   bool operator==(const Clock&) const = default;
 
-  /// The time by which `cycles` are over.
+  /// Time after which `cycles` have passed.
   Ticks duration(std::uint64_t cycles) const {
     if (denominator == 1) return cycles * numerator;
     return static_cast<Ticks>((Wide{cycles} * numerator + denominator - 1) / denominator);
   }
-  /// Whole cycles within `time`.
+  /// Number of whole cycles within `time`.
   std::uint64_t cycles_in(Ticks time) const {
     if (!runs()) return 0;
     if (denominator == 1) return time / numerator;
     return static_cast<std::uint64_t>(Wide{time} * denominator / numerator);
   }
-  /// As cycles_in, for a divided clock: whole periods of `divider` cycles.
+  /// Number of whole periods of `divider` cycles within `time`.
   std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
 };
 

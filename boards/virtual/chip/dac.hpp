@@ -1,5 +1,5 @@
-// The two digital-to-analogue converters (RM0090, "Digital-to-analog converter"): what they hold and put out; nothing
-// is connected to their pins. Waves, timers as triggers and DMA are not modelled.
+// The two digital-to-analog converters (RM0090, "Digital-to-analog converter"): holding and output registers, without
+// pins. Not modeled: waveforms, timer triggers and DMA.
 #pragma once
 
 #include "bus.hpp"
@@ -16,7 +16,7 @@ struct DacRegisters {
   struct : Register {
     Field swtrig{"SWTRIG#", 0, 1, Access::w, {2, 1, 1}};
   } swtrigr{{"SWTRIGR", 0x04}};
-  // A channel's value in its three forms, by itself and beside the other one's.
+  // Value of a channel in three formats, for one channel and for both.
   struct : Register {
     Field dhr{"DACC#DHR", 0, 12};
   } dhr12r{{"DHR12R#", 0x08, 0, {2, 12, 1}}};
@@ -64,7 +64,7 @@ class Dac final : public RegisterBlock {
         if (dac.swtrigr.swtrig.in(value, i)) output_[i] = held_[i];
       return;
     } else if (offset == dac.sr) {
-      return;  // without DMA nothing underruns
+      return;  // underrun occurs only with DMA
     } else if (!hold(offset, value)) {
       return machine_.log.note("DAC", offset, true, value);
     }
@@ -83,8 +83,9 @@ class Dac final : public RegisterBlock {
   std::span<const MapEntry> registers() const override { return shown<dac>(); }
 
  private:
-  static constexpr unsigned bits = 12;  ///< of a converter; a form with fewer has the highest
-  /// Calls `use(field, channel, place in the field)` for each channel that a holding register has; false if it is none.
+  static constexpr unsigned bits = 12;  ///< resolution; shorter formats have the upper bits
+  /// Calls `use(field, channel, index in the field)` for each channel of a holding register. Returns false for other
+  /// registers.
   template <class Use>
   static bool at_form(std::uint32_t offset, Use use) {
     const auto of_one = [&](const auto& form) {

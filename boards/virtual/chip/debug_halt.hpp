@@ -1,6 +1,6 @@
-// What stands still while a debug probe halts the core: SysTick, which is the core's own (ARMv7-M, B3.3.1), and the
-// parts whose bits firmware has set (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). Everything else
-// goes on, as on a board. DBG_I2Cx_SMBUS_TIMEOUT has nothing to stop: no bus is held low, so no time-out runs.
+// Freezes parts of the chip while a debug probe halts the core: SysTick (ARMv7-M, B3.3.1) and the parts that firmware
+// selected (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). Everything else continues as on real
+// hardware. DBG_I2Cx_SMBUS_TIMEOUT has no effect, because the modeled I2C bus has no time-out.
 #pragma once
 
 #include <array>

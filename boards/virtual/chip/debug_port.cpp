@@ -11,7 +11,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Registers of peripherals and of the core (RM0090, memory map).
+/// True for registers of peripherals and of the core (RM0090, memory map).
 bool are_registers(std::uint32_t address, std::size_t bytes) {
   struct Window {
     std::uint32_t base, bytes;
@@ -22,7 +22,7 @@ bool are_registers(std::uint32_t address, std::size_t bytes) {
   return false;
 }
 
-/// The widest access to a register that begins at `address` and is no longer than `bytes`.
+/// Size of the widest register access at `address` with at most `bytes` bytes.
 unsigned access_size(std::uint32_t address, std::size_t bytes) {
   if (address % 4 == 0 && bytes >= 4) return 4;
   return address % 2 == 0 && bytes >= 2 ? 2 : 1;
@@ -69,7 +69,7 @@ bool ChipDebugPort::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
 }
 
 bool ChipDebugPort::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return true;  // gdb asks so whether it may write in binary
+  if (bytes.empty()) return true;  // gdb tests with an empty write whether binary writes are supported
   const auto size = static_cast<std::uint32_t>(bytes.size());
   if (auto* place = machine_.memory.ram_at(address, size)) {
     std::memcpy(place, bytes.data(), bytes.size());

@@ -1,4 +1,3 @@
-// The chip's debug port.
 #pragma once
 
 #include <chip/debug_port.hpp>

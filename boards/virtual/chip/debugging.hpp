@@ -1,4 +1,4 @@
-// What a debugger has asked of the processor.
+// Requests of a debugger to the processor.
 #pragma once
 
 #include <chip/debug_port.hpp>
@@ -12,13 +12,13 @@ struct Debugging {
   bool attached = false;
   bool steps = false;
   std::set<std::uint32_t> breakpoints;
-  /// Where it goes on from: this place has been reported already.
+  /// Address of resumption, at which the stop has already been reported.
   std::optional<std::uint32_t> resumed_at;
-  /// A watch point that the current instruction has touched, by the address.
+  /// Address of a watch point that the current instruction has accessed.
   std::optional<std::uint32_t> touched;
   DebugStop last_stop;
 
-  /// Whether to stop before the instruction at `address`.
+  /// True if the processor must stop before the instruction at `address`.
   bool stops_at(std::uint32_t address) const {
     return touched || (steps && !resumed_at) || (resumed_at != address && breakpoints.contains(address));
   }

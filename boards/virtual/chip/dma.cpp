@@ -6,15 +6,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// A stream's flags are kept at the bits that those of stream 0 have in LISR.
+/// Flags of all streams are stored at the bit positions of stream 0 in LISR.
 constexpr std::uint32_t transfer_error = dma.lisr.teif.mask(), half = dma.lisr.htif.mask(),
                         complete = dma.lisr.tcif.mask();
 constexpr std::uint32_t all_flags = dma.lisr.feif.mask() | dma.lisr.dmeif.mask() | transfer_error | half | complete;
-/// Where the flags of each of four streams begin.
+/// First flag bit of each of the four streams.
 constexpr unsigned flag_shift[4] = {dma.lisr.feif.position(0), dma.lisr.feif.position(1),
                                     dma.lisr.feif_upper.position(0), dma.lisr.feif_upper.position(1)};
 constexpr std::uint32_t first_stream = dma.cr, stream_bytes = dma.cr.stride;
-constexpr std::uint32_t fifo_is_empty = 4;  // FCR.FS: what is requested is moved at once
+constexpr std::uint32_t fifo_is_empty = 4;  // FCR.FS: requests are transferred immediately
 
 struct Request {
   std::uint8_t peripheral, source, controller, stream, channel;
@@ -31,7 +31,7 @@ constexpr Request timer_requests[] = {
 };
 constexpr Request adc_requests[] = {{0, 0, 2, 0, 0}, {0, 0, 2, 4, 0}, {1, 0, 2, 2, 1},
                                     {1, 0, 2, 3, 1}, {2, 0, 2, 0, 2}, {2, 0, 2, 1, 2}};
-// Source 0 receives, 1 transmits.
+// Source 0 receives, source 1 transmits.
 constexpr Request usart_requests[] = {
     {1, 0, 2, 2, 4}, {1, 0, 2, 5, 4}, {1, 1, 2, 7, 4}, {2, 0, 1, 5, 4}, {2, 1, 1, 6, 4}, {3, 0, 1, 1, 4},
     {3, 1, 1, 3, 4}, {3, 1, 1, 4, 7}, {4, 0, 1, 2, 4}, {4, 1, 1, 4, 4}, {5, 0, 1, 0, 4}, {5, 1, 1, 7, 4},

@@ -1,5 +1,5 @@
-// DMA1 and DMA2 (RM0090, "DMA controller"). A request moves one item at once; FIFO thresholds and bursts
-// are accepted and change nothing.
+// DMA1 and DMA2 (RM0090, "DMA controller"). A request moves one item immediately. FIFO thresholds and bursts have no
+// effect.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ class DmaController final : public RegisterBlock {
  public:
   DmaController(Machine& machine, Bus& bus, unsigned number);
   void reset() override;
-  /// A peripheral's request on a stream's channel. False: no stream takes it now.
+  /// Handles a request on a channel of a stream. Returns false if the stream does not accept it.
   bool request(unsigned stream, unsigned channel);
-  /// The stream serves the channel, and its end, its half or an error interrupts.
+  /// True if the stream is enabled for the channel and has an interrupt enabled.
   bool interrupts_for(unsigned index, unsigned channel) const {
     const std::uint32_t control = streams_[index].control;
     return dma.cr.en.in(control) && dma.cr.chsel.of(control) == channel &&
            (dma.cr.tcie.in(control) || dma.cr.htie.in(control) || dma.cr.teie.in(control));
   }
-  /// A fault that lasts: no request is taken any more.
+  /// Injected fault: refuses all requests.
   void stop(bool stopped) { stopped_ = stopped; }
-  /// After a stream has been enabled: peripherals may have a request waiting.
+  /// Called after a stream has been enabled, because a peripheral request may be pending.
   std::function<void()> on_enabled;
 
  protected:
@@ -53,15 +53,15 @@ class DmaController final : public RegisterBlock {
   std::array<Stream, 8> streams_{};
 };
 
-/// Which stream serves which peripheral (RM0090, tables "DMA1 request mapping" and "DMA2 request mapping").
+/// Assignment of streams to peripherals (RM0090, tables "DMA1 request mapping" and "DMA2 request mapping").
 class Dma {
  public:
   Dma(Machine& machine, Bus& bus);
   DmaController& controller(unsigned number) { return number == 1 ? first_ : second_; }
   bool adc_request(unsigned index);
-  /// A stream that serves this converter would interrupt.
+  /// True if a stream for this converter has an interrupt enabled.
   bool interrupts_for_adc(unsigned index) const;
-  /// `source` 0 is the update, 1..4 the channels.
+  /// `source` is 0 for the update event and 1 to 4 for the channels.
   bool timer_request(unsigned timer, unsigned source);
   bool usart_request(unsigned number, bool transmit);
   bool spi_request(unsigned number, bool transmit);

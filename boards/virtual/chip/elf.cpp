@@ -1,4 +1,4 @@
-// Reader for the few parts of an ELF file that a programmer needs (ELF for the ARM architecture, AAELF32).
+// Reader for the parts of an ELF file that are needed for programming (ELF for the ARM architecture, AAELF32).
 #include <elf.h>
 
 #include <algorithm>
@@ -42,12 +42,11 @@ void check_header(const Elf32_Ehdr& header, const std::string& name) {
     throw ChipError(name + " has no load segments. Link it with a linker script for the STM32F405.");
 }
 
-/// The firmware as it lies in the file: its load segments.
+/// Load segments of the firmware in the file.
 struct Image {
   std::span<const char> file;
   std::vector<Elf32_Phdr> segments;
-  /// The byte that the image puts at `address`, of segments that overlap the last one; of erased flash where it puts
-  /// nothing.
+  /// Returns the byte at `address`. Later segments override earlier ones; without a segment the flash is erased.
   std::uint8_t byte(std::uint32_t address) const {
     std::uint8_t value = 0xFF;
     for (const auto& segment : segments)
@@ -66,8 +65,8 @@ std::string range_of(std::uint32_t base, std::uint32_t bytes) {
   return hexadecimal(base) + " to " + hexadecimal(base + bytes - 1);
 }
 
-/// The processor takes its first stack pointer and its first instruction's address from where the flash begins
-/// (ARMv7-M, B1.5.5). Returns what is odd about the stack pointer, or nothing.
+/// Checks the initial stack pointer and the reset vector at the start of the flash (ARMv7-M, B1.5.5). Returns a
+/// warning about the stack pointer, or an empty string.
 std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
   const std::uint32_t stack = image.word(flash_base), reset = image.word(flash_base + 4);
   const std::string table = "at " + hexadecimal(flash_base) +
@@ -91,7 +90,7 @@ std::string check_vectors(const Image& image, const std::string& name, Memory& m
          range_of(ccm_base, ccm_bytes) + "): it is firmware for another chip, unless it sets its stack pointer itself.";
 }
 
-/// As a programmer does; the other sectors stay as they are.
+/// Erases the sectors of the segment. Other sectors remain unchanged.
 void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
   const std::uint32_t first = segment.p_paddr - flash_base;
   for (unsigned i = 0; i < flash_sectors; ++i) {
@@ -119,13 +118,13 @@ std::string program_elf(std::span<const char> file, const std::string& name, Mem
     if (memory.at(segment.p_paddr, segment.p_filesz) == nullptr)
       throw ChipError(name + " does not fit the STM32F405: " + std::to_string(segment.p_filesz) + " bytes at " +
                       hexadecimal(segment.p_paddr) + " lie outside of its memories. Correct the linker script.");
-    if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // the flash is at 0 too
+    if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // the flash is also mapped at 0
     segments.push_back(segment);
   }
   if (segments.empty()) throw ChipError(name + " has nothing to load. Link it with a linker script for the STM32F405.");
   const std::string oddity = check_vectors({file, segments}, name, memory);
 
-  // Only a file that is whole may replace what is in the flash.
+  // Only a complete file may replace the flash contents.
   for (const auto& segment : segments) erase_sectors_of(segment, memory);
   for (const auto& segment : segments)
     std::memcpy(memory.at(segment.p_paddr, segment.p_filesz), file.data() + segment.p_offset, segment.p_filesz);

@@ -4,7 +4,7 @@
 
 #include <timing/instruction.hpp>
 
-// As the engine declares them, but for its types: what they point to stays the engine's.
+// Declarations of engine functions, with simplified parameter types.
 extern "C" {
 void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::uint64_t physical,
                                  std::uint64_t attributes, int rights, int index, std::uint32_t bytes);
@@ -33,7 +33,7 @@ namespace {
 
 thread_local EngineCalls* in_use = nullptr;
 
-/// Functions of the engine, null if this version has none of the name.
+/// Functions of the engine; null if this version does not have the function.
 struct Engine {
   using PageFunction = void(void* processor, std::uint32_t address);
   using Function = void(void* processor);
@@ -64,7 +64,7 @@ const Engine& engine() {
   return functions;
 }
 
-/// The instruction that the engine translates on this thread.
+/// Instruction that the engine translates on this thread.
 struct Translated {
   std::uint32_t block = 0, address = 0;
   std::uint16_t first = 0, second = 0;
@@ -81,7 +81,7 @@ struct Translated {
 };
 thread_local Translated translated;
 
-/// The engine's index of a translation regime, of an M-profile processor.
+/// Role from the translation regime index of an M-profile processor.
 EngineCalls::Role role_of(unsigned index) {
   constexpr unsigned privileged = 1, negative_priority = 2;
   return {(index & privileged) != 0, (index & negative_priority) != 0};
@@ -94,13 +94,13 @@ int aligned_if_needed(int operation) {
                                                                                            : operation;
 }
 
-/// The engine would make two accesses of one to a device that is not aligned, and nobody would see it.
+/// The engine would split a misaligned device access into two accesses without a report.
 void check_alignment(std::uint32_t address, unsigned bytes, EngineCalls::Access access, std::uint32_t operation,
                      std::uintptr_t return_address) {
   constexpr std::uint32_t index_mask = 0xF;
   if (address % bytes == 0 || in_use == nullptr || !in_use->is_device(address, role_of(operation & index_mask))) return;
   arm_cpu_do_unaligned_access_arm(in_use->remembered_processor(), address, static_cast<int>(access),
-                                  static_cast<int>(operation & index_mask), return_address);  // does not come back
+                                  static_cast<int>(operation & index_mask), return_address);  // does not return
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::ui
   in_use->remember_processor(processor);
   const std::uint32_t page = address & ~(page_bytes - 1);
   const int allowed = in_use->rights_in_page(page, page_bytes, role_of(index));
-  // Of a page that is not marked as whole the engine asks again at each access.
+  // The engine does not cache an entry that is smaller than a page, so it checks each access.
   if (allowed < 0)
     return engine().set_page(processor, address, physical, attributes, rights, index, not_the_whole_page);
   engine().set_page(processor, address, physical, attributes, rights & allowed, index, bytes);
@@ -144,7 +144,7 @@ bool arm_cpu_tlb_fill_arm(void* processor, std::uint64_t address, int bytes, int
     if (in_use->refuses(static_cast<std::uint32_t>(address), static_cast<unsigned>(bytes > 0 ? bytes : 1),
                         static_cast<EngineCalls::Access>(access), role_of(index))) {
       if (probe) return false;
-      engine().fault(processor, address, access, index, return_address);  // does not come back
+      engine().fault(processor, address, access, index, return_address);  // does not return
     }
   }
   return engine().fill(processor, address, bytes, access, index, probe, return_address);
@@ -159,8 +159,9 @@ void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int
 
 std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
   using namespace inkwell::virtual_board;
-  // The engine would let a block fault for any of its instructions with the program counter of the first. A branch to
-  // itself instead ends the block before such an instruction, which then is the first of its own.
+  // For a fault inside a block the engine reports the program counter of the first instruction. Before such an
+  // instruction this function therefore returns a branch to itself, which ends the block. A new block then starts with
+  // the instruction.
   constexpr std::uint32_t branch_to_itself = 0xE7FE;
   const bool may_end = in_use != nullptr && address != translated.block && translated.begins_at(address);
   if (may_end && !in_use->may_fetch(address)) return branch_to_itself;
@@ -180,7 +181,7 @@ void* tb_gen_code_arm(void* processor, std::uint32_t address, std::uint32_t segm
   return engine().translate(processor, address, segment, flags, block_flags);
 }
 
-// The engine has no interrupt controller, and answers no.
+// The engine has no interrupt controller and always answers no.
 bool armv7m_nvic_neg_prio_requested_arm(void*, bool) {
   using namespace inkwell::virtual_board;
   return in_use != nullptr && in_use->runs_above_faults();

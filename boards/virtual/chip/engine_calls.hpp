@@ -1,10 +1,9 @@
-// Where the engine's own functions pass through us, because its interface has no place for it.
+// Interception of functions inside the engine (Unicorn), because its public interface has no hook for them.
 //
-// Unicorn 2.0.1 reaches these of its functions through the procedure linkage table, so a definition in the program
-// takes their place and hands on to the engine's: what translates a load or a store, what fills the address cache,
-// what serves an access that the cache does not, and what says whether a priority is negative.
-// That is how alignment and rights are checked at no cost to an access that is allowed, and how the fault of one that
-// is not has the instruction's own program counter and if-then state.
+// Unicorn 2.0.1 calls these functions through the procedure linkage table. A definition in the program replaces the
+// engine's function and calls the original. The functions translate loads and stores, fill the address cache, serve
+// uncached accesses, and report whether a priority is negative. These functions check alignment and rights without cost
+// for allowed accesses. A refused access faults with the program counter and if-then state of its instruction.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +12,38 @@ namespace inkwell::virtual_board {
 
 class EngineCalls {
  public:
-  /// As the engine numbers them.
+  /// Values are those of the engine.
   enum class Access : int { load, store, fetch };
-  /// As the engine's bits.
+  /// Values are the bits of the engine.
   enum Rights : int { may_read = 1, may_write = 2, may_execute = 4 };
 
-  /// As what instructions run: what they may do depends on it. The engine's address cache is kept apart for each.
+  /// Execution role, which decides about access rights. The engine has one address cache per role.
   struct Role {
     bool privileged;
-    bool above_faults;  ///< with a negative priority: in HardFault or NMI, or with FAULTMASK set
+    bool above_faults;  ///< negative priority: HardFault, NMI, or FAULTMASK set
   };
 
   virtual ~EngineCalls() = default;
-  /// True lets the access fault. Asked when the engine's address cache does not know that it may pass.
+  /// Returns true if the access must fault. Called when the engine's address cache has no entry for the access.
   virtual bool refuses(std::uint32_t address, unsigned bytes, Access access, Role role) = 0;
-  /// What `refuses` lets pass anywhere in the page, or a negative number if that depends on the place in it.
+  /// Rights that are valid in the whole page, or a negative number if they depend on the address.
   virtual int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) = 0;
-  /// `refuses` would let a half-word of an instruction at this address pass, as what runs now.
+  /// True if the current role may fetch a half-word of an instruction at this address.
   virtual bool may_fetch(std::uint32_t address) const = 0;
-  /// Role::above_faults of what runs now. Asked after what may have changed it.
+  /// Role::above_faults of the current execution. The engine calls this function after possible changes of the role.
   virtual bool runs_above_faults() const = 0;
-  /// Stores to the page cannot hit instructions.
+  /// True if the page contains no instructions, so that stores need no check for translated code.
   virtual bool takes_plain_stores(std::uint32_t page) const = 0;
-  /// Accesses to this address must be aligned to their size, whatever the instruction.
+  /// True if all accesses to this address must be aligned to their size.
   virtual bool is_device(std::uint32_t address, Role role) const = 0;
-  /// An access that must be aligned is not; it faults.
+  /// Reports a misaligned access, which then faults.
   virtual void misaligned(std::uint32_t address) = 0;
-  /// Asked when a load or a store is translated: it must be aligned to its size.
+  /// True if this load or store must be aligned to its size. Called when the instruction is translated.
   virtual bool must_be_aligned(std::uint16_t first, std::uint16_t second) const = 0;
-  /// The instruction at `address` is translated, for the first time or because it may have changed.
+  /// Reports the translation of the instruction at `address`, also after a possible change.
   virtual void translates(std::uint32_t address) = 0;
 
-  /// While it lives, the engine that runs on this thread asks these.
+  /// While this object exists, the engine on this thread calls this EngineCalls object.
   class Use {
    public:
     explicit Use(EngineCalls& calls);
@@ -55,10 +54,10 @@ class EngineCalls {
    private:
     EngineCalls* before_;
   };
-  /// Of one page, of all pages.
+  /// Removes one page or all pages from the engine's address cache.
   void forget_page(std::uint32_t address);
   void forget_pages();
-  /// The engine tells which processor, in its own terms, it runs.
+  /// Stores the engine's pointer to its processor.
   void remember_processor(void* processor) { processor_ = processor; }
   void* remembered_processor() const { return processor_; }
 

@@ -1,4 +1,4 @@
-// Exception entry and return of the processor, and who has spent how many instructions.
+// Exception entry and return of the processor, and its cycle counters.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -9,15 +9,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-// The extended frame has S0 to S15 and FPSCR behind the basic one, and a word that nobody writes.
+// The extended frame has S0 to S15, FPSCR and an unused word after the basic frame.
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
 constexpr unsigned basic_words = 8, float_words = 17;
 constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
-// EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 process stack.
+// EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 the process stack.
 constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
                         exc_return_process_stack = 1u << 2;
 
-// Lists for batched access; each access to the engine costs more than the register.
+// Lists for batched access, because each call of the engine is slow.
 int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,   UC_ARM_REG_R2, UC_ARM_REG_R3,     UC_ARM_REG_R12,
                          UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
 int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
@@ -47,12 +47,12 @@ void Processor::clear_counters() { counters_ = {}; }
 
 bool Processor::start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table) {
   const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
-  current_exception_ = exception;  // before the engine asks what runs
+  current_exception_ = exception;  // set before the engine calls runs_above_faults()
   write(UC_ARM_REG_LR, exception_return);
   write(UC_ARM_REG_IPSR, exception);
-  write(UC_ARM_REG_EPSR, xpsr.thumb.mask());  // no if-then block is under way
+  write(UC_ARM_REG_EPSR, xpsr.thumb.mask());  // no if-then block is active
   resumed_bytes_ = 0;
-  write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
+  write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn update the mode; the flags are undefined at entry
   program_counter_ = vector;
   timing_.redirect();
   machine_.nvic.enter(exception);
@@ -67,7 +67,7 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   void* places[9];
   for (int i = 0; i < 9; ++i) places[i] = &values[i];
   uc_reg_read_batch(engine_, frame_registers, places, 9);
-  // The stack pointers' last two bits are always 0 (ARMv7-M, B1.4.1); Unicorn keeps what MSR has written.
+  // The two lowest bits of stack pointers are always 0 (ARMv7-M, B1.4.1), but Unicorn stores the bits that MSR writes.
   const std::uint32_t stack_pointer = values[7] & ~3u, control = values[8];
   const bool extended = float_context && (control & control_fpca) != 0;
   const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
@@ -88,8 +88,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
                                xpsr.padded.with(aligned) | current_exception_;
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
-  // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack. What
-  // can not be stacked waits for the instruction that asks for it.
+  // Floats are stacked immediately, even with lazy stacking in FPCCR. Firmware sees a difference only in its own stack.
+  // If stacking is refused, the stacking waits for the next FPU instruction.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
   if (stacks) {
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
@@ -109,7 +109,7 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   write(UC_ARM_REG_SP, frame);
   const bool unprivileged = current_exception_ == exception_none && (control & control_unprivileged) != 0;
   if (unprivileged) lift_privilege();
-  // SPSEL must be off before the mode changes, or Unicorn mixes up its banked stack pointers.
+  // SPSEL must be cleared before the mode changes; otherwise Unicorn mixes up its banked stack pointers.
   if (unprivileged || (control & (control_spsel | control_fpca)) != 0)
     write(UC_ARM_REG_CONTROL, control & ~(control_spsel | control_fpca));
   const bool started = start_handler(exception, exception_return, vector_table);
@@ -125,20 +125,20 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
 void Processor::resume_if_then_block(std::uint32_t status) {
   resumed_bytes_ = 0;
   if ((status & xpsr.if_then()) == 0) return;
-  // ITSTATE's low half: the lowest bit that is set ends the block (ARMv7-M, B1.4.2).
+  // Lower half of ITSTATE: the lowest set bit marks the end of the block (ARMv7-M, B1.4.2).
   const std::uint32_t state = xpsr.if_then_state(status);
   resumed_at_ = program_counter_ & ~1u;
   for (int left = 4 - std::countr_zero(state); left > 0; --left)
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
 }
 
-// Nearly always, and each exception asks.
+// Fast check for the usual case, because every exception needs this check.
 bool Processor::takes_any_frame(std::uint32_t address, std::uint32_t bytes) const {
   return !machine_.memory_protection.is_on(false) && core_coupled_on_ &&
          machine_.memory.ram_at(address, bytes) != nullptr;
 }
 
-// A frame begins at a word, and rights end at multiples of 32 bytes.
+// A frame starts at a word address, and access rights change only at multiples of 32 bytes.
 std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsigned words, Access access,
                                                    Role as) const {
   constexpr std::uint32_t granule_bytes = 32;
@@ -149,7 +149,8 @@ std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsign
   return {};
 }
 
-// Unicorn ignores what an unprivileged thread may not write also where we write it. In a handler CONTROL is open.
+// Unicorn also applies the write restrictions of unprivileged threads to writes by this program. Handlers may write
+// CONTROL.
 void Processor::lift_privilege() {
   const std::uint32_t control = read(UC_ARM_REG_CONTROL);
   write(UC_ARM_REG_IPSR, exception_hard_fault);
@@ -195,7 +196,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   wait(timing_.costs()[next != exception_none ? Cost::exception_tail_chain : Cost::exception_return]);
   end_counting();
 
-  // Tail-chaining: what is pending starts on the frame that is already there.
+  // Tail-chaining: the pending exception reuses the existing frame.
   if (next != exception_none) return chain_exception(next, vector_table) ? Return::done : Return::invalid;
 
   const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP) & ~3u;
@@ -203,7 +204,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   const bool float_stacked = extended && !unstacked_float_;
   const unsigned words_to_read = float_stacked ? basic_words + float_words : basic_words;
   if (!takes_any_frame(frame, bytes)) {
-    // Read as what it returns to (ARMv7-M, B1.5.8).
+    // The frame is read with the rights of the code to which it returns (ARMv7-M, B1.5.8).
     const Role as{!to_thread || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
                   nvic.execution_priority(masks()) < 0};
     if (const auto refusal = refusal_of_stack(frame, words_to_read, Access::load, as))
@@ -213,10 +214,10 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   std::memcpy(words, machine_.memory.ram_at(frame, 4 * words_to_read), 4 * words_to_read);
   const std::uint32_t status = words[7];
   const unsigned exception = xpsr.exception.of(status);
-  // The mode in the frame must be the mode that EXC_RETURN names.
+  // The mode in the frame must match the mode in EXC_RETURN.
   if ((exception == exception_none) != to_thread || exception >= exception_numbers) return Return::invalid;
 
-  current_exception_ = exception;  // before the engine asks what runs
+  current_exception_ = exception;  // set before the engine calls runs_above_faults()
   if (extended) set_unstacked_float({});
   if (float_stacked) {
     void* float_places[doubles];
@@ -227,7 +228,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   const std::uint32_t stack_pointer = (frame + bytes) | (xpsr.padded.in(status) ? 4u : 0u);
   const std::uint32_t privilege = read(UC_ARM_REG_CONTROL) & control_unprivileged;
   const std::uint32_t control = (process_stack ? control_spsel : 0u) | (extended ? control_fpca : 0u);
-  if (privilege != 0) write(UC_ARM_REG_CONTROL, 0);  // while it can still be written
+  if (privilege != 0) write(UC_ARM_REG_CONTROL, 0);  // while CONTROL is still writable
   write(UC_ARM_REG_IPSR, exception);
   write(UC_ARM_REG_CONTROL, control);
   write(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP, stack_pointer);
@@ -236,12 +237,13 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
   write(UC_ARM_REG_XPSR_NZCVQG, (status & (xpsr.flags() | xpsr.if_then())) | xpsr.thumb.mask() | exception);
-  write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());  // last: it rebuilds Unicorn's own copies of the flags
+  // The flags are written last, because this write rebuilds Unicorn's internal copies of the flags.
+  write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());
   program_counter_ = words[6];
   resume_if_then_block(status);
   timing_.redirect();
   if (extended) {
-    // What was never stacked needs no unstacking.
+    // A context that was never stacked needs no unstacking.
     if (!timing_.lazy_stacking_due()) wait(timing_.costs()[Cost::float_unstacking]);
     timing_.stack_lazily(false);
   }

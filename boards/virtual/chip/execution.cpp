@@ -95,7 +95,7 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // Half a period early spares a stop of its own where something else stops the processor anyhow.
+    // The processor is stopped here, so the circuit advances after half a period. This avoids an extra stop later.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;
@@ -118,14 +118,14 @@ Stop Execution::run_slices(Ticks when) {
         continue;
       }
     }
-    // Neither a handler's address nor an instruction can be read from a flash that is busy; its end is a wake.
+    // While the flash is busy, its vectors and instructions cannot be read. The end of the operation is a wake event.
     if (machine_.flash->busy() && Processor::is_in_flash(system_control_.vector_table())) {
       stand_until(when, never);
       continue;
     }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
     exception_may_be_due_ |= processor_.take_masks_opened();
-    // Interrupts wait until a debugger's step is over.
+    // During a debugger step interrupts are held off.
     if (!machine_.debugging.steps) {
       exception_may_be_due_ |= machine_.nvic.take_changed();
       if (std::exchange(exception_may_be_due_, false)) take_exception();
@@ -149,7 +149,7 @@ void Execution::take_exception() {
   const Masks masks = processor_.masks();
   const unsigned exception = machine_.nvic.next(masks);
   if (exception != exception_none) enter(exception);
-  // Something pending that only PRIMASK, FAULTMASK or BASEPRI hold back: the processor must see them open.
+  // If only PRIMASK, FAULTMASK or BASEPRI block a pending exception, the processor must watch the masks.
   const unsigned next = machine_.nvic.most_urgent();
   processor_.watch_masks(next != exception_none &&
                          machine_.nvic.group_priority(next) < machine_.nvic.execution_priority({}));
@@ -157,13 +157,13 @@ void Execution::take_exception() {
 
 bool Execution::wakes() const {
   if (state_ == State::locked_up || state_ == State::exited) return false;
-  // PRIMASK does not keep an interrupt from waking (ARMv7-M, "Wait For Interrupt").
+  // PRIMASK does not prevent wake-up by an interrupt (ARMv7-M, "Wait For Interrupt").
   Masks masks = processor_.masks();
   masks.primask = false;
   return machine_.nvic.next(masks) != exception_none;
 }
 
-// Everything but the core goes on. Its own counter of cycles too, as long as it has a clock and no probe halts it.
+// Only the core stops. The cycle counter continues while it has a clock and no probe halts the core.
 void Execution::stand_until(Ticks when, Ticks goes_on_at) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
@@ -194,7 +194,7 @@ void Execution::sleep_until(Ticks when) {
   }
 }
 
-/// If not, HardFault has been entered, or the processor has locked up.
+/// Returns true if the exception has a handler. Otherwise the function enters HardFault or locks up the processor.
 bool Execution::has_handler(unsigned exception) {
   const std::uint32_t place = system_control_.vector_table() + 4 * exception;
   const std::uint32_t vector = machine_.memory.word(place);
@@ -216,8 +216,8 @@ void Execution::enter(unsigned exception, bool stacks) {
   if (entry != Processor::Entry::started) enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
 }
 
-// What could not be stacked is lost; the fault of it starts on what the stack pointer has become (ARMv7-M, B1.5.9). An
-// exception that is less urgent waits behind it.
+// The context that could not be stacked is lost. The resulting fault starts at the moved stack pointer (ARMv7-M,
+// B1.5.9). A less urgent exception waits for the end of the fault.
 void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   const std::string what =
       std::string(is_protected ? "the memory protection unit refuses the stack" : "the stack is not in RAM") +
@@ -236,12 +236,12 @@ void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   enter(exception_hard_fault, false);
 }
 
-// A fault inside the handler of another one only hides what went wrong.
+// A fault inside the handler of another fault would hide the original cause.
 void Execution::note_fault(const std::string& what) {
   for (const unsigned handler :
        {exception_hard_fault, exception_memory_fault, exception_bus_fault, exception_usage_fault})
     if (machine_.nvic.active(handler) && first_fault_) return;
-  if (first_fault_ && first_fault_->when == processor_.now()) return;  // its escalation
+  if (first_fault_ && first_fault_->when == processor_.now()) return;  // escalation of the same fault
   first_fault_ = Fault{what, processor_.now(), processor_.core_registers()};
 }
 
@@ -304,7 +304,7 @@ void Execution::order_boot_loader() {
   processor_.write(UC_ARM_REG_R3, bytes / 4);
 }
 
-// A frame that can not be read back stays where it is, and the fault of it starts on it (ARMv7-M, B1.5.8 and B1.5.9).
+// The unreadable frame stays on the stack, and the resulting fault reuses it (ARMv7-M, B1.5.8 and B1.5.9).
 void Execution::handle_lost_frame(bool is_protected) {
   const std::string what = is_protected ? "the memory protection unit refuses the stack at the end of an exception"
                                         : "the stack is not in RAM at the end of an exception";
@@ -322,8 +322,8 @@ void Execution::handle_lost_frame(bool is_protected) {
   if (has_handler(fault)) processor_.chain_exception(fault, system_control_.vector_table());
 }
 
-// Lazy stacking fails in the handler that asks for it. A fault that may not interrupt that handler waits behind it, and
-// what was to be stacked is lost then (ARMv7-M, B1.5.7).
+// Handles failed lazy stacking in the handler that needs it. If the fault may not preempt this handler, the fault stays
+// pending and the float context is lost (ARMv7-M, B1.5.7).
 void Execution::handle_lost_float_context(bool is_protected) {
   const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
   const std::uint32_t bits = is_protected ? scb.cfsr.mlsperr.mask() : scb.cfsr.lsperr.mask();
@@ -408,7 +408,7 @@ void Execution::handle(Outcome outcome) {
                   at("no instructions may be at", address, program_counter));
       break;
   }
-  // Entry, return and sleep change what may run next.
+  // Exception entry, return and sleep change which exception may run next.
   if (outcome == Outcome::slice_over || state_ != State::runs) return;
   if (machine_.debugging.steps || stopped_by_debugger_)
     exception_may_be_due_ = true;

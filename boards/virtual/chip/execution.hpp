@@ -1,4 +1,4 @@
-// The chip at work: slices of the processor, exceptions, faults, sleep, resets.
+// Execution of the chip: processor slices, exceptions, faults, sleep, resets.
 #pragma once
 
 #include <chip/chip.hpp>
@@ -55,7 +55,7 @@ class Execution {
     return machine_.thread_stalls_until > machine_.timeline.now() && processor_.is_in_thread() &&
            processor_.masks().are_open();
   }
-  /// The core does nothing until `goes_on_at`, or for a while if that is `never`.
+  /// Stops the core until `goes_on_at`, or for a limited time if `goes_on_at` is `never`.
   void stand_until(Ticks when, Ticks goes_on_at);
   bool wakes() const;
   void handle(Outcome outcome);
@@ -78,7 +78,7 @@ class Execution {
   Rcc& rcc_;
   State state_ = State::runs;
   bool running_ = false, stop_requested_ = false, stopped_by_debugger_ = false;
-  bool exception_may_be_due_ = false;  ///< what runs has changed since exceptions were looked at
+  bool exception_may_be_due_ = false;  ///< the execution state has changed since the last check for exceptions
   int exit_code_ = 0;
   std::string lockup_reason_;
   std::optional<Fault> first_fault_;

@@ -7,7 +7,7 @@ namespace inkwell::virtual_board {
 namespace {
 constexpr unsigned lines = exti_map.imr.mr.count;
 
-/// Position in the vector table of each line (RM0090, table "Vector table").
+/// Vector table position of each line (RM0090, table "Vector table").
 constexpr unsigned position_of(unsigned line) {
   constexpr unsigned positions[lines] = {6,  7,  8,  9,  10, 23, 23, 23, 23, 23, 40, 40,
                                          40, 40, 40, 40, 1,  41, 42, 62, 76, 2,  3};
@@ -54,7 +54,7 @@ std::uint32_t Exti::stored(std::uint32_t offset) const {
     case exti_map.rtsr: return rising_;
     case exti_map.ftsr: return falling_;
     case exti_map.swier: return software_;
-    default: return 0;  // PR: ones clear
+    default: return 0;  // PR: writing 1 clears a bit
   }
 }
 

@@ -1,4 +1,4 @@
-// External interrupts and the choice of their ports in SYSCFG (RM0090, "External interrupt/event controller").
+// External interrupts and the selection of their ports in SYSCFG (RM0090, "External interrupt/event controller").
 #pragma once
 
 #include <array>
@@ -50,10 +50,10 @@ class Exti final : public RegisterBlock {
   explicit Exti(Machine& machine) : machine_(machine), syscfg_(*this) { machine.exti = this; }
   void reset() override;
   void pin_changed(unsigned port, unsigned pin, bool high);
-  /// A line that comes from inside of the chip, 16 to 22.
+  /// Sets the level of an internal line, 16 to 22.
   void internal_line(unsigned line, bool high);
   Peripheral& syscfg() { return syscfg_; }
-  /// What the boot pins have chosen, since the last reset (RM0090, SYSCFG_MEMRMP).
+  /// Makes SYSCFG_MEMRMP report that the boot pins selected the boot loader, until the next reset (RM0090).
   void show_boot_loader_chosen() { syscfg_.show_boot_loader_chosen(); }
 
  protected:

@@ -14,8 +14,8 @@ constexpr std::uint32_t errors =
 constexpr unsigned position = 4;
 constexpr Ticks millisecond = ticks_per_s / 1000, microsecond = ticks_per_s / 1'000'000;
 
-/// By the parallelism x8, x16, x32, x64 (data sheet, table "Flash memory programming"): typical ones, the slowest take
-/// twice as long, but for a word.
+/// Typical times for the parallelism x8, x16, x32, x64 (data sheet, table "Flash memory programming"). The maximum
+/// times are twice as long, except for programming a word.
 using Times = std::array<Ticks, 4>;
 constexpr Times small_sector_ms{400, 300, 250, 250}, middle_sector_ms{1200, 700, 550, 550},
     large_sector_ms{2000, 1300, 1000, 1000}, mass_ms{16'000, 11'000, 8000, 8000};
@@ -54,7 +54,7 @@ void FlashController::reset() {
 }
 
 void FlashController::check_wait_states() {
-  // RM0090, table "Number of wait states": so much for each of them, by the supply.
+  // Frequency per wait state, depending on the supply (RM0090, table "Number of wait states").
   const double supply_V = machine_.supply_V;
   const std::uint32_t step_Hz = supply_V >= 2.7   ? 30'000'000
                                 : supply_V >= 2.4 ? 24'000'000
@@ -72,7 +72,7 @@ void FlashController::check_wait_states() {
 
 void FlashController::set_accelerator(std::uint32_t access) {
   auto& accelerator = machine_.processor->flash();
-  // The caches are emptied only while they are off (RM0090, "FLASH_ACR").
+  // A cache can be cleared only while it is off (RM0090, "FLASH_ACR").
   const bool instruction_cache = flash_map.acr.icen.in(access), data_cache = flash_map.acr.dcen.in(access);
   if (flash_map.acr.icrst.in(access) && !instruction_cache) accelerator.forget_instructions();
   if (flash_map.acr.dcrst.in(access) && !data_cache) accelerator.forget_data();
@@ -109,7 +109,7 @@ void FlashController::step(Ticks) {
   machine_.timeline.set(slot_, never, never);
   if (operations_ == cut_at_) {
     cut_at_ = 0;
-    return machine_.request_reset(ResetCause::power_on);  // which finds the operation not ended
+    return machine_.request_reset(ResetCause::power_on);  // the reset finds the operation incomplete
   }
   operation_.reset();
   if (flash_map.cr.eopie.in(control_)) status_ |= flash_map.sr.eop.mask();
@@ -126,7 +126,8 @@ void FlashController::hold_up() {
   }
 }
 
-// Of a word any of the bits that were to be cleared are; of a sector each word may be as it was, erased, or anything.
+// In an interrupted word, each bit to be cleared may be 0 or 1. In an interrupted sector, each word may be unchanged,
+// erased, or random.
 void FlashController::tear() {
   const auto& before = operation_->before;
   std::uint8_t* place = machine_.memory.flash() + operation_->offset;
@@ -188,7 +189,7 @@ std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std
   else if (parallelism != size && !(parallelism == 8 && size == 4))
     status_ |= flash_map.sr.pgperr.mask();
   else if (!machine_.reset_requested) {
-    content &= value;  // programming only clears bits
+    content &= value;  // programming can only clear bits
     begin(word_time, false, offset, size);
   }
   update_interrupt();
@@ -243,7 +244,7 @@ void FlashController::write_word(std::uint32_t offset, std::uint32_t value) {
       return;
     case flash_map.keyr: {
       constexpr std::uint32_t keys[] = {0x4567'0123, 0xCDEF'89AB};
-      // A wrong key locks until the next reset.
+      // A wrong key locks the flash until the next reset.
       if (unlock_failed_ || !flash_map.cr.lock.in(control_)) return;
       if (value != keys[unlock_step_])
         unlock_failed_ = true;

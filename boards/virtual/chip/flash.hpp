@@ -1,7 +1,7 @@
 // Flash interface: wait states, lock, sector erase and programming (RM0090, "Embedded Flash memory interface").
 //
-// While it erases or programs, whoever fetches or reads from the flash waits (RM0090, "Read-while-write"); code in RAM
-// goes on. A reset in the middle leaves torn contents.
+// During an erase or program operation all fetches and reads from the flash wait (RM0090, "Read-while-write"). Code in
+// RAM continues. A reset during the operation leaves partially changed contents.
 #pragma once
 
 #include <cstdint>
@@ -48,22 +48,23 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void step(Ticks now) override;
   void before_clock_change() override {}
   void after_clock_change() override { check_wait_states(); }
-  /// A store of the processor into the flash: what is there afterwards. Nothing: not the flash, a bus fault.
+  /// Handles a processor store to the flash. Returns the resulting contents, or nothing for addresses outside of the
+  /// flash (bus fault).
   std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size);
-  /// Falling and rising thresholds of the brown-out reset (data sheet, typical).
+  /// Typical falling and rising thresholds of the brown-out reset (data sheet).
   struct Threshold {
     double falling_V, rising_V;
   };
   Threshold brown_out() const;
-  /// It erases or programs.
   bool busy() const { return flash_map.sr.bsy.in(status_); }
-  /// The core waits until that is over.
+  /// Makes the core wait for the end of the operation.
   void hold_up();
-  /// Erases and programmed words since the chip was made.
+  /// Number of erases and programmed words since construction.
   std::uint64_t operations() const { return operations_; }
-  /// The power fails and comes back in the middle of this operation, the first is 1; 0 is none.
+  /// Interrupts the power during the operation with this number; the first is 1, and 0 disables it. Power returns
+  /// immediately.
   void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
-  /// What the supply allows has changed.
+  /// Call this when the supply voltage or the clock has changed.
   void check_wait_states();
 
  protected:
@@ -77,14 +78,14 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void write_option_key(std::uint32_t key);
   void write_options(std::uint32_t value);
   void set_accelerator(std::uint32_t access);
-  /// What the flash does to `bytes` at `offset`, and for how long.
+  /// Operation in progress, with the previous contents.
   struct Operation {
     bool erases;
     std::uint32_t offset;
     std::vector<std::uint8_t> before;
   };
   void begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes);
-  /// Of the operation that a reset has come into.
+  /// Leaves partial results of the operation that a reset interrupted.
   void tear();
   void set_busy(bool busy);
   void update_interrupt();
@@ -94,8 +95,8 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   std::uint32_t access_ = 0, status_ = 0, control_ = 0;
   unsigned unlock_step_ = 0;
   bool unlock_failed_ = false;
-  std::uint32_t option_bytes_;  ///< as programmed: they outlive every reset
-  std::uint32_t options_ = 0;   ///< OPTCR without its lock and its start
+  std::uint32_t option_bytes_;  ///< programmed values, which persist across resets
+  std::uint32_t options_ = 0;   ///< OPTCR without OPTLOCK and OPTSTRT
   bool options_locked_ = true, options_start_ = false, options_unlock_failed_ = false;
   unsigned options_unlock_step_ = 0;
   std::optional<Operation> operation_;

@@ -1,5 +1,5 @@
-// I2C1 to I2C3 on a bus with its two resistors and nothing else (RM0090, "Inter-integrated circuit interface"): a start
-// comes about, an address is sent, nobody acknowledges it. A slave is never addressed.
+// I2C1 to I2C3 on a bus with two pull-up resistors and no other device (RM0090, "Inter-integrated circuit interface").
+// Start conditions work, and addresses are sent but not acknowledged. The chip is never addressed as a slave.
 #pragma once
 
 #include <utility>

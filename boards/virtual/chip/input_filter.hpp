@@ -1,6 +1,6 @@
-// The digital filter of a timer's input (RM0090, TIMx_CCMR1: ICxF).
+// Digital filter of a timer input (RM0090, TIMx_CCMR1: ICxF).
 //
-// Nothing is stepped: a level that holds passes at a sample that can be told in advance.
+// The filter computes the time at which a stable level passes, so it needs no steps.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace inkwell::virtual_board {
 
-/// So many equal samples in a row, one every `divider` cycles of the timer's clock.
+/// The filter requires `samples` equal samples in a row, one every `divider` cycles of the timer clock.
 struct InputFilterSetting {
   std::uint32_t divider = 1;
   std::uint32_t samples = 1;
   bool operator==(const InputFilterSetting&) const = default;
 
-  /// ICxF `code`, with CR1.CKD `clock_division`. Code 0 is no filter: each sample passes.
+  /// Setting for the ICxF code and CR1.CKD. With code 0 each sample passes.
   static constexpr InputFilterSetting of(unsigned code, unsigned clock_division) {
     constexpr InputFilterSetting by_code[] = {{1, 1}, {1, 2}, {1, 4},  {1, 8},  {2, 6},  {2, 8},  {4, 6},  {4, 8},
                                               {8, 6}, {8, 8}, {16, 5}, {16, 6}, {16, 8}, {32, 5}, {32, 6}, {32, 8}};
     InputFilterSetting setting = by_code[code & 15];
-    // Codes 1 to 3 count the timer's own clock, the others tDTS.
+    // Codes 1 to 3 use the clock of the timer, the others tDTS.
     if (code == 0 || code > 3) setting.divider <<= clock_division;
     return setting;
   }
@@ -28,17 +28,17 @@ struct InputFilterSetting {
 
 class InputFilter {
  public:
-  /// Level behind the filter.
+  /// Filtered level.
   bool output() const { return output_; }
-  /// When output() changes if the input stays as it is.
+  /// Time of the next change of output() if the input does not change.
   Ticks next_change() const { return passes_at_; }
-  /// That time has come.
+  /// Call this when board time reaches next_change().
   void pass() {
     output_ = input_;
     passes_at_ = never;
   }
 
-  /// The input has been so since `when`; what passes before then has passed.
+  /// Sets the input level from `when` on. pass() must have handled all earlier changes.
   void drive(bool high, Ticks when) {
     if (high == input_) return;
     input_ = high;
@@ -47,19 +47,19 @@ class InputFilter {
       passes_at_ = never;
       return;
     }
-    // If no sample saw that the level was gone, the row goes on.
+    // If no sample saw the opposite level, the sequence of samples continues.
     if (sample_at(when) != left_at_sample_) first_sample_ = sample_at(when);
     left_at_sample_ = never;
     passes_at_ = (first_sample_ + samples_ - 1) * period_;
   }
 
-  /// The level is there from the start, and no edge.
+  /// Sets the initial level without an edge.
   void connect(bool high) {
     input_ = output_ = high;
     passes_at_ = left_at_sample_ = never;
   }
 
-  /// Samples count anew from `now`.
+  /// Restarts the sequence of samples at `now`.
   void configure(const InputFilterSetting& setting, const Clock& clock, Ticks now) {
     const Ticks period = clock.runs() ? clock.duration(setting.divider) : 1;
     if (period == period_ && setting.samples == samples_) return;
@@ -72,7 +72,7 @@ class InputFilter {
   }
 
  private:
-  /// Number of the first sample that sees what is so since `when`.
+  /// Number of the first sample at or after `when`.
   std::uint64_t sample_at(Ticks when) const { return (when + period_ - 1) / period_; }
 
   Ticks period_ = 1;

@@ -1,4 +1,4 @@
-// What the parts of the chip know of each other.
+// Shared state of the parts of the chip.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class Processor;
 class Rcc;
 class Timers;
 
-/// Clocks as they run now (RM0090, figure "Clock tree").
+/// Current clocks (RM0090, figure "Clock tree").
 struct ClockTree {
   Clock hclk, pclk1, pclk2, timer1, timer2, usb, low_speed_internal;
   Clocks frequencies{};
@@ -38,19 +38,19 @@ struct ClockTree {
   }
 };
 
-/// Room that an exception has left for the FPU's registers, and what was interrupted.
+/// Space that an exception has reserved for the FPU registers, with the state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
-  int priority;  ///< of its execution
+  int priority;  ///< execution priority
   bool privileged, in_thread;
 };
 
-/// A part that counts cycles of a clock which firmware can change.
+/// A part that counts the cycles of a clock that firmware can change.
 class ClockUser {
  public:
   virtual ~ClockUser() = default;
-  virtual void before_clock_change() = 0;  ///< settle with the old clock up to now
-  virtual void after_clock_change() = 0;   ///< go on from now with the new one
+  virtual void before_clock_change() = 0;  ///< update up to now with the old clock
+  virtual void after_clock_change() = 0;   ///< continue from now with the new clock
 };
 
 struct Machine {
@@ -81,14 +81,14 @@ struct Machine {
   Timers* timers = nullptr;
 
   double supply_V = logic_supply_V, analog_supply_V = logic_supply_V;
-  bool supply_is_low = false;        ///< the brown-out reset holds the chip
+  bool supply_is_low = false;        ///< the brown-out reset is active
   bool flash_is_misread = false;     ///< too few wait states for HCLK
   bool traps_zero_division = false;  ///< CCR.DIV_0_TRP
-  bool clock_is_lost = false;        ///< the crystal that the core runs from has stopped, and nobody noticed
-  Ticks core_stalls_until = 0;       ///< the core makes nothing of its clock until then
-  Ticks thread_stalls_until = 0;     ///< nor of thread mode, unless exceptions are held back
-  bool sleep_counts_cycles = false;  ///< DBGMCU_CR.DBG_SLEEP keeps HCLK on in sleep
-  /// A reset that is due at the next chance, by cause.
+  bool clock_is_lost = false;        ///< the crystal that clocks the core has stopped without detection
+  Ticks core_stalls_until = 0;       ///< the core does nothing until this time
+  Ticks thread_stalls_until = 0;     ///< thread mode does nothing until this time, unless exceptions are masked
+  bool sleep_counts_cycles = false;  ///< DBGMCU_CR.DBG_SLEEP keeps HCLK running in sleep
+  /// Pending reset with its cause.
   bool reset_requested = false;
   ResetCause reset_cause = ResetCause::pin;
   void request_reset(ResetCause cause) {
@@ -97,9 +97,9 @@ struct Machine {
   }
 
   Ticks last_advance = 0;
-  /// The circuit's time must follow at least every 50 us.
+  /// Largest interval between two updates of the circuit.
   static constexpr Ticks advance_period = 50 * (ticks_per_s / 1'000'000);
-  /// What firmware reads of the circuit's digital signals is not older than this.
+  /// Maximum age of the digital signals that firmware reads.
   static constexpr Ticks input_age_limit = 5 * (ticks_per_s / 1'000'000);
   void advance_circuit(Ticks at_least) {
     const Ticks now = timeline.now();
@@ -107,11 +107,12 @@ struct Machine {
     last_advance = now;
     circuit.advance(now);
   }
-  /// Without interrupts, memory written by DMA may lag by this in fast mode; it saves stops of the processor.
+  /// Maximum delay of DMA writes to memory in fast mode without interrupts. This delay reduces the number of processor
+  /// stops.
   Ticks transfer_lag() const { return options.mode == Mode::exact ? 0 : 10 * (ticks_per_s / 1'000'000); }
 };
 
-/// Replaces the bytes of a register that an access of `size` bytes at `offset` touches.
+/// Replaces the bytes of a register that an access of `size` bytes at `offset` covers.
 constexpr std::uint32_t merge(std::uint32_t old, std::uint32_t value, std::uint32_t offset, unsigned size) {
   if (size == 4) return value;
   const unsigned shift = 8 * (offset & 3);

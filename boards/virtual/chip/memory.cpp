@@ -22,7 +22,7 @@ std::uint8_t* Memory::at(std::uint32_t address, std::uint32_t bytes) {
   if (address >= system_base) return within(system_base, system_);
   if (address >= ccm_base) return within(ccm_base, ccm_);
   if (address >= flash_base) return within(flash_base, flash_);
-  return within(0, flash_);  // BOOT0 low: the flash is also at 0
+  return within(0, flash_);  // BOOT0 low: the flash is also mapped at 0
 }
 
 std::uint8_t* Memory::ram_at(std::uint32_t address, std::uint32_t bytes) {

@@ -1,4 +1,4 @@
-// The memory protection unit (ARMv7-M, B3.5): eight regions, and who may do what in them.
+// The memory protection unit (ARMv7-M, B3.5): eight regions and their access rights.
 #pragma once
 
 #include <array>
@@ -28,13 +28,13 @@ struct MemoryProtectionRegisters {
   } rasr{{"MPU_RASR", 0x10}};
 };
 inline constexpr MemoryProtectionRegisters mpu;
-/// RBAR and RASR come three times more behind themselves, so that four regions are one block of stores.
+/// RBAR and RASR have three aliases, so that a block of stores can set four regions.
 inline constexpr std::uint32_t mpu_base = 0xE000'ED90, mpu_bytes = 0x2C;
 
 class MemoryProtection {
  public:
   void reset() { *this = {}; }
-  /// The register at this offset is RBAR or one of its aliases.
+  /// True if the register at this offset is RBAR or one of its aliases.
   static bool is_base(std::uint32_t offset) { return offset >= mpu.rbar && (offset - mpu.rbar) % 8 == 0; }
   std::uint32_t read(std::uint32_t offset) const {
     if (offset == mpu.typer) return mpu.typer.reset_value;
@@ -42,7 +42,7 @@ class MemoryProtection {
     if (offset == mpu.rnr) return region_;
     return is_base(offset) ? bases_[region_] | mpu.rbar.region.with(region_) : attributes_[region_];
   }
-  /// The value names a region that there is, if it names one.
+  /// False if the value selects a region that does not exist.
   static bool names_region(std::uint32_t offset, std::uint32_t value) {
     if (offset == mpu.rnr) return mpu.rnr.region.of(value) < regions;
     return !is_base(offset) || !mpu.rbar.valid.in(value) || mpu.rbar.region.of(value) < regions;
@@ -60,8 +60,8 @@ class MemoryProtection {
       attributes_[region_] = value & writable(mpu.rasr);
     }
   }
-  /// The manual says what each enabled region does: its base is a multiple of its size, it has 32 bytes or more, no
-  /// eighth is left out of fewer than 256, and neither AP nor TEX, C and B are reserved.
+  /// True if all enabled regions have defined behavior: base aligned to the size, at least 32 bytes, no subregion
+  /// disabled below 256 bytes. AP and TEX, C, B must not have reserved values.
   bool is_defined() const {
     for (unsigned i = 0; i < regions; ++i) {
       const std::uint32_t attributes = attributes_[i];
@@ -77,7 +77,7 @@ class MemoryProtection {
     }
     return true;
   }
-  /// Accesses are checked; `above_faults` is in HardFault or NMI, or with FAULTMASK set.
+  /// True if accesses are checked. `above_faults` means HardFault, NMI, or FAULTMASK set.
   bool is_on(bool above_faults) const {
     return mpu.ctrl.enable.in(control_) && (!above_faults || mpu.ctrl.hfnmiena.in(control_));
   }
@@ -85,8 +85,8 @@ class MemoryProtection {
     if (const auto* attributes = region_at(address)) return region_allows(*attributes, write, fetch, privileged);
     return privileged && mpu.ctrl.privdefena.in(control_);
   }
-  /// Whether a region makes Device or Strongly-ordered memory of the address, if one decides (PM0214, table "TEX, C, B,
-  /// and S encoding").
+  /// True if the deciding region makes the address Device or Strongly-ordered memory; nothing if no region decides
+  /// (PM0214, table "TEX, C, B, and S encoding").
   std::optional<bool> makes_device(std::uint32_t address) const {
     const auto* attributes = region_at(address);
     if (attributes == nullptr) return {};
@@ -94,7 +94,7 @@ class MemoryProtection {
     const bool cached = mpu.rasr.c.in(*attributes), buffered = mpu.rasr.b.in(*attributes);
     return !cached && (kind == 0 || (kind == 2 && !buffered));
   }
-  /// Some of a page of `bytes` may lie in a region of which another part does not.
+  /// True if a region boundary may lie inside the page.
   bool divides(std::uint32_t page, std::uint32_t bytes) const {
     for (unsigned i = 0; i < regions; ++i) {
       if (!mpu.rasr.enable.in(attributes_[i])) continue;
@@ -110,7 +110,7 @@ class MemoryProtection {
   static constexpr unsigned regions = 8, subregions = 8, reserved_rights = 4;
   static constexpr std::uint64_t smallest = 32, smallest_with_subregions = 256;
   std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
-  /// Attributes of the region that decides: of those that cover the address the one of the highest number.
+  /// Attributes of the covering region with the highest number, which has priority.
   const std::uint32_t* region_at(std::uint32_t address) const {
     for (unsigned i = regions; i-- > 0;)
       if (covers(i, address)) return &attributes_[i];

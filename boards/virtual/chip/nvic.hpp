@@ -1,4 +1,4 @@
-// Exceptions of the processor: what is enabled, pending and active, at which priority (ARMv7-M, B1.5 and B3.4).
+// Exceptions of the processor: enabled, pending and active states, and priorities (ARMv7-M, B1.5 and B3.4).
 #pragma once
 
 #include <array>
@@ -11,10 +11,9 @@
 
 namespace inkwell::virtual_board {
 
-/// Execution priority: lower is more urgent; thread mode has `lowest`.
+/// Execution priority. Lower values are more urgent; thread mode has the lowest priority.
 inline constexpr int priority_lowest = 256;
 
-/// Mask registers, which live in the processor.
 struct Masks {
   bool primask = false, faultmask = false;
   std::uint32_t basepri = 0;
@@ -28,22 +27,22 @@ class Nvic final : public InterruptController {
 
   void reset();
 
-  /// Lines are shared by several peripherals or flags; `source` (0..31) tells them apart.
+  /// Sets one source of an interrupt line. Several peripherals or flags share a line; `source` (0..31) identifies one
+  /// of them.
   void set_source(unsigned position, unsigned source, bool asserted);
   void set_level(unsigned position, bool asserted) override { set_source(position, outside_source, asserted); }
 
-  /// The line behind NMI.
   void set_non_maskable(bool asserted) {
     non_maskable_ = asserted;
     if (asserted) pend(exception_nmi);
   }
-  /// An interrupt that never reaches the core, or does again.
+  /// Suppresses an interrupt: it no longer reaches the core, until `lost` is false.
   void lose(unsigned exception, bool lost) {
     assign(lost_, exception, lost);
     changed_ = true;
   }
 
-  /// Each time it becomes pending, an exception is held back and `on_held` called, until it is let go.
+  /// Delays an exception: each time it becomes pending, `on_held` is called, and the exception waits for let_go().
   void hold_back(unsigned exception, bool late) { assign(late_, exception, late); }
   void let_go(unsigned exception) {
     assign(held_, exception, false);
@@ -51,7 +50,7 @@ class Nvic final : public InterruptController {
   }
   std::function<void(unsigned exception)> on_held;
 
-  std::uint32_t read(std::uint32_t offset) const;  ///< offset from its first register, ISER0
+  std::uint32_t read(std::uint32_t offset) const;  ///< offset from ISER0
   void write(std::uint32_t offset, std::uint32_t value, unsigned size);
 
   void pend(unsigned exception);
@@ -77,22 +76,22 @@ class Nvic final : public InterruptController {
   }
   unsigned priority_group() const { return group_; }
 
-  /// Group priority of an exception; -1 is HardFault, -2 NMI.
+  /// Group priority of an exception; -1 for HardFault, -2 for NMI.
   int group_priority(unsigned exception) const;
-  /// Priority of what runs now, raised by the masks.
+  /// Priority of the current execution, including the masks.
   int execution_priority(const Masks& masks) const;
-  /// The exception to enter now, or exception_none.
+  /// Exception to enter now, or exception_none.
   unsigned next(const Masks& masks) const;
-  /// Most urgent of what is pending and enabled, whatever runs; exception_none if nothing is.
+  /// Most urgent pending and enabled exception regardless of the current execution, or exception_none.
   unsigned most_urgent() const;
-  /// Entry makes a pending exception active. A line that stays asserted pends again after the return.
+  /// Makes a pending exception active. A line that stays asserted becomes pending again after the return.
   void enter(unsigned exception);
   void leave(unsigned exception);
 
-  /// Since the last call, something became pending, or priorities or enables changed.
+  /// True if a pending state, a priority or an enable bit has changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
   bool changed() const { return changed_; }
-  /// An exception went from not pending to pending (for SEVONPEND).
+  /// True if an exception became pending since the last call (for SEVONPEND).
   bool take_newly_pending() { return std::exchange(newly_pending_, false); }
 
  private:
@@ -105,7 +104,7 @@ class Nvic final : public InterruptController {
   std::uint32_t word_of(const Bits& bits, unsigned index) const;
 
   Bits pending_{}, active_{}, enabled_{};
-  Bits lost_{}, late_{};  ///< not by a reset
+  Bits lost_{}, late_{};  ///< not cleared by a reset
   Bits held_{};
   bool non_maskable_ = false;
   std::array<std::uint8_t, exception_numbers> priority_{};

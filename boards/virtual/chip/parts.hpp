@@ -1,4 +1,3 @@
-// The chip as a parts list.
 #pragma once
 
 // To add a peripheral:
@@ -32,7 +31,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Register and bit of RCC that switch a peripheral's clock on.
+/// Register and bit of RCC that enable the clock of a peripheral.
 struct ClockGate {
   std::uint32_t enable_register, mask;
 };
@@ -66,9 +65,9 @@ struct ChipParts : ChipState {
 
  private:
   void put(std::uint32_t base, const std::string& name, Peripheral& peripheral);
-  /// As long as its clock is off, the peripheral does not answer; the reset bit at the same place resets it.
+  /// Without its clock the peripheral does not respond. A reset bit at the same position resets the peripheral.
   void put(std::uint32_t base, const std::string& name, Peripheral& peripheral, ClockGate clock);
-  /// A peripheral that no other part knows of.
+  /// Creates a peripheral to which no other part refers.
   template <class Part, class... Arguments>
   Part& make(Arguments&&... arguments) {
     auto part = std::make_unique<Part>(std::forward<Arguments>(arguments)...);

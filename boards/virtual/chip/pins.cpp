@@ -28,7 +28,7 @@ std::uint32_t GpioPort::stored(std::uint32_t offset) const {
     case gpio.odr: return odr_;
     case gpio.afrl: return afr_[0];
     case gpio.afrh: return afr_[1];
-    default: return 0;  // BSRR: what is not written changes nothing
+    default: return 0;  // BSRR: bits that are not written have no effect
   }
 }
 
@@ -59,8 +59,8 @@ void GpioPort::write_output(std::uint32_t value) {
 }
 
 void GpioPort::write_lock(std::uint32_t value) {
-  if (gpio.lckr.lckk.in(lckr_)) return;  // until the next reset
-  // Sequence: key with pins, pins without key, key with pins (RM0090, GPIOx_LCKR); then a read.
+  if (gpio.lckr.lckk.in(lckr_)) return;  // locked until the next reset
+  // Lock sequence: key with pins, pins without key, key with pins, then a read (RM0090, GPIOx_LCKR).
   const bool key = gpio.lckr.lckk.in(value);
   const bool expected = lock_step_ == 1 ? !key : key;
   if (lock_step_ > 0 && (value & gpio.lckr.lck.masks()) != (lckr_ & gpio.lckr.lck.masks()))
@@ -135,7 +135,7 @@ PinLevel Pins::output_of(unsigned port, unsigned pin) const {
   return level == PinLevel::high && pins.open_drain(pin) ? PinLevel::floating : level;
 }
 
-// What a pin is that the chip does not drive.
+// Level of a pin that the chip does not drive.
 PinLevel Pins::outside(unsigned port, unsigned pin) const {
   const State& s = states_[port * 16 + pin];
   PinLevel level = s.driven;

@@ -1,4 +1,4 @@
-// GPIO A to I: registers, and what a pin's level is made of (RM0090, "General-purpose I/Os").
+// GPIO A to I: registers and pin levels (RM0090, "General-purpose I/Os").
 #pragma once
 
 #include <array>
@@ -57,15 +57,15 @@ class Pins final : public InputPins {
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
   void hold(char port, unsigned pin, PinLevel level) override;
-  /// What comes in from outside is the opposite of what the circuit drives, or no longer.
+  /// Inverts the level from the circuit while `inverted` is true.
   void invert(unsigned port, unsigned pin, bool inverted);
-  /// What a meter would show at the pin.
+  /// Level at the pin as a meter shows it.
   PinLevel level(unsigned port, unsigned pin) const;
   PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
-  /// Called at each change of a pin's level; none by default.
+  /// Called at each level change of a pin; empty by default.
   std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
-  /// A timer's output changes. Called in the order of time, hundreds of thousands of times a second.
+  /// Sets a timer output. Called in order of time, several hundred thousand times per second.
   void timer_output(unsigned timer, unsigned line, PinLevel level) {
     auto& output = outputs_[timer * timer_lines + line];
     if (output.level == level) return;
@@ -73,9 +73,9 @@ class Pins final : public InputPins {
     for (unsigned i = 0; i < output.count; ++i) update(output.pins[i] >> 4, output.pins[i] & 15);
   }
 
-  /// After mode or alternate function of pins changed.
+  /// Call this after a change of mode or alternate function.
   void reconnect(unsigned port, std::uint32_t pins);
-  /// Finds the level of a pin anew and tells who wants to know.
+  /// Updates the level of a pin and notifies its users.
   void update(unsigned port, unsigned pin, Ticks since = just_now);
 
  private:
@@ -86,9 +86,9 @@ class Pins final : public InputPins {
   };
   struct State {
     PinLevel driven = PinLevel::floating;  ///< by the circuit
-    PinLevel held = PinLevel::floating;    ///< by what it touches, stronger than the chip's output
-    PinLevel output = PinLevel::floating;  ///< by the chip, as the circuit was told
-    PinLevel level = PinLevel::floating;   ///< as on_level was told
+    PinLevel held = PinLevel::floating;    ///< by hold(), stronger than the chip's output
+    PinLevel output = PinLevel::floating;  ///< by the chip, last reported to the circuit
+    PinLevel level = PinLevel::floating;   ///< last reported to on_level
     bool input = false;
     bool inverted = false;
     std::uint8_t routes = 0;

@@ -1,4 +1,4 @@
-// Stores to RAM at the speed of loads.
+// Fast stores to RAM.
 #pragma once
 
 #include <bitset>
@@ -9,12 +9,12 @@
 
 namespace inkwell::virtual_board {
 
-/// Unicorn 2.0.1 takes every store to RAM for one that might overwrite instructions, and looks for translated
-/// code to forget, which costs tens of times what a load costs. Only pages that instructions ran from need
-/// that: of all others the engine is told, when it takes a page into its address cache, that stores are plain.
+/// Unicorn 2.0.1 treats every store to RAM as a possible change of instructions and searches for translated code. This
+/// makes stores tens of times slower than loads. Only pages with executed instructions need the search. This class
+/// therefore marks all other pages in the address cache of the engine as plain.
 class PlainStores {
  public:
-  /// Instructions are about to run from here: stores to these pages may overwrite them from now on.
+  /// Marks pages from which instructions will run, so that stores to them are checked.
   void code_runs_at(std::uint32_t address, std::uint32_t bytes, EngineCalls& engine) {
     const std::uint32_t end = address + bytes;
     for (std::uint32_t page = address - address % page_bytes; page < end; page += page_bytes) {
@@ -24,15 +24,15 @@ class PlainStores {
       for (std::uint32_t part = 0; part < page_bytes; part += smallest_page_bytes) engine.forget_page(page + part);
     }
   }
-  /// Whether the page of `address` is RAM that no instructions ran from.
+  /// True if the page of `address` is RAM without executed instructions.
   bool plain(std::uint32_t address) const {
-    if (address - ccm_base < ccm_bytes) return true;  // not on the instruction bus
+    if (address - ccm_base < ccm_bytes) return true;  // CCM is not on the instruction bus
     const std::uint32_t offset = address - sram_base;
     return offset < sram_bytes && !holds_code_[offset / page_bytes];
   }
 
  private:
-  /// The engine's pages for ARM have 1 or 4 kB.
+  /// Page sizes of the engine for ARM are 1 or 4 kB.
   static constexpr std::uint32_t smallest_page_bytes = 1024, page_bytes = 4096;
   std::bitset<sram_bytes / page_bytes> holds_code_;
 };

@@ -22,7 +22,7 @@ uc_err add_hook(uc_engine* engine, int type, Function* function, void* self) {
   return uc_hook_add(engine, &hook, type, reinterpret_cast<void*>(function), self, 1, 0);
 }
 
-// Numbers with which Unicorn's interrupt hook is called for M-profile processors.
+// Interrupt numbers of Unicorn's interrupt hook for M-profile processors.
 enum : std::uint32_t {
   undefined = 1,
   software_interrupt = 2,
@@ -43,7 +43,7 @@ Processor::Processor(Machine& machine, Bus& bus)
       register_bus_(timing_.costs()) {
   machine.clock_users.push_back(this);
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
-  // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.
+  // UC_MODE_MCLASS would select another CPU model; this model alone selects the M-profile.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
   map_memories(bus);
   check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
@@ -62,7 +62,8 @@ void Processor::map_memories(Bus& bus) {
   const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
     check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
   };
-  // Unicorn searches its regions in the order of mapping, at each access that is no plain load: the busiest first.
+  // Except for plain loads, Unicorn searches its regions in mapping order at each access. The most used are mapped
+  // first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
   map(ccm_base, ccm_bytes, UC_PROT_ALL, memory.ccm());
   for (const auto& window : Bus::windows)
@@ -73,7 +74,8 @@ void Processor::map_memories(Bus& bus) {
   map_holes();
 }
 
-// What the engine has nothing for, it refuses before anyone is asked, and by then has lost which instruction it was.
+// The engine itself refuses accesses to unmapped addresses without a report of the instruction. Therefore all gaps are
+// mapped, so that refuses() is called.
 void Processor::map_holes() {
   uc_mem_region* regions = nullptr;
   std::uint32_t count = 0;
@@ -131,7 +133,7 @@ void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
   if (address < flash_base || address >= flash_base + flash_bytes) return;
   const std::uint64_t alias = address - flash_base;
   uc_ctl_remove_cache(engine_, alias, alias + bytes);
-  // A block that reaches into the changed range may start before it.
+  // A block that overlaps the changed range may start before this range.
   timing_.forget();
 }
 
@@ -158,14 +160,14 @@ Outcome Processor::run(std::uint64_t cycles) {
   instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
-  // Silicon may go on for a while; it is not to be relied on.
+  // With too few wait states real hardware may continue for a while, but not reliably.
   if (machine_.flash_is_misread && program_counter_ - flash_base < flash_bytes) return Outcome::undefined_instruction;
   uc_err error;
   {
     const Use use(*this);
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
-  // Unicorn 2.0.1 leaves its program counter behind when it stops before a block, once it has hooks of instructions.
+  // With instruction hooks, Unicorn 2.0.1 does not update its program counter when it stops before a block.
   program_counter_ = stopped_before_.value_or(read(UC_ARM_REG_PC) & ~1u);
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
@@ -251,7 +253,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   self.cycles_ = cycles;
 }
 
-// Most blocks are, and the code hook, which costs more than the instructions themselves, then has little to ask.
+// Most blocks are plain, so the expensive code hook has little to check.
 bool Processor::is_plain(const BlockPrice& block) const {
   const bool asks_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
   return !asks_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
@@ -273,7 +275,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   if (!self.block_is_plain_) self.wait_in_block(at, starts[half_word]);
 }
 
-// Exact mode: whether nothing stops before the instruction, be it time, an interrupt, a debugger or a division by zero.
+// Exact mode: false if time, an interrupt, a debugger or a division by zero stops before the instruction.
 [[gnu::noinline]] bool Processor::may_run(std::uint32_t address) {
   const bool due = cycles_ >= stop_cycle_ || (watch_masks_ && masks_open());
   if (due && !in_if_then_block(address)) {
@@ -290,7 +292,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   return true;
 }
 
-// Exact mode: what the instruction, which begins so many cycles after its block, waits for flash and operands.
+// Exact mode: adds the time for which the instruction waits for flash and operands. The instruction starts
+// `after_cycles` after its block.
 [[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
   const auto& requests = block_->requests;
   const auto& divides = block_->divides;
@@ -304,7 +307,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
 }
 
 bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {
-  // IT (ARMv7-M, A7.7.38): the lowest bit that is set in the mask ends the block.
+  // IT (ARMv7-M, A7.7.38): the lowest set bit of the mask ends the block.
   const std::uint16_t instruction = machine_.memory.half_word(if_then);
   const unsigned mask = instruction & 0xFu;
   if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= if_then) return false;
@@ -340,8 +343,8 @@ void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* po
 
 bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  // WFE and YIELD come here too, with the program counter behind them; an undefined instruction comes with it
-  // at the instruction, which then begins the last block or is the last instruction.
+  // WFE and YIELD also arrive here, with the program counter after the instruction. An undefined instruction arrives
+  // with the program counter at the instruction, which starts the last block or is the last instruction.
   const std::uint32_t after = self.read(UC_ARM_REG_PC) & ~1u;
   constexpr std::uint16_t yield = 0xBF10, wait_for_event = 0xBF20;
   constexpr std::uint16_t wide_hint = 0xF3AF, wide_yield = 0x8001, wide_wait_for_event = 0x8002;
@@ -363,7 +366,7 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   return false;
 }
 
-// The flash takes writes while it is being programmed (RM0090, "Flash programming").
+// Handles a store to the flash, which programs it (RM0090, "Flash programming").
 bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);

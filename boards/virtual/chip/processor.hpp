@@ -1,4 +1,5 @@
-// Cortex-M4F: instructions by Unicorn, exception entry and return by us (ARMv7-M Architecture Reference Manual, B1.5).
+// Cortex-M4F: instructions by Unicorn, exception entry and return by this class (ARMv7-M Architecture Reference
+// Manual, B1.5).
 #pragma once
 
 #include <unicorn/unicorn.h>
@@ -23,7 +24,7 @@ namespace inkwell::virtual_board {
 class Bus;
 class SystemControl;
 
-/// Why the processor stopped executing.
+/// Reason why the processor stopped.
 enum class Outcome : std::uint8_t {
   slice_over,
   wait_for_interrupt,
@@ -35,14 +36,14 @@ enum class Outcome : std::uint8_t {
   invalid_state,  ///< a branch out of Thumb state
   no_coprocessor,
   division_by_zero,
-  data_fault,               ///< nothing answers at fault_address()
-  misaligned,               ///< fault_address() is not aligned as the instruction needs it
-  protected_data,           ///< the memory protection unit does not allow the access to fault_address()
-  instruction_fault,        ///< nothing to execute at fault_address()
-  debugger,                 ///< a breakpoint, a watch point, the end of a step
-  execute_never,            ///< fault_address() is in a region without instructions
-  float_context_lost,       ///< an instruction of the FPU asks for lazy stacking, and the stack is not in RAM
-  float_context_protected,  ///< likewise, and the memory protection unit refuses it
+  data_fault,               ///< no device at fault_address()
+  misaligned,               ///< fault_address() does not have the alignment that the instruction needs
+  protected_data,           ///< the memory protection unit refuses the access to fault_address()
+  instruction_fault,        ///< no code at fault_address()
+  debugger,                 ///< a breakpoint, a watch point or the end of a step
+  execute_never,            ///< fault_address() is in a region where execution is not allowed
+  float_context_lost,       ///< lazy stacking failed at an FPU instruction because the stack is not in RAM
+  float_context_protected,  ///< lazy stacking failed because the memory protection unit refused it
 };
 
 class Processor final : public ClockUser, private EngineCalls {
@@ -52,76 +53,76 @@ class Processor final : public ClockUser, private EngineCalls {
   Processor(const Processor&) = delete;
   Processor& operator=(const Processor&) = delete;
 
-  /// Reset: stack pointer and program counter from the vector table at `vector_table`.
+  /// Loads stack pointer and program counter from the vector table.
   void reset(std::uint32_t vector_table);
-  /// Executes for about `cycles` (fast mode: up to the end of a basic block) or until something happens.
+  /// Runs for about `cycles` (fast mode: up to the end of a basic block) or until an event stops it.
   Outcome run(std::uint64_t cycles);
-  /// The current slice ends before the next instruction (fast mode: block).
+  /// Ends the current slice before the next instruction (fast mode: block).
   void end_slice() { stop_cycle_ = 0; }
-  /// While something more urgent is pending, ends the slice as soon as the masks let it through.
+  /// While a more urgent exception is pending, ends the slice as soon as the masks allow the exception.
   void watch_masks(bool watch) { watch_masks_ = watch; }
-  /// The masks that were watched have let something through since the last call.
+  /// True if the watched masks have allowed an exception since the last call.
   bool take_masks_opened() { return std::exchange(masks_opened_, false); }
-  /// CPACR lets firmware use the FPU. While it does not, each of the FPU's instructions is stopped at.
+  /// Sets whether CPACR enables the FPU. While the FPU is off, FPU instructions stop the processor.
   void set_float_unit(bool on) {
     float_unit_on_ = on;
     refuses_float_ = !float_unit_on_ || unstacked_float_;
   }
-  /// CCM has its clock (RCC_AHB1ENR.CCMDATARAMEN). It takes effect from the next slice on, which begins at once.
+  /// Sets the clock of CCM (RCC_AHB1ENR.CCMDATARAMEN). The change ends the slice and takes effect in the next one.
   void set_core_coupled_memory(bool on) {
     core_coupled_on_ = on;
     rights_changed();
   }
-  /// CCR.UNALIGN_TRP; as above.
+  /// Sets CCR.UNALIGN_TRP. Takes effect in the next slice.
   void trap_misaligned(bool on) {
     traps_misaligned_ = on;
     end_slice();
   }
-  /// The memory protection unit was set anew; as above.
+  /// Call this when the memory protection unit has changed. Takes effect in the next slice.
   void rights_changed() {
     rights_changed_ = true;
     end_slice();
   }
-  /// The flash erases or programs, or is done; what wants it meanwhile waits. Reads are asked about as above.
+  /// Sets whether the flash is erasing or programming. Accesses to a busy flash wait.
   void set_flash_busy(bool busy) {
     flash_is_busy_ = busy;
     rights_changed();
   }
-  /// The next instruction is one that the flash has no time for.
+  /// True if the next instruction is in the busy flash.
   bool waits_for_flash() const { return flash_is_busy_ && is_in_flash(program_counter_); }
   static constexpr bool is_in_flash(std::uint32_t address) {
     return address < flash_bytes || address - flash_base < flash_bytes;
   }
-  /// After instructions in memory changed.
+  /// Call this after a change of instructions in memory.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
-  /// The same from inside of a slice, in which the engine would fetch from there, and be refused by the memory
-  /// protection unit: before the next slice.
+  /// Schedules forget_code() before the next slice. Inside the current slice the engine would fetch from the range,
+  /// which the memory protection unit may refuse.
   void forget_code_later(std::uint32_t address, std::uint32_t bytes) { to_forget_.push_back({address, bytes}); }
 
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t instructions() const { return instructions_; }
-  /// The core stands still for `cycles` of HCLK.
+  /// Stops the core for `cycles` of HCLK.
   void wait(unsigned cycles) {
     cycles_ += cycles;
     block_start_ += cycles;
     instruction_end_ += cycles;
   }
-  /// The core waits for a register on the way to it.
+  /// Adds the bus wait time of a register access.
   void wait_for_register(std::uint32_t address, bool write);
   FlashAccelerator& flash() { return timing_.flash(); }
   void add_sleep_cycles(std::uint64_t cycles) { slept_cycles_ += cycles; }
   std::uint64_t slept_cycles() const { return slept_cycles_; }
-  /// Board time of the current instruction (fast mode: of the end of the current block).
+  /// Board time of the current instruction (fast mode: end of the current block).
   Ticks now() const { return anchor_time_ + machine_.clocks.hclk.duration(cycles_ - anchor_cycles_); }
-  /// Cycles that fit until `when`, at least 1.
+  /// Number of cycles until `when`, at least 1.
   std::uint64_t cycles_until(Ticks when) const;
-  /// Board time goes on from `time` (after sleep, or a change of clock).
+  /// Continues board time from `time`, after sleep or a clock change.
   void anchor(Ticks time) {
     anchor_time_ = time;
     anchor_cycles_ = cycles_;
   }
 
-  // The cycles so far have lasted as long as they did; what is left of the slice is counted anew.
+  // Cycles before the change have used the old clock; the rest of the slice is recalculated.
   void before_clock_change() override { anchor(now()); }
   void after_clock_change() override;
 
@@ -131,25 +132,25 @@ class Processor final : public ClockUser, private EngineCalls {
     return value;
   }
   CoreRegisters core_registers() const;
-  /// All but the program counter and the exception of xPSR.
+  /// Sets all core registers except the program counter and the exception number in xPSR.
   void set_core_registers(const CoreRegisters& registers);
   FloatRegisters read_float_registers() const;
   void write_float_registers(const FloatRegisters& registers);
-  /// Stops behind the instruction that touches the place.
+  /// Adds a watch point. The processor stops after the instruction that accesses the watch point.
   uc_hook watch(const WatchPoint& watch_point);
   void unwatch(uc_hook hook);
   void write(int id, std::uint32_t value) {
     if (!machine_.memory_protection.is_on(false)) {
       uc_reg_write(engine_, id, &value);
     } else {
-      const Use use(*this);  // the engine asks what has changed with it: see runs_above_faults()
+      const Use use(*this);  // the engine calls runs_above_faults()
       uc_reg_write(engine_, id, &value);
     }
   }
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }
   Masks masks() const;
-  /// Of the current instruction (fast mode: of the current block).
+  /// Address of the current instruction (fast mode: of the current block).
   std::uint32_t code_address() const { return last_code_address_; }
   unsigned current_exception() const { return current_exception_; }
   std::uint32_t fault_address() const { return fault_address_; }
@@ -159,8 +160,8 @@ class Processor final : public ClockUser, private EngineCalls {
   // exceptions.cpp
   enum class Entry : std::uint8_t {
     started,
-    no_stack,         ///< the stack is not in RAM; the stack pointer has moved all the same
-    protected_stack,  ///< the memory protection unit refuses it; likewise
+    no_stack,         ///< the stack is not in RAM; the stack pointer has still moved
+    protected_stack,  ///< the memory protection unit refuses the stack; the stack pointer has still moved
     no_handler,
   };
   /// Stacks the context, unless `stacks` is false, and starts the handler.
@@ -168,24 +169,23 @@ class Processor final : public ClockUser, private EngineCalls {
                         std::uint32_t vector_table, bool stacks);
   enum class Return : std::uint8_t {
     done,
-    invalid,          ///< what it returns to is not valid
-    no_stack,         ///< the frame is not in RAM; the handler that ran has ended all the same
-    protected_stack,  ///< the memory protection unit refuses it; likewise
+    invalid,          ///< invalid return state
+    no_stack,         ///< the frame is not in RAM; the handler has still ended
+    protected_stack,  ///< the memory protection unit refuses the frame; the handler has still ended
   };
-  /// Ends the handler that runs.
   Return return_from_exception(std::uint32_t vector_table);
-  /// Starts a handler on the frame of one that has just ended. False: it is not valid.
+  /// Starts a handler on the frame of the handler that has just ended. Returns false if its vector is invalid.
   bool chain_exception(unsigned exception, std::uint32_t vector_table);
   bool is_in_thread() const { return current_exception_ == exception_none; }
-  /// Of the exception that was entered last, if it left room for floats.
+  /// Returns and clears the float frame of the most recent exception entry.
   std::optional<FloatFrame> take_float_frame() { return std::exchange(float_frame_, std::nullopt); }
   // float_guards.cpp
   /// FPCCR.LSPACT.
   bool lazy_stacking_due() const;
-  /// What the frame has room for is never written.
+  /// Discards the pending lazy stacking; the reserved space is never written.
   void drop_lazy_stacking();
   Counters& counters() { return counters_; }
-  /// Called when another exception begins to run, or the thread again (0); none by default.
+  /// Called when another exception starts to run or the thread resumes (0); empty by default.
   std::function<void(unsigned exception)> on_exception;
   void clear_counters();
 
@@ -203,17 +203,17 @@ class Processor final : public ClockUser, private EngineCalls {
   static void watch_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
   bool stop_for_debugger(std::uint32_t address);
   // division.cpp
-  /// The instruction at `address` divides by zero, outside of if-then blocks.
+  /// True if the instruction at `address` divides by zero outside of if-then blocks.
   bool divides_by_zero(std::uint32_t address) const;
-  /// Fast mode: whether the block has divides that are not asked about yet; they are after the slice.
+  /// Fast mode: true if the block has divides without a hook. The hooks of new divides are added after the slice.
   bool has_new_divides(const BlockPrice& block);
   void ask_about_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   bool masks_open();
-  /// Unicorn loses the conditions of an if-then block in which it is stopped.
+  /// Unicorn loses the if-then state when it stops inside an if-then block.
   bool in_if_then_block(std::uint32_t address) const;
   bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
-  /// A return into the middle of an if-then block, as the fault of one of its instructions makes it.
+  /// Handles a return into the middle of an if-then block, for example after a fault in it.
   void resume_if_then_block(std::uint32_t status);
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
@@ -231,33 +231,32 @@ class Processor final : public ClockUser, private EngineCalls {
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
   void translates(std::uint32_t address) override { timing_.read_anew(address); }
-  /// Of what runs now.
   Role role() const;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
-  /// No part of a frame there is refused.
+  /// True if no part of the frame can be refused.
   bool takes_any_frame(std::uint32_t address, std::uint32_t bytes) const;
-  /// Why a frame's words can not be written or read.
+  /// Reason why the words of a frame cannot be accessed, or nothing.
   std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
-  /// Of an unprivileged thread, for what it may not write itself.
+  /// Makes an unprivileged thread privileged, to write registers that the thread may not write.
   void lift_privilege();
-  /// S0 to S15 and FPSCR, as a frame has them.
+  /// Reads S0 to S15 and FPSCR in the order of the frame.
   void read_float_context(std::uint32_t* words) const;
-  /// Does the lazy stacking that is due, or says why not.
+  /// Performs the pending lazy stacking. Returns the reason if the stacking is refused.
   std::optional<Outcome> stack_float_context();
   void take_new_rights();
-  /// Exact mode: no instruction of the block waits, and nobody wants to know of it.
+  /// Exact mode: true if no instruction of the block waits and no observer needs single instructions.
   bool is_plain(const BlockPrice& block) const;
   bool may_run(std::uint32_t address);
   void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
-  /// Of a block that runs for the first time, or after a change there.
+  /// Price of a block at its first run or after a change of its code.
   const BlockPrice& price_block(std::uint32_t address, std::uint32_t bytes);
-  /// R0 to R14 by number.
+  /// Reads R0 to R14 by number.
   auto register_reader() const {
     return [this](std::uint8_t number) {
       return read(number <= 12 ? UC_ARM_REG_R0 + number : number == 13 ? UC_ARM_REG_SP : UC_ARM_REG_LR);
     };
   }
-  /// Of a divide with the operands that the registers hold now, beyond its shortest.
+  /// Cycles of a divide with the current operands, minus its shortest time.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories(Bus& bus);
   void map_holes();
@@ -281,20 +280,20 @@ class Processor final : public ClockUser, private EngineCalls {
   std::uint32_t program_counter_ = 0;
   unsigned current_exception_ = 0;
   std::uint32_t last_code_address_ = 0;
-  std::array<std::uint32_t, 4> recent_addresses_{};  ///< of the newest instructions; an if-then block holds up to four
+  std::array<std::uint32_t, 4> recent_addresses_{};  ///< last instructions; an if-then block has up to four
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;
-  std::optional<std::uint32_t> stopped_before_;  ///< this block
+  std::optional<std::uint32_t> stopped_before_;  ///< block before which the processor stopped
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
   CycleCounter timing_;
   PeripheralBus register_bus_;
-  // Exact mode: the block that runs, when it began, and when its current instruction ends.
+  // Exact mode: current block, its start, and the end of its current instruction.
   const BlockPrice* block_ = nullptr;
   std::uint64_t block_start_ = 0, instruction_end_ = 0;
-  std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< of the block's
+  std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< within the block
   bool block_is_plain_ = false;
   PlainStores plain_stores_;
-  /// Unicorn makes stores into the flash by itself; what the flash made of them is put right after the slice.
+  /// Unicorn performs stores into the flash directly. The correct contents are restored after the slice.
   struct FlashStore {
     std::uint32_t address, content;
     unsigned size;
@@ -308,10 +307,10 @@ class Processor final : public ClockUser, private EngineCalls {
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
   bool flash_is_busy_ = false;
-  /// Lazy stacking is due that could not be done at entry.
+  /// Lazy stacking that was refused at exception entry.
   struct UnstackedFloat {
     std::uint32_t address;  ///< FPCAR
-    Role role;              ///< of what was interrupted
+    Role role;              ///< of the interrupted code
   };
   std::optional<UnstackedFloat> unstacked_float_;
   std::optional<FloatFrame> float_frame_;
@@ -319,12 +318,12 @@ class Processor final : public ClockUser, private EngineCalls {
     unstacked_float_ = what;
     refuses_float_ = !float_unit_on_ || unstacked_float_;
   }
-  bool refuses_float_ = true;  ///< an instruction of the FPU would fault now; every block asks
+  bool refuses_float_ = true;  ///< FPU instructions would fault now; checked at every block
   bool traps_misaligned_ = false, translates_aligned_ = false;
-  std::optional<Outcome> refusal_;                     ///< of the access that faults
-  std::uint32_t resumed_at_ = 0, resumed_bytes_ = 0;   ///< rest of an if-then block that a return went on with
-  std::set<std::uint32_t> float_guards_;               ///< instructions of the FPU that are stopped at while it is off
-  std::uint32_t guard_address_ = 0, guard_bytes_ = 0;  ///< a block with such instructions to be guarded; 0 bytes: none
+  std::optional<Outcome> refusal_;                     ///< of the faulting access
+  std::uint32_t resumed_at_ = 0, resumed_bytes_ = 0;   ///< rest of an if-then block after an exception return
+  std::set<std::uint32_t> float_guards_;               ///< FPU instructions that have a hook
+  std::uint32_t guard_address_ = 0, guard_bytes_ = 0;  ///< block whose FPU instructions need hooks; 0 bytes: none
   std::vector<Running> running_;
   std::uint64_t counted_until_ = 0;  ///< cycles
   Counters counters_;

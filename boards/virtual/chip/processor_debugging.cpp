@@ -1,4 +1,4 @@
-// The processor towards a debugger: its registers, and where it stops.
+// Debugger access to the processor: registers, breakpoints and watch points.
 #include "processor.hpp"
 #include "xpsr.hpp"
 
@@ -20,7 +20,8 @@ void Processor::set_core_registers(const CoreRegisters& registers) {
   write(UC_ARM_REG_LR, registers.general[CoreRegisters::lr]);
   write(UC_ARM_REG_XPSR_NZCVQG, (registers.xpsr & xpsr.flags()) | xpsr.thumb.mask() | current_exception_);
   write(UC_ARM_REG_APSR_NZCV,
-        registers.xpsr & xpsr.conditions.mask());  // last: it rebuilds Unicorn's own copies of the flags
+        registers.xpsr & xpsr.conditions.mask());  // written last, because this write rebuilds Unicorn's internal
+                                                   // copies of the flags
 }
 
 FloatRegisters Processor::read_float_registers() const {
@@ -55,7 +56,7 @@ uc_hook Processor::watch(const WatchPoint& watch_point) {
   const std::uint64_t first = watch_point.address, last = first + watch_point.bytes - 1;
   if (uc_hook_add(engine_, &hook, types, reinterpret_cast<void*>(watch_hook), this, first, last) != UC_ERR_OK)
     throw ChipError("The processor (Unicorn) refuses to watch its memory.");
-  // What was translated before does not ask the hook.
+  // Code translated before this point does not call the hook.
   forget_code(flash_base, flash_bytes);
   forget_code(sram_base, sram_bytes);
   return hook;

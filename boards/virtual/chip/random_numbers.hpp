@@ -1,4 +1,4 @@
-// Random numbers (RM0090, RNG), repeatable for the seed that the options give.
+// Random numbers (RM0090, RNG), repeatable for a given seed.
 #pragma once
 
 #include "bus.hpp"

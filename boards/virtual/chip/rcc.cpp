@@ -14,7 +14,7 @@ constexpr Ticks microsecond = ticks_per_s / 1'000'000;
 struct OscillatorBits {
   std::uint32_t offset;
   Field on, ready;
-  Ticks start_up;  ///< typical values of the data sheet
+  Ticks start_up;  ///< typical value of the data sheet
 };
 constexpr OscillatorBits oscillator_bits[] = {
     {rcc_map.cr, rcc_map.cr.hsion, rcc_map.cr.hsirdy, 2 * microsecond},
@@ -56,7 +56,8 @@ void Rcc::record_reset(ResetCause cause) {
     reset_flags_ |= rcc_map.csr.borrstf.mask();
   else
     reset_flags_ |= rcc_map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
-  // Every internal reset pulls the pin NRST too; power-on comes with a brown-out reset (RM0090, "System reset").
+  // Every internal reset also pulls the NRST pin low, and power-on includes a brown-out reset (RM0090, "System
+  // reset").
   reset_flags_ |= rcc_map.csr.pinrstf.mask();
   if (cause == ResetCause::power_on) reset_flags_ |= rcc_map.csr.borrstf.mask();
 }
@@ -133,7 +134,7 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }
 
-// Limits are those of the frequency that the crystal is sold for.
+// Limits apply to the nominal frequencies, not to the frequencies with the crystal's deviation.
 std::uint32_t Rcc::real_Hz(std::uint32_t nominal_Hz) const {
   const std::int64_t off_Hz = std::int64_t{nominal_Hz} * machine_.options.crystal_ppm / 1'000'000;
   return static_cast<std::uint32_t>(nominal_Hz + off_Hz);
@@ -174,7 +175,8 @@ void Rcc::step(Ticks) {
   switch_system_clock();
 }
 
-// ES0182: two cycles of AHB, or one and the divider of the APB. Only exact mode knows how far apart two accesses are.
+// ES0182: the delay is two AHB cycles, or one plus the APB prescaler. Only exact mode knows the distance of two
+// accesses.
 void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   if (risen == 0 || machine_.options.mode != Mode::exact) return;
   const auto& clocks = machine_.clocks.frequencies;
@@ -189,7 +191,7 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
 void Rcc::switch_system_clock() {
   constexpr unsigned oscillator_of[] = {hsi, hse, pll};
   const unsigned wanted = rcc_map.cfgr.sw.of(words_[rcc_map.cfgr / 4]);
-  // A switch to a clock that is not ready happens once it is (RM0090, "System clock (SYSCLK) selection").
+  // A switch to a clock that is not ready takes effect when it is ready (RM0090, "System clock (SYSCLK) selection").
   if (wanted < 3 && is_ready(oscillator_of[wanted])) system_clock_ = wanted;
   update_tree();
 }
@@ -224,7 +226,7 @@ void Rcc::update_tree() {
   f.timer1_Hz = f.pclk1_Hz * (divider1 == 1 ? 1 : 2);
   f.timer2_Hz = f.pclk2_Hz * (divider2 == 1 ? 1 : 2);
   f.usb_Hz = is_ready(pll) && !machine_.clock_is_lost ? pll_output_Hz(PllOutput::usb) : 0;
-  if (f.hclk_Hz == 0) return;  // the PLL's dividers make no sense: stay as it was
+  if (f.hclk_Hz == 0) return;  // the PLL dividers are invalid, so the clocks do not change
   nominal_ = f;
   check_limits(nominal_);
   if (runs_from_crystal())
@@ -271,7 +273,7 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case rcc_map.cr:
       word = value & writable(rcc_map.cr);
-      // The oscillator that is in use can not be stopped.
+      // The oscillator in use cannot be stopped.
       if (system_clock_ == 0) word |= rcc_map.cr.hsion.mask();
       if (system_clock_ == 1) word |= rcc_map.cr.hseon.mask();
       if (system_clock_ == 2) word |= rcc_map.cr.pllon.mask();

@@ -1,5 +1,5 @@
-// Reset and clock control (RM0090, RCC). Oscillators take their time to start; every change of the tree
-// changes the timing of everything that counts its clocks.
+// Reset and clock control (RM0090, RCC). Oscillators have a start-up time. Every change of the clock tree changes the
+// timing of the parts that use it.
 #pragma once
 
 #include <array>
@@ -16,29 +16,29 @@ class Rcc final : public RegisterBlock, public TimedPart {
   explicit Rcc(Machine& machine);
 
   void reset() override;
-  /// Flags of RCC_CSR, after reset().
-  /// What RCC_BDCR gives the real-time clock, once its oscillator is ready; otherwise 0.
+  /// Frequency of the real-time clock from RCC_BDCR; 0 until its oscillator is ready.
   std::uint32_t real_time_clock_Hz() const;
+  /// Sets the reset flags of RCC_CSR. Call this function after reset().
   void record_reset(ResetCause cause);
-  /// To be looked at by the bus: a peripheral without its clock does not answer.
+  /// The bus reads this register, because a peripheral without its clock does not respond.
   const std::uint32_t* enable_register(std::uint32_t offset) const { return &words_[offset / 4]; }
   void add_reset(std::uint32_t offset, std::uint32_t mask, Peripheral& peripheral) {
     resets_.push_back({offset, mask, &peripheral});
   }
-  /// The watchdog starts the low-speed oscillator by itself.
+  /// Starts the low-speed oscillator, as the watchdog does.
   void start_low_speed_internal() { words_[rcc_map.csr / 4] |= rcc_map.csr.lsion.mask(); }
-  /// The clock of a peripheral has been switched on so lately that it has not arrived there.
+  /// True if the clock of a peripheral was enabled too recently to have started.
   bool is_fresh(const std::uint32_t* enable, std::uint32_t mask, std::uint64_t cycle) const {
     return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
   }
   void step(Ticks now) override;
-  /// A crystal that stops, as with a broken joint, or swings again. With the clock security system on (RM0090, "Clock
-  /// security system") the chip goes on with HSI, NMI comes and the timers break; without it what runs from the crystal
-  /// stands still.
+  /// Stops or restarts the crystal, for example to simulate a broken solder joint. With the clock security system on
+  /// (RM0090, "Clock security system") the chip switches to HSI, raises NMI and triggers the timer break. Without the
+  /// clock security system, all parts with a clock from the crystal stop.
   void let_crystal_swing(bool swings);
-  /// How much faster than its name it swings, from now on.
+  /// Sets the deviation from the nominal frequency.
   void drift_crystal(std::int32_t ppm);
-  /// PWR_CR.VOS: scale 1 is for the highest clocks.
+  /// PWR_CR.VOS: scale 1 is for the highest clock frequencies.
   void set_voltage_scale(bool scale_1);
 
  protected:
@@ -56,14 +56,14 @@ class Rcc final : public RegisterBlock, public TimedPart {
   };
   bool is_on(unsigned oscillator) const;
   bool is_ready(unsigned oscillator) const;
-  /// Of a clock that comes from the crystal, what it really is.
+  /// Actual frequency of a clock from the crystal.
   std::uint32_t real_Hz(std::uint32_t nominal_Hz) const;
   enum class PllOutput : std::uint8_t { system, usb };
   std::uint32_t pll_output_Hz(PllOutput output) const;
   void start_oscillators();
   void switch_system_clock();
   void note_enabled(std::uint32_t offset, std::uint32_t risen);
-  /// The system clock comes from the crystal, through the PLL or not.
+  /// True if the system clock comes from the crystal, directly or through the PLL.
   bool runs_from_crystal() const;
   void lose_crystal();
   void check_limits(const Clocks& clocks) const;
@@ -75,10 +75,10 @@ class Rcc final : public RegisterBlock, public TimedPart {
   std::array<Ticks, oscillators> ready_at_{};
   unsigned system_clock_ = 0;  ///< CFGR.SWS
   std::uint32_t reset_flags_ = 0;
-  Clocks nominal_{};  ///< with a crystal that swings as it should
+  Clocks nominal_{};  ///< with a crystal at its nominal frequency
   bool voltage_scale_1_ = true;
-  bool crystal_swings_ = true, crystal_failed_ = false;  ///< the latter: CIR.CSSF
-  std::uint64_t fresh_until_ = 0;                        ///< cycle of the core
+  bool crystal_swings_ = true, crystal_failed_ = false;  ///< crystal_failed_ is CIR.CSSF
+  std::uint64_t fresh_until_ = 0;                        ///< in core cycles
   std::uint32_t fresh_offset_ = 0, fresh_mask_ = 0;
   std::vector<ResetLine> resets_;
 };

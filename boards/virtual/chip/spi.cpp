@@ -26,7 +26,7 @@ void Spi::start_frame() {
   const bool clocks = spi.cr1.spe.in(control1_) && spi.cr1.mstr.in(control1_);
   const bool has_frame = (status_ & spi_transmit_empty) == 0 || spi.cr1.rxonly.in(control1_);
   if (frame_ != 0 || !clocks || !has_frame) return;
-  status_ |= spi_transmit_empty;  // the frame has left for the shift register
+  status_ |= spi_transmit_empty;  // the frame has moved to the shift register
   frame_ = events_.at(machine_.timeline.now() + frame_duration(), [this] { end_frame(); });
 }
 
@@ -69,7 +69,7 @@ std::uint32_t Spi::stored(std::uint32_t offset) const {
 
 std::uint32_t Spi::read_word(std::uint32_t offset) {
   if (offset == spi.dr) {
-    status_ &= ~(spi_receive_full | spi_overrun);  // silicon clears OVR at the read of SR that follows
+    status_ &= ~(spi_receive_full | spi_overrun);  // real hardware clears OVR only at the subsequent read of SR
     update();
     return received_;
   }

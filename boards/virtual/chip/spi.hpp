@@ -1,5 +1,5 @@
-// SPI1 to SPI3 with nothing connected (RM0090, "Serial peripheral interface"): a master clocks its frames out in their
-// time and hears ones; a slave is never clocked. I2S and CRC are not modelled.
+// SPI1 to SPI3 without a connected device (RM0090, "Serial peripheral interface"). A master sends frames with correct
+// timing and receives ones. A slave receives no clock. I2S and CRC are not modeled.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class Spi final : public RegisterBlock {
   Spi(Machine& machine, Scheduler& events, unsigned number, unsigned position, bool on_apb2)
       : machine_(machine), events_(events), number_(number), position_(position), on_apb2_(on_apb2) {}
   void reset() override;
-  /// A DMA stream has been enabled: requests that wait can be served.
+  /// Serves pending requests. Call this when a DMA stream has been enabled.
   void serve_dma();
 
  protected:
@@ -51,7 +51,7 @@ class Spi final : public RegisterBlock {
  private:
   std::string name() const { return "SPI" + std::to_string(number_); }
   Ticks frame_duration() const;
-  /// Clocks a frame, if there is one to clock and nothing under way.
+  /// Starts a frame if data is waiting and no frame is in progress.
   void start_frame();
   void end_frame();
   void update();
@@ -62,7 +62,7 @@ class Spi final : public RegisterBlock {
   bool on_apb2_;
   std::uint32_t control1_ = 0, control2_ = 0, status_ = spi.sr.reset_value, polynomial_ = spi.crcpr.reset_value,
                 i2s_ = 0, received_ = 0;
-  Scheduler::Id frame_ = 0;  ///< 0: none under way
+  Scheduler::Id frame_ = 0;  ///< 0: no frame in progress
 };
 
 }  // namespace inkwell::virtual_board

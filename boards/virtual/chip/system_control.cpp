@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// The instrumentation trace, whose stimulus ports lie in its first kilobyte, ends where the watchpoint unit begins.
+/// Size of the stimulus ports of the instrumentation trace.
 constexpr std::uint32_t stimulus_bytes = 0x400;
 
 constexpr std::uint32_t first_handler_priority = scb_base + scb.shpr,
@@ -93,7 +93,7 @@ void SystemControl::note_float_frame(const FloatFrame& frame) {
 
 std::uint32_t SystemControl::cycle_count() const {
   if (!dwt.ctrl.cyccntena.in(trace_control_)) return cycle_held_;
-  // The core's clock stands still in sleep, unless the debugger keeps it on (DBGMCU_CR.DBG_SLEEP).
+  // The cycle counter stops in sleep unless DBGMCU_CR.DBG_SLEEP keeps the clock on.
   const std::uint64_t cycles = machine_.processor->cycles() + machine_.processor->slept_cycles();
   return static_cast<std::uint32_t>(cycles) - cycle_base_;
 }
@@ -146,7 +146,7 @@ void SystemControl::write_handler_control_state(std::uint32_t value) {
 }
 
 std::uint32_t SystemControl::read_word(std::uint32_t address) {
-  if (address < dwt_base) return (address & 0xFFF) < stimulus_bytes ? 1 : 0;  // always ready
+  if (address < dwt_base) return (address & 0xFFF) < stimulus_bytes ? 1 : 0;  // stimulus ports are always ready
   if (is_trace(address) && !core_debug.demcr.trcena.in(debug_monitor_)) return 0;
   switch (address) {
     case dwt_base + dwt.ctrl: return trace_control_;
@@ -199,7 +199,7 @@ std::uint32_t SystemControl::read(std::uint32_t address, unsigned size) {
 }
 
 void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned size) {
-  // Registers of byte fields take narrow writes as they are.
+  // Registers with byte fields accept narrow writes.
   if (address - nvic_base < nvic_bytes) return machine_.nvic.write(address - nvic_base, value, size);
   if (is_priority(address)) {
     for (unsigned i = 0; i < size; ++i)
@@ -207,7 +207,7 @@ void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned s
     return;
   }
   const std::uint32_t word = address & ~3u;
-  const bool cleared_by_ones = word == scb_base + scb.cfsr;  // a narrow write must not clear its neighbours
+  const bool cleared_by_ones = word == scb_base + scb.cfsr;  // a narrow write must not clear the other bytes
   if (size != 4 && word >= dwt_base) {
     if (!cleared_by_ones) machine_.violations.violate(Rule::narrow_core_write);
     value = merge(cleared_by_ones ? 0 : read_word(word), value, address, size);
@@ -216,7 +216,7 @@ void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned s
 }
 
 void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
-  if (address < dwt_base) return;  // nobody listens to the instrumentation trace
+  if (address < dwt_base) return;  // the instrumentation trace has no receiver
   if (is_trace(address) && !core_debug.demcr.trcena.in(debug_monitor_)) return;
   switch (address) {
     case dwt_base + dwt.ctrl:
@@ -230,7 +230,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
       cycle_base_ =
           static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - value;
       return;
-    case dwt_base + dwt.lar: return;  // not locked
+    case dwt_base + dwt.lar: return;  // the trace is never locked
     case scs_base + scs.actlr: auxiliary_control_ = value; return;
     case scb_base + scb.icsr: write_interrupt_control_state(value); return;
     case scb_base + scb.vtor: vector_table_ = value & writable(scb.vtor); return;
@@ -250,7 +250,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case scb_base + scb.afsr: auxiliary_faults_ = value; return;
     case fpu_cpacr_base + fpu_cpacr.cpacr: {
       coprocessor_access_ = value & writable(fpu_cpacr.cpacr);
-      constexpr std::uint32_t none = 0;  // CP10 and CP11 hold the same code (PM0214, CPACR)
+      constexpr std::uint32_t none = 0;  // CP10 and CP11 have the same value (PM0214, CPACR)
       machine_.processor->set_float_unit(coprocessor_access_ != none);
       return;
     }
@@ -274,7 +274,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   if (address - mpu_base < mpu_bytes) {
     if (!MemoryProtection::names_region(address - mpu_base, value)) machine_.violations.violate(Rule::region_number);
     machine_.memory_protection.write(address - mpu_base, value);
-    // A base is written before the size that belongs to it.
+    // Firmware writes the base before the matching size, so the region is checked after the size only.
     if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())
       machine_.violations.violate(Rule::region_undefined);
     return machine_.processor->rights_changed();

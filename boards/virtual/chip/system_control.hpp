@@ -1,5 +1,5 @@
-// Private peripheral bus of the Cortex-M4: system control block, SysTick, floating-point context registers,
-// cycle counter, and the debug registers that firmware touches (ARMv7-M, B3.2, B3.3, C1.6, C1.8).
+// Private peripheral bus of the Cortex-M4: system control block, SysTick, floating-point context registers, cycle
+// counter, and the debug registers that firmware uses (ARMv7-M, B3.2, B3.3, C1.6, C1.8).
 #pragma once
 
 #include <array>
@@ -48,10 +48,11 @@ class SystemControl {
   bool sleeps_on_exit() const { return scb.scr.sleeponexit.in(sleep_control_); }
   bool sends_event_on_pending() const { return scb.scr.sevonpend.in(sleep_control_); }
 
-  /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
+  /// Records the cause of a fault in CFSR and HFSR. The valid bits in these registers decide whether the address
+  /// registers apply.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
-  /// What lazy stacking will need, for FPCCR and FPCAR (ARMv7-M, B1.5.7, UpdateFPCCR).
+  /// Stores the state for lazy stacking in FPCCR and FPCAR (ARMv7-M, B1.5.7, UpdateFPCCR).
   void note_float_frame(const FloatFrame& frame);
   void record_memory_fault_address(std::uint32_t address) { memory_fault_address_ = address; }
 

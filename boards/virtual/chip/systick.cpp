@@ -14,7 +14,7 @@ void SysTick::reset() {
 }
 
 Ticks SysTick::duration(std::uint64_t counts) const {
-  // The external reference is HCLK / 8 (RM0090, "Clocks").
+  // The external reference clock is HCLK / 8 (RM0090, "Clocks").
   return machine_.clocks.hclk.duration(counts * (stk.ctrl.clksource.in(control_) ? 1 : 8));
 }
 
@@ -52,7 +52,7 @@ std::uint32_t SysTick::read(std::uint32_t offset) {
     }
     case stk.load: return reload_;
     case stk.val: return current();
-    default: return stk.calib.reset_value;  // CALIB: no reference, no value
+    default: return stk.calib.reset_value;  // CALIB: no reference clock and no calibration value
   }
 }
 
@@ -61,7 +61,7 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value) {
     case stk.ctrl: {
       held_ = current();
       control_ = (control_ & stk.ctrl.countflag.mask()) | (value & writable(stk.ctrl));
-      // From 0 the counter first takes the reload value, which costs one count.
+      // At 0 the counter first loads the reload value, which takes one count.
       start(held_ != 0 ? held_ : reload_ + 1);
       break;
     }

@@ -1,9 +1,9 @@
-// Board time as the parts of the chip live it.
+// Board time for the parts of the chip.
 //
-// A part that changes by itself (timer, converter, watchdog) tells two times: `due`, when its next internal
-// step falls, and `wake`, by when that step must be seen by the processor (interrupt, reset, memory). The
-// processor runs on to the earliest wake; steps before it are made up for in the order of time as soon as
-// anybody looks. So the edges of a pulse-width modulation cost no stop of the processor.
+// Each timed part (timer, converter, watchdog) sets two times. `due` is the time of its next internal step. `wake` is
+// the time at which the processor must see the result (interrupt, reset, memory). The processor runs up to the
+// earliest wake. Earlier steps are executed later in order of time, when a part is accessed. PWM edges therefore do
+// not stop the processor.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace inkwell::virtual_board {
 class TimedPart {
  public:
   virtual ~TimedPart() = default;
-  /// Board time has reached the `due` that the part asked for; it asks for the next before it returns.
+  /// Called when board time has reached `due` of this part. This function must set the next `due` before it returns.
   virtual void step(Ticks now) = 0;
 };
 
@@ -49,7 +49,7 @@ class Timeline {
     }
   }
   Ticks now() const { return now_; }
-  /// Makes every step up to and including `until`.
+  /// Executes all steps up to and including `until`.
   void catch_up(Ticks until) {
     while (next_due_ <= until) {
       std::size_t first = 0;
@@ -70,7 +70,7 @@ class Timeline {
     wake_moved_forward_ = false;
     return next_wake_;
   }
-  /// A wake earlier than the last next_wake() has been asked for.
+  /// True if a wake earlier than the result of the last next_wake() has been set.
   bool wake_moved_forward() const { return wake_moved_forward_; }
 
  private:
@@ -84,7 +84,7 @@ class Timeline {
   bool wake_moved_forward_ = false;
 };
 
-/// Events of the parts outside of the chip (USB host, circuit), one timed part together.
+/// Events of the parts outside of the chip (USB host, circuit), combined in one timed part.
 class EventQueue final : public Scheduler, public TimedPart {
  public:
   explicit EventQueue(Timeline& timeline) : timeline_(timeline), slot_(timeline.add(*this)) {}
@@ -99,7 +99,7 @@ class EventQueue final : public Scheduler, public TimedPart {
   void cancel(Id id) override { alive_.erase(id); }
   void step(Ticks now) override {
     while (!queue_.empty() && queue_.top().when <= now) {
-      // Moving out of the queue is safe: the order depends on time and number only.
+      // Moving the event out of the queue is safe, because the order depends on time and number only.
       Event event = std::move(const_cast<Event&>(queue_.top()));
       queue_.pop();
       if (alive_.erase(event.id) != 0) event.action();

@@ -1,4 +1,3 @@
-// How a timer counts.
 #include <algorithm>
 
 #include "adc.hpp"
@@ -50,7 +49,7 @@ std::uint32_t Timer::count_now() const { return runs() ? count_at(tick_at(machin
 void Timer::settle() {
   if (!runs()) return;
   const std::uint64_t tick = tick_at(machine_.timeline.now());
-  if (tick >= ramp_length_) {  // this very instant, but another part's step came first
+  if (tick >= ramp_length_) {  // the end of the ramp is due now, but another part was stepped first
     account(ramp_length_);
     return end_ramp(time_of(ramp_length_));
   }
@@ -84,7 +83,7 @@ void Timer::begin_ramp(Ticks now) {
     else
       ramp_length_ = count_ != 0 ? count_ : 1;
   } else if (!down_) {
-    // A counter beyond its reload value runs on to its end first.
+    // A counter above its reload value first counts up to its maximum.
     ramp_length_ = (count_ <= active_reload_ ? active_reload_ : limit_) + std::uint64_t{1} - count_;
   } else {
     ramp_length_ = std::uint64_t{count_} + 1;
@@ -101,7 +100,7 @@ void Timer::find_matches() {
     const std::uint32_t compare = channel.active_compare;
     if (!down_ && compare > count_) channel.match = compare - count_;
     if (down_ && compare < count_) channel.match = count_ - compare;
-    // The last tick of an edge-aligned ramp is the first value of the next.
+    // The last tick of an edge-aligned ramp is the first value of the next ramp.
     const std::uint64_t last = centre_aligned() ? ramp_length_ : ramp_length_ - 1;
     if (channel.match != no_match && channel.match > last) channel.match = no_match;
   }
@@ -193,7 +192,7 @@ void Timer::reinitialise(bool by_software) {
 void Timer::count_one(bool down) {
   if (frozen_) return;
   down_ = down;
-  // The prescaler divides these clocks as it does the timer's own.
+  // The prescaler also divides external clocks.
   if (edges_++ < active_prescaler_) return;
   edges_ = 0;
   bool wrapped = false;
@@ -248,7 +247,7 @@ void Timer::plan() {
     if (channel.needed || to_processor) next_tick_ = std::min(next_tick_, channel.match);
     if (to_processor) next_needed = std::min(next_needed, channel.match);
   }
-  // A match of a later ramp is waited for at the end of this one.
+  // The end of this ramp decides when a match of a later ramp is due.
   if (any_needed && next_needed == no_match) next_needed = ramp_length_;
   Ticks wake = next_needed == no_match ? never : time_of(next_needed);
   if (update_needed()) wake = std::min(wake, update_time());

@@ -1,11 +1,11 @@
-// Registers of the timers (RM0090, TIMx_CR1 ... TIMx_DMAR). A timer has those that its traits ask for.
+// Registers of the timers (RM0090, TIMx_CR1 ... TIMx_DMAR). The traits of a timer select its registers.
 #pragma once
 
 #include <chip/register_map.hpp>
 
 namespace inkwell::virtual_board {
 
-/// CCMR1 and CCMR2, of two channels each. The form for inputs shares the bits of the one for outputs.
+/// CCMR1 and CCMR2, each for two channels. The input fields share the bits of the output fields.
 template <unsigned lowest>
 struct CaptureCompareMode : Register {
   Field ccs{"CC#S", 0, 2, Access::rw, {2, 8, lowest}};
@@ -49,7 +49,7 @@ struct TimerRegisters {
     Field cce{"CC#E", 0, 1, Access::rw, {4, 4, 1}}, ccp{"CC#P", 1, 1, Access::rw, {4, 4, 1}},
         ccne{"CC#NE", 2, 1, Access::rw, {3, 4, 1}}, ccnp{"CC#NP", 3, 1, Access::rw, {4, 4, 1}};
   } ccer{{"CCER", 0x20}};
-  Register cnt{"CNT", 0x24};  ///< with PSC and ARR: 16 bits, or 32 as the timer has
+  Register cnt{"CNT", 0x24};  ///< like PSC and ARR: 16 or 32 bits, depending on the timer
   struct : Register {
     Field psc{"PSC", 0, 16};
   } psc{{"PSC", 0x28}};
@@ -68,13 +68,13 @@ struct TimerRegisters {
   struct : Register {
     Field dmab{"DMAB", 0, 16};
   } dmar{{"DMAR", 0x4C}};
-  Register option{"OR", 0x50};  ///< of TIM2, TIM5 and TIM11, each with a field of its own
+  Register option{"OR", 0x50};  ///< of TIM2, TIM5 and TIM11, each with different fields
 };
 inline constexpr TimerRegisters tim;
-/// TIM2_OR: what is behind ITR1.
+/// TIM2_OR: source of ITR1.
 inline constexpr Field itr1_remap{"ITR1_RMP", 10, 2};
 inline constexpr std::uint32_t itr1_is_otg_fs_sof = 2;
-/// CCMRx.CCxS: a capture by the internal trigger that SMCR.TS selects.
+/// CCMRx.CCxS: capture by the internal trigger that SMCR.TS selects.
 inline constexpr std::uint32_t trigger_input = 3;
 
 /// CCMRx.OCxM
@@ -96,14 +96,14 @@ enum SlaveMode : std::uint32_t {
   trigger_mode = 6,
   external_clock = 7,
 };
-/// SMCR.TS; below are the internal triggers 0 to 3.
+/// SMCR.TS; values below these are the internal triggers 0 to 3.
 enum TriggerInput : std::uint32_t {
   input_1_edge = 4,
   filtered_input_1 = 5,
   filtered_input_2 = 6,
   external_input = 7,
 };
-/// CR2.MMS; from compare_reference_1 on the references of the four channels.
+/// CR2.MMS; from compare_reference_1 on: the references of the four channels.
 enum MasterMode : std::uint32_t {
   master_reset = 0,
   master_enable = 1,

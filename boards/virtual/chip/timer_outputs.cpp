@@ -1,4 +1,4 @@
-// Compare references and outputs of a timer, its break input, captures, encoder and slave modes.
+// Compare references and outputs of a timer, break input, captures, encoder and slave modes.
 #include "adc.hpp"
 #include "dma.hpp"
 #include "pins.hpp"
@@ -9,8 +9,8 @@ namespace inkwell::virtual_board {
 
 bool Timer::compare_level(unsigned i, std::uint32_t count) const {
   const std::uint32_t compare = channels_[i].active_compare;
-  // PWM mode 1 upward: active while CNT < CCR; downward: inactive while CNT > CCR. A centre-aligned counter is at 0 on
-  // its way up, so that CCR = 0 is never active (RM0090, PWM mode: OCxREF is held at 0).
+  // PWM mode 1 counting up: active while CNT < CCR; counting down: inactive while CNT > CCR. In center-aligned mode
+  // the value 0 belongs to the upward ramp, so CCR = 0 is never active (RM0090, PWM mode: OCxREF is held at 0).
   const bool active = down_ ? count <= compare && !(centre_aligned() && compare == 0) : count < compare;
   return output_mode(i) == pwm_2 ? !active : active;
 }
@@ -41,7 +41,7 @@ void Timer::configure_channel(unsigned i) {
   channel.when_active = channel.when_inactive = PinLevel::floating;
   channel.complement_when_active = channel.complement_when_inactive = PinLevel::floating;
   channel.needed = false;
-  if (selection(i) != 0) return;  // an input
+  if (selection(i) != 0) return;  // input channel
 
   // RM0090, table "Output control bits for complementary OCx and OCxN channels with break feature".
   if (outputs_on()) {
@@ -52,7 +52,7 @@ void Timer::configure_channel(unsigned i) {
       channel.when_active = channel.when_inactive = level(inverted);
     }
     if (complement) {
-      // Beside OCx its complement; alone it follows the reference itself.
+      // With OCx enabled, OCxN is its complement. Without OCx, OCxN follows the reference.
       channel.complement_when_active = level(output == complement_inverted);
       channel.complement_when_inactive = level(output != complement_inverted);
       if (output && tim.bdtr.dtg.in(bdtr_))
@@ -110,7 +110,7 @@ void Timer::capture(unsigned i) {
   if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
 }
 
-// RM0090, TIMx_CCMR1: ICxPSC. One of 1, 2, 4 or 8 events is a capture.
+// RM0090, TIMx_CCMR1: ICxPSC. Every 1st, 2nd, 4th or 8th event is captured.
 void Timer::capture_event(unsigned i) {
   auto& channel = channels_[i];
   if (++channel.events < 1u << tim.ccmr1.icpsc.of(ccmr_[i / 2], i % 2)) return;
@@ -124,7 +124,7 @@ void Timer::capture_by_trigger() {
 }
 
 void Timer::count_encoder_edge(unsigned changed) {
-  // RM0090, table "Counting direction versus encoder signals"; CCxP inverts an input.
+  // RM0090, table "Counting direction versus encoder signals". CCxP inverts an input.
   const unsigned mode = slave_mode();
   if (!enabled()) return;
   if ((mode == 1 && changed == 0) || (mode == 2 && changed == 1)) return;
@@ -136,7 +136,7 @@ void Timer::count_encoder_edge(unsigned changed) {
 
 void Timer::channel_edge(unsigned i) {
   const bool high = input(i);
-  // Captures: channel i from its own input, its neighbour through the cross connection.
+  // Captures: channel i from its own input, the adjacent channel through the cross connection.
   for (const unsigned target : {i, i ^ 1}) {
     if (target >= traits_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
     if (!tim.ccer.cce.in(ccer_, target)) continue;
@@ -152,7 +152,7 @@ void Timer::channel_edge(unsigned i) {
     trigger_in(high != inverted, false);
 }
 
-// The bits of ICxF are others while the channel is an output.
+// While a channel is an output, the bits of ICxF have another meaning.
 void Timer::configure_inputs() {
   for (unsigned i = 0; i < traits_.channels; ++i) {
     const unsigned filter = selection(i) == 0 ? 0 : tim.ccmr1.icf.of(ccmr_[i / 2], i % 2);
@@ -196,7 +196,7 @@ void Timer::input_changed(unsigned line, bool high, Ticks when) {
   }
   if (line == external_trigger) return drive_external_trigger(high, when);
   if (line >= traits_.channels) return;
-  // A sample at the very instant of a change sees what comes after it.
+  // A sample at the time of a change sees the new level.
   if (when != 0) take_input_changes(when - 1);
   channels_[line].input.drive(high, when);
   plan();
@@ -214,7 +214,8 @@ void Timer::connect_input(unsigned line, bool high) {
   }
 }
 
-// RM0090, TIMx_SMCR: ETP, ETPS, then ETF. How the divider begins is not published; here with its first edge.
+// RM0090, TIMx_SMCR: ETP, ETPS, then ETF. The initial phase of the prescaler is not documented; here the first edge
+// passes.
 void Timer::drive_external_trigger(bool high, Ticks when) {
   external_.pin = high;
   const bool level = high != tim.smcr.etp.in(smcr_);
@@ -233,7 +234,7 @@ void Timer::drive_external_trigger(bool high, Ticks when) {
   plan();
 }
 
-// ECE is a clock of its own, beside which the slave mode may reset, gate or start the counter.
+// With ECE the external trigger clocks the counter. In addition a slave mode may reset, gate or start the counter.
 void Timer::external_edge() {
   const bool high = external_.filter.output();
   if (high && tim.smcr.ece.in(smcr_) && enabled() && (slave_mode() != gated || gate_open_)) count_one(down_);

@@ -95,7 +95,7 @@ void Timer::update_interrupts() {
   const std::uint32_t asserted = sr_ & dier_;
   auto& nvic = machine_.nvic;
   const auto& to = traits_.interrupts;
-  // DIER's enables stand at the bits of SR's flags.
+  // The enable bits of DIER have the positions of the flags in SR.
   constexpr std::uint32_t update = tim.sr.uif.mask(), captures = tim.sr.ccif.masks(), breaks = tim.sr.bif.mask(),
                           triggers = tim.sr.tif.mask() | tim.sr.comif.mask();
   if (to.update == to.capture) {
@@ -123,7 +123,7 @@ std::uint32_t Timer::stored(std::uint32_t offset) const {
     case tim.bdtr: return bdtr_;
     case tim.dcr: return dcr_;
     case tim.option: return or_;
-    case tim.sr: return 0xFFFF'FFFF;  // zeros clear: what is not written stays
+    case tim.sr: return 0xFFFF'FFFF;  // writing 0 clears a flag, so unwritten bytes count as ones
     default: break;
   }
   return tim.ccr.covers(offset) ? channels_[tim.ccr.index(offset)].compare : 0;
@@ -146,7 +146,7 @@ std::uint32_t Timer::read_word(std::uint32_t offset) {
   }
   if (tim.ccr.covers(offset)) {
     const unsigned i = tim.ccr.index(offset);
-    // Reading a captured value acknowledges it.
+    // A read of a captured value acknowledges it.
     if (selection(i) != 0) {
       sr_ &= ~tim.sr.ccif.mask(i);
       update_interrupts();
@@ -163,7 +163,7 @@ void Timer::write_control(std::uint32_t value) {
   const bool was_running = runs(), was_enabled = enabled(), was_centred = centre_aligned();
   cr1_ = value & writable(tim.cr1);
   if (!traits_.up_and_down) cr1_ &= ~(tim.cr1.dir.mask() | tim.cr1.cms.mask());
-  // DIR is read-only in centre-aligned and encoder modes.
+  // DIR is read-only in center-aligned and encoder modes.
   if (!centre_aligned() && !encoder_mode())
     down_ = tim.cr1.dir.in(cr1_);
   else if (!was_centred && centre_aligned() && !was_enabled)
@@ -193,7 +193,8 @@ void Timer::write_events(std::uint32_t value) {
   }
 }
 
-// RM0090, TIMx_BDTR: LOCK. Each level protects what the one below it does and more. LOCK itself is written once.
+// RM0090, TIMx_BDTR: LOCK. Each level also includes the protection of the lower levels. LOCK itself can be written
+// once.
 std::uint32_t Timer::locked_bits(std::uint32_t offset) const {
   const unsigned level = tim.bdtr.lock.of(bdtr_);
   if (level == 0) return 0;
@@ -283,7 +284,8 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
       }
       return machine_.log.note("TIM" + std::to_string(traits_.number), offset, true, value);
   }
-  // A new configuration of channels, triggers or interrupts; a channel without preload takes its value at once.
+  // The configuration of channels, triggers or interrupts has changed. A channel without preload uses its value
+  // immediately.
   settle();
   listen();
   configure_inputs();

@@ -1,8 +1,8 @@
 // TIM1 to TIM14 (RM0090, "Advanced-control timers", "General-purpose timers", "Basic timers").
 //
-// The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
-// from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
-// Not modelled: dead time, DMA bursts.
+// The counter is not stepped. The counter runs in ramps, each up to the next overflow or underflow, and its value
+// follows from board time. Steps occur only at the compare matches that another part needs and at ramp ends. Not
+// modeled: dead time, DMA bursts.
 #pragma once
 
 #include <array>
@@ -17,29 +17,28 @@
 
 namespace inkwell::virtual_board {
 
-/// Positions in the vector table (RM0090, table "Vector table").
+/// Vector table positions (RM0090, table "Vector table").
 struct TimerInterrupts {
   std::uint8_t update, capture, trigger, break_input;
   static constexpr TimerInterrupts shared(std::uint8_t position) { return {position, position, position, position}; }
 };
 
-/// What a timer can do, and what it is connected to.
 struct TimerTraits {
   std::uint8_t number = 0;
   bool on_apb2 = false;
   std::uint8_t bits = 16;
   std::uint8_t channels = 0;
-  std::uint8_t complementary = 0;  ///< channels that have a complementary output too
-  bool repetition = false;         ///< counts updates
-  bool breaks = false;             ///< break input, main output enable
-  bool up_and_down = false;        ///< counts down, centre-aligned, and encoders
+  std::uint8_t complementary = 0;  ///< channels with a complementary output
+  bool repetition = false;         ///< has a repetition counter
+  bool breaks = false;             ///< has a break input and a main output enable
+  bool up_and_down = false;        ///< supports down-counting, center-aligned and encoder modes
   bool master = false;             ///< has a trigger output
   bool slave = false;              ///< has a trigger input
   TimerInterrupts interrupts{};
-  std::array<std::uint8_t, 4> internal_triggers{};  ///< timers behind ITR0 to ITR3
+  std::array<std::uint8_t, 4> internal_triggers{};  ///< timers connected to ITR0 to ITR3
 };
 
-/// Sources of a trigger for the ADCs: channel 1..4 of a timer, or its trigger output.
+/// Trigger output as an ADC trigger source. Values 1 to 4 are the channels of the timer.
 inline constexpr unsigned trigger_output = 0;
 
 class Timer final : public RegisterBlock, public TimedPart, public ClockUser, public Freezable {
@@ -49,20 +48,20 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void step(Ticks now) override;
   void before_clock_change() override;
   void after_clock_change() override;
-  /// The counter stands, and TIM1 and TIM8 switch their outputs off (RM0090, "Debug support for timers").
+  /// Stops the counter. TIM1 and TIM8 also switch their outputs off (RM0090, "Debug support for timers").
   void freeze(bool frozen) override;
 
-  /// A pin that is an input of this timer has been so since `when`.
+  /// Sets the level that an input pin has had since `when`.
   void input_changed(unsigned line, bool high, Ticks when);
-  /// A pin is connected to this timer; its level so far is no edge.
+  /// Connects a pin to this timer. The current level is not an edge.
   void connect_input(unsigned line, bool high);
-  /// The clock security system breaks as the break input does (RM0090, "Using the break function").
+  /// Triggers the break because the clock security system has detected a failure (RM0090, "Using the break function").
   void clock_failed();
-  /// The trigger output of timer `master` rose or, for a level, changed.
+  /// Handles a pulse or level change of the trigger output of timer `master`.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
-  /// Start of frame of OTG_FS, which TIM2 can have behind its ITR1.
+  /// Start of frame of OTG_FS, which TIM2 can select as ITR1.
   void usb_start_of_frame();
-  /// Somebody's interest in this timer's events changed.
+  /// Call this when another part has changed its use of the events of this timer.
   void plan_again();
   const TimerTraits& traits() const { return traits_; }
 
@@ -75,22 +74,22 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
  private:
   static constexpr std::uint64_t no_match = std::numeric_limits<std::uint64_t>::max();
   struct Channel {
-    std::uint32_t compare = 0, active_compare = 0;  ///< CCRx, and its copy in use
-    std::uint64_t match = no_match;                 ///< tick of the current ramp
+    std::uint32_t compare = 0, active_compare = 0;  ///< CCRx and its active copy
+    std::uint64_t match = no_match;                 ///< tick in the current ramp
     bool reference = false;                         ///< OCxREF
-    bool needed = false;                            ///< somebody needs its matches in time
+    bool needed = false;                            ///< another part needs the matches in time
     PinLevel when_active = PinLevel::floating, when_inactive = PinLevel::floating;
     PinLevel complement_when_active = PinLevel::floating, complement_when_inactive = PinLevel::floating;
     InputFilter input{};
-    unsigned events = 0;  ///< of its input since its last capture
+    unsigned events = 0;  ///< input events since the last capture
   };
-  /// ETR, from its pin to the filter whose output is ETRF.
+  /// ETR from its pin to the filter output ETRF.
   struct ExternalTrigger {
-    bool pin = false, level = false, divided = false;  ///< level: behind ETP; divided: behind ETPS
+    bool pin = false, level = false, divided = false;  ///< level: after ETP; divided: after ETPS
     unsigned rises = 0;
     InputFilter filter{};
   };
-  /// Beside the four channels, where inputs are counted.
+  /// Input number of ETR; lower numbers are the channels.
   static constexpr unsigned external_trigger_input = 4;
 
   // timer.cpp: counting
@@ -106,7 +105,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
   unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
   bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
-  /// The counter's clock are edges of inputs.
+  /// True if edges of inputs clock the counter.
   bool counts_edges() const { return encoder_mode() || slave_mode() == external_clock || tim.smcr.ece.in(smcr_); }
   bool outputs_on() const { return !traits_.breaks || (tim.bdtr.moe.in(bdtr_) && !frozen_); }
   bool runs() const;
@@ -138,17 +137,17 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void break_now();
   void capture(unsigned channel);
   void capture_event(unsigned channel);
-  /// TRC: the trigger is the input of channels that ask for it.
+  /// TRC: captures in all channels that use the trigger as input.
   void capture_by_trigger();
   bool input(unsigned channel) const { return channels_[channel].input.output(); }
   void configure_inputs();
-  /// The input that changes next behind its filter.
+  /// Input whose filter output changes next.
   unsigned next_input() const;
   const InputFilter& filter_of(unsigned input) const {
     return input == external_trigger_input ? external_.filter : channels_[input].input;
   }
   void take_input_changes(Ticks until);
-  /// What an input does can reach the processor before that looks at the counter.
+  /// True if input events can affect the processor without a read of the counter.
   bool inputs_wake() const;
   void count_encoder_edge(unsigned changed_channel);
   void drive_external_trigger(bool high, Ticks when);
@@ -157,13 +156,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void channel_edge(unsigned channel);
 
   // timer_registers.cpp
-  /// To the trigger output of the timer behind TS, if that has a use.
+  /// Selects the master timer from TS if this timer uses it.
   void listen();
   void write_control(std::uint32_t value);
   void write_events(std::uint32_t value);
-  /// Bits of a register that LOCK protects now.
+  /// Register bits that LOCK currently protects.
   std::uint32_t locked_bits(std::uint32_t offset) const;
-  /// What a write of `value` leaves in a register that holds `old`.
+  /// Result of a write of `value` to a register with the value `old`.
   std::uint32_t unlocked(std::uint32_t offset, std::uint32_t old, std::uint32_t value);
   void update_interrupts();
   void raise(std::uint32_t flags);
@@ -177,9 +176,9 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   std::array<std::uint32_t, 2> ccmr_{};
   std::array<Channel, 4> channels_{};
   ExternalTrigger external_{};
-  unsigned master_ = 0;  ///< the timer that it listens to, 0 is none
+  unsigned master_ = 0;  ///< the timer whose trigger output is used; 0 means none
   std::uint32_t active_prescaler_ = 0, active_reload_ = 0, repetitions_ = 0;
-  std::uint32_t edges_ = 0;  ///< since the prescaler let one through
+  std::uint32_t edges_ = 0;  ///< clock edges since the last prescaler output
   std::uint32_t count_ = 0;  ///< at the start of the ramp
   bool down_ = false;
   bool gate_open_ = false;
@@ -197,9 +196,9 @@ class Timers final : public TriggerLines {
     timer(timer_number).input_changed(line, high, when);
   }
   void trigger_from(unsigned master, bool level, bool is_pulse);
-  /// A slave listens to the trigger output of `master` in a mode that starts or steps it.
+  /// True if a slave timer uses the trigger output of `master` to start or step its counter.
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }
-  /// Master 0: `slave` listens to none.
+  /// Sets the master of `slave`; 0 means none.
   void set_slave(unsigned slave, unsigned master);
   void plan_again();
   void clock_failed() {
@@ -209,7 +208,7 @@ class Timers final : public TriggerLines {
 
  private:
   std::deque<Timer> timers_;
-  std::array<std::uint32_t, 15> slaves_{};  ///< by master: bit of each slave
+  std::array<std::uint32_t, 15> slaves_{};  ///< index: master; one bit per slave
 };
 
 }  // namespace inkwell::virtual_board

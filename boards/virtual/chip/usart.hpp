@@ -1,5 +1,5 @@
-// USART1 to 3 and 6, UART4 and 5 (RM0090, "Universal synchronous asynchronous receiver transmitter"):
-// asynchronous frames at their real speed, characters instead of edges on the pins.
+// USART1 to 3 and 6, UART4 and 5 (RM0090, "Universal synchronous asynchronous receiver transmitter"). Asynchronous
+// frames have their real duration, but characters replace the edges on the pins.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   void receive(std::uint8_t byte);
   bool listens() const;
   std::size_t waiting() const { return line_.size(); }
-  /// A DMA stream has been enabled: requests that wait can be served.
+  /// Serves pending requests. Call this when a DMA stream has been enabled.
   void serve_dma();
   std::function<void(unsigned number, std::uint8_t byte)> on_sent;
 
@@ -61,10 +61,10 @@ class Usart final : public RegisterBlock, public TimedPart {
 
  private:
   std::string name() const;
-  /// In cycles of its bus.
+  /// Duration of a bit in bus clock cycles.
   unsigned cycles_of_bit() const;
   Ticks frame_duration() const;
-  /// What is sent leaves the chip and can be read.
+  /// True if the baud rate is valid and a TX pin is configured.
   bool is_heard() const;
   void load_shift_register();
   void take_received();

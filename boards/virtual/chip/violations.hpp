@@ -1,4 +1,4 @@
-// The list of broken rules, each once for each place.
+// List of broken rules, with one entry per rule and affected peripheral or pin.
 #pragma once
 
 #include <chip/violations.hpp>
@@ -15,7 +15,7 @@ class Violations final : public RuleKeeper {
   void violate(Rule rule, const std::string& where = {}) override;
   const std::vector<Violation>& list() const { return list_; }
 
-  /// Called when a rule is broken for the first time at a place.
+  /// Called at the first violation of a rule by a peripheral or pin.
   std::function<void(const Violation&)> on_first;
 
  private:

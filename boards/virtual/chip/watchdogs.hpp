@@ -78,7 +78,8 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart, public
   std::span<const MapEntry> registers() const override { return shown<iwdg>(); }
 
  private:
-  /// A new value crosses to the slow clock within five of its cycles (RM0090, "Status register (IWDG_SR)").
+  /// Returns true if the register is free. A new value needs up to five cycles of the slow clock (RM0090, "Status
+  /// register (IWDG_SR)").
   bool takes(Ticks& taken_at, const char* name) {
     const Ticks now = machine_.timeline.now();
     if (now < taken_at) {
@@ -105,7 +106,7 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart, public
   Timeline::Slot slot_;
   std::uint32_t prescaler_ = 0, reload_ = iwdg.rlr.reset_value;
   Ticks prescaler_taken_at_ = 0, reload_taken_at_ = 0;
-  Ticks end_ = 0, left_ = 0;  ///< when it bites; how long it had when it was frozen
+  Ticks end_ = 0, left_ = 0;  ///< expiry time; remaining time when frozen
   bool unlocked_ = false, runs_ = false;
 };
 
@@ -155,7 +156,7 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
       active_ |= wwdg.cr.wdga.in(value);
       counter_ = wwdg.cr.t.of(value);
       start_ = machine_.timeline.now();
-      // Too early, or at once below the limit.
+      // Refresh outside of the window, or a value below the limit.
       if (outside || (active_ && counter_ < last_count)) machine_.request_reset(ResetCause::window_watchdog);
       plan();
     } else if (offset == wwdg.cfr) {
@@ -169,7 +170,7 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
   std::span<const MapEntry> registers() const override { return shown<wwdg>(); }
 
  private:
-  static constexpr std::uint32_t last_count = 0x40;  ///< one less resets the chip
+  static constexpr std::uint32_t last_count = 0x40;  ///< the next lower value resets the chip
   void plan() {
     if (!active_ || frozen_) return machine_.timeline.set(slot_, never, never);
     const Ticks next =

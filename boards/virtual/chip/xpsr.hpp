@@ -1,4 +1,4 @@
-// The program status register, APSR, EPSR and IPSR in one (ARMv7-M, B1.4.2), as it is stacked.
+// The stacked program status register: APSR, EPSR and IPSR combined (ARMv7-M, B1.4.2).
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -6,8 +6,8 @@
 namespace inkwell::virtual_board {
 
 struct ProgramStatus {
-  Field exception{"exception", 0, 9};  ///< the number of the one that runs
-  Field padded{"padded", 9};           ///< only on the stack: a word before the frame aligns it
+  Field exception{"exception", 0, 9};  ///< number of the running exception
+  Field padded{"padded", 9};           ///< only on the stack: an alignment word precedes the frame
   Field if_then_high{"IT[7:2]", 10, 6}, if_then_low{"IT[1:0]", 25, 2};
   Field greater_or_equal{"GE", 16, 4}, thumb{"T", 24}, saturated{"Q", 27}, conditions{"NZCV", 28, 4};
 
@@ -16,7 +16,7 @@ struct ProgramStatus {
   constexpr std::uint32_t if_then_state(std::uint32_t word) const {
     return if_then_high.of(word) << 2 | if_then_low.of(word);
   }
-  /// All of the APSR.
+  /// All flags of the APSR.
   constexpr std::uint32_t flags() const { return greater_or_equal.mask() | saturated.mask() | conditions.mask(); }
 };
 inline constexpr ProgramStatus xpsr;

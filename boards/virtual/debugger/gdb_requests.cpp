@@ -30,7 +30,7 @@ std::optional<Range> range_of(std::string_view text) {
   return Range{*address, *bytes};
 }
 
-/// The part of `text` that "OFFSET,LENGTH" asks for, with the mark whether more follows.
+/// Returns the part of `text` for "OFFSET,LENGTH", after a letter that indicates whether more data follows.
 Answered part_of(const std::string& text, std::string_view range) {
   const auto part = range_of(range);
   if (!part) return bad_request;
@@ -75,11 +75,11 @@ Request write_memory(std::string_view text, bool is_binary) {
   const std::string_view data = text.substr(colon + 1);
   auto bytes = is_binary ? std::optional(std::vector<std::uint8_t>(data.begin(), data.end())) : bytes_of(data);
   if (!range || !bytes || bytes->size() != range->bytes) return bad_request;
-  if (bytes->empty()) return ok;  // by which GDB asks whether the packet X is known
+  if (bytes->empty()) return ok;  // GDB tests support for the X packet with empty data
   return WriteMemory{range->address, std::move(*bytes)};
 }
 
-/// "zKIND,ADDRESS,LENGTH", and what GDB may have behind a semicolon.
+/// "zKIND,ADDRESS,LENGTH", optionally with more fields after a semicolon.
 Request change_point(std::string_view packet) {
   constexpr std::size_t begin = 3;
   if (packet.size() < begin || packet[2] != ',') return bad_request;
@@ -134,7 +134,7 @@ Request request_of(std::string_view packet) {
     case 'z': return change_point(packet);
     case 'c':
     case 's':
-      if (!rest.empty()) return unknown;  // another address to go on from
+      if (!rest.empty()) return unknown;  // resume at another address
       return resume(packet.front());
     case 'C':
     case 'S': return resume(packet.front());

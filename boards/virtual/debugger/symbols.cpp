@@ -37,7 +37,7 @@ std::string demangled(const std::string& name) {
   return status == 0 ? text.get() : name;
 }
 
-/// An ELF file as far as its symbols need it. One that is damaged, or none at all, has none.
+/// Symbol table of an ELF file. A damaged or missing file has no symbols.
 class SymbolTable {
  public:
   explicit SymbolTable(const std::filesystem::path& elf) {
@@ -46,7 +46,7 @@ class SymbolTable {
     header_ = record_at<Elf32_Ehdr>(file_, 0);
   }
 
-  /// Calls `see(symbol, name)` for all that are defined.
+  /// Calls `see(symbol, name)` for each defined symbol.
   void for_each(const std::function<void(const Elf32_Sym&, const std::string&)>& see) const {
     for (unsigned i = 0; header_ && i < header_->e_shnum; ++i) {
       const auto table = section(i);
@@ -62,7 +62,7 @@ class SymbolTable {
     }
   }
 
-  /// What the file has for a symbol, up to the first zero.
+  /// Contents of the symbol up to the first zero byte.
   std::string text(const Elf32_Sym& symbol) const {
     const auto place = section(symbol.st_shndx);
     if (!place || place->sh_type != SHT_PROGBITS || symbol.st_value < place->sh_addr) return {};
@@ -103,7 +103,7 @@ std::string Symbols::name(std::uint32_t address) const {
   if (after == functions_.begin()) return {};
   const Function& function = *std::prev(after);
   const std::uint32_t offset = address - function.address;
-  // Functions in assembler often have no size; the next one ends them.
+  // Assembler functions often have no size. Such functions extend to the next function.
   if (function.bytes != 0 ? offset >= function.bytes : after == functions_.end() && offset > 0) return {};
   return offset == 0 ? demangled(function.name) : fmt::format("{}+0x{:X}", demangled(function.name), offset);
 }

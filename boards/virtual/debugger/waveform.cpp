@@ -53,7 +53,7 @@ Waveform::~Waveform() {
   set_time(chip_.now());
 }
 
-// The processor may be ahead of the pins by the rest of what it runs in one go; time in the file never goes back.
+// The processor may be ahead of the pins by the rest of its slice. Time in the file must never decrease.
 void Waveform::set_time(Ticks when) {
   if (begun_ && when <= written_until_) return;
   begun_ = true;

@@ -11,7 +11,7 @@ namespace {
 
 using protocol::InjectedFault;
 
-/// The one that stands for all of which one at a time is at a place.
+/// Representative of all faults that exclude each other at one position.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::wire_low:
@@ -28,7 +28,7 @@ InjectedFault kind(InjectedFault fault) {
   }
 }
 
-/// It happens and is over; a second one comes on top.
+/// Whether the fault is instantaneous; a second one adds to the first.
 bool is_momentary(InjectedFault fault) {
   return fault == InjectedFault::encoder_slip || fault == InjectedFault::program_astray ||
          fault == InjectedFault::ram_bit || fault == InjectedFault::flash_bit;
@@ -38,14 +38,14 @@ bool is_within(std::uint32_t address, std::uint32_t base, std::uint32_t bytes) {
   return address >= base && address - base < bytes;
 }
 
-/// What the image takes of the flash: behind it all is erased, and nothing would notice.
+/// Size of the image in flash. The flash above the image is erased and unused.
 std::uint32_t programmed_bytes(const Chip& chip) {
   std::uint32_t bytes = flash_bytes;
   while (bytes > 4 && chip.memory_word(flash_base + bytes - 4) == 0xFFFF'FFFF) bytes -= 4;
   return bytes;
 }
 
-/// add() has looked at the address; a fault that did not come must not be told as one that did.
+/// add() has checked the address. The check here prevents a report of a fault that did not occur.
 void flip_bit(Chip& chip, const Injection& injection) {
   if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
     throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} in which a bit could flip", *injection.address));
@@ -106,7 +106,7 @@ void Injector::put_in(unsigned number, Injection injection) {
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
       if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
-      // Of the same fault another amount takes its place, without a sound moment in between.
+      // A new amount replaces the amount of the same fault, without a fault-free moment in between.
       if (active.injection.fault != injection.fault) put(active.injection, false);
       return true;
     });
@@ -149,7 +149,7 @@ void Injector::choose_place(Injection& injection) {
   if (injection.amount < 0.0) injection.amount = below(8);
 }
 
-// ---- one fault, into its victim or out of it --------------------------------------------------------------
+// ---- applying and clearing one fault ----------------------------------------------------------------------
 
 void Injector::put(const Injection& injection, bool in) {
   switch (protocol::info(injection.fault).place) {

@@ -49,7 +49,7 @@ Vector3 ArmDynamics::position_m(const Vector3& joints_rad) const { return worksp
 
 Matrix3 ArmDynamics::jacobian_m(const Links& l) const {
   const double reach = link_2_m_ * l.cos_a + link_3_m_ * l.cos_b;
-  const auto turn = [&](double along, double up) {  // from the arm's plane into the workspace
+  const auto turn = [&](double along, double up) {  // from the arm's plane to the workspace
     return omni_frame_ ? Vector3(-along * l.sin_1, up, along * l.cos_1) : Vector3(along * l.cos_1, along * l.sin_1, up);
   };
   const Vector3 by_1 =
@@ -70,7 +70,7 @@ ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) co
   const double a_speed = speed[1];
   const double b_speed = parallelogram_ ? speed[2] : speed[1] + speed[2];
 
-  // In link coordinates; the Coriolis terms are Lagrange's, written out for the energies above.
+  // Link coordinates. The Coriolis terms follow from Lagrange's equations and the energies in arm_dynamics.hpp.
   const double cos_difference = l.cos_a * l.cos_b + l.sin_a * l.sin_b;
   const double sin_difference = l.sin_a * l.cos_b - l.cos_a * l.sin_b;
   const double waist = turret_kg_m2_ + link_2_kg_m2_ * l.cos_a * l.cos_a + link_3_kg_m2_ * l.cos_b * l.cos_b +
@@ -92,7 +92,7 @@ ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) co
     t.mass_matrix << waist, 0, 0, 0, link_2_kg_m2_, elbow, 0, elbow, link_3_kg_m2_;
     t.coriolis_Nm = {coriolis_1, coriolis_a, coriolis_b};
     t.gravity_Nm = {0.0, gravity_a, gravity_b};
-  } else {  // b = q2 + q3, so every torque on b acts on q2 and q3
+  } else {  // b = q2 + q3, so each torque on b acts on q2 and on q3
     const double both = link_2_kg_m2_ + link_3_kg_m2_ + 2.0 * elbow;
     const double half = link_3_kg_m2_ + elbow;
     t.mass_matrix << waist, 0, 0, 0, both, half, 0, half, link_3_kg_m2_;

@@ -33,7 +33,7 @@ Vector3 ArmMotion::stop_torque_Nm(const Vector3& joints_rad, const Vector3& spee
     const double beyond_rad = angle_rad - std::clamp(angle_rad, stop.minimum_rad, stop.maximum_rad);
     if (beyond_rad == 0.0) return 0.0;
     const double pushed = -stop_stiffness_Nm_per_rad_ * beyond_rad - stop_damping_Nms_per_rad_ * speed_rad_s;
-    return beyond_rad > 0.0 ? std::min(pushed, 0.0) : std::max(pushed, 0.0);  // a stop does not hold back
+    return beyond_rad > 0.0 ? std::min(pushed, 0.0) : std::max(pushed, 0.0);  // a stop only pushes
   };
   const bool parallelogram = dynamics_.is_parallelogram();
   const double elbow_speed = parallelogram ? speeds[2] - speeds[1] : speeds[2];
@@ -67,8 +67,9 @@ void ArmMotion::step(double duration_s, const Vector3& torque_Nm, std::span<cons
   joints_rad_ = middle_rad + 0.5 * duration_s * next;
 }
 
-// Projected Gauss-Seidel over the joints: each gets the impulse that stops it, clipped to its cone. Starting
-// from the last step's impulses a joint at rest, and one that slides on, are done in a round or two.
+// Solves the friction with projected Gauss-Seidel rounds over the joints. Each joint gets the impulse that stops it,
+// clipped to its friction cone. The impulses of the previous step are the initial guess. With this guess, a resting
+// joint and a sliding joint converge in one or two rounds.
 Vector3 ArmMotion::slide(const Matrix3& inverse_mass, const Vector3& free, double duration_s) {
   constexpr int rounds_maximum = 40;
   constexpr double still_rad_s = 1e-13;

@@ -46,7 +46,7 @@ Coupling Hand::coupling(Ticks now) const {
 }
 
 namespace {
-constexpr double socket_stiffness_N_per_m = 50e3;  // the arm's weight sinks it by less than an encoder count
+constexpr double socket_stiffness_N_per_m = 50e3;  // the arm's weight deflects it by less than one encoder count
 constexpr double socket_damping_Ns_per_m = 60.0;
 constexpr double socket_grip_N = 6.0;
 constexpr double funnel_radius_m = 0.003;

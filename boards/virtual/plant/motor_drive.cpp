@@ -18,7 +18,7 @@ void MotorDrive::configure(const MotorConstants& motor) {
   time_constant_s_ = motor.inductance_H / resistance_ohm_;
   inverse_resistance_ = 1.0 / resistance_ohm_;
   amplifier_time_constant_s_ = amplifier_s_;
-  // Equal time constants would make the closed form of the amplifier singular; a thousandth apart is as good.
+  // Equal time constants would make the amplifier's closed form singular. Ratios close to 1 are therefore set to 0.999.
   double ratio = amplifier_time_constant_s_ / time_constant_s_;
   if (std::abs(1.0 - ratio) < 1e-3) {
     ratio = 1.0 - 1e-3;
@@ -35,7 +35,7 @@ void MotorDrive::set_winding(const std::optional<MotorConstants>& motor, Ticks n
   if (conducts_)
     configure(*motor);
   else
-    current_A_ = 0.0;  // the arc takes what the inductance held
+    current_A_ = 0.0;  // the arc dissipates the energy of the inductance
 }
 
 void MotorDrive::set_leg_fault(unsigned leg, LegFault fault, Ticks now) {
@@ -60,7 +60,7 @@ void MotorDrive::set_leg(unsigned leg, Leg level, Ticks now) {
   LegState& state = legs_[leg];
   if (state.wanted == level) return;
   state.wanted = level;
-  // Switching off is immediate; switching on waits until the other switch of the leg is surely off.
+  // A leg switches off immediately. A leg switches on after the dead time, when its other switch is off.
   const Ticks pause = dead_time_ + state.delay;
   state.actual = pause == 0 ? level : Leg::floating;
   state.settles_at = now + pause;
@@ -84,8 +84,8 @@ MotorDrive::Charges MotorDrive::take_charges() {
   return taken;
 }
 
-// A floating leg is pulled to a rail by the diode that the current flows through: out of leg A or into leg B
-// for a positive current.
+// Returns the source that drives the current. A floating leg is clamped to a rail by its conducting diode. A positive
+// current flows out of leg A and into leg B.
 MotorDrive::Branch MotorDrive::branch() const {
   if (!conducts_) return {back_emf_V_, 0.0, false, false};
   const Leg a = legs_[0].acting();
@@ -101,7 +101,7 @@ MotorDrive::Branch MotorDrive::branch() const {
   };
   if (!floating || current_A_ > 0.0) return with_sign(true);
   if (current_A_ < 0.0) return with_sign(false);
-  // No current: it starts only if the back-EMF and the driven leg overcome the diodes.
+  // At zero current, a current starts only if back-EMF and driven leg exceed the diode voltages.
   if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
   if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
   return {back_emf_V_, 0.0, false, false};
@@ -138,7 +138,7 @@ void MotorDrive::run(double duration_s, double decay, double amplifier_decay, co
   const double charge_As = final_A * duration_s + transient_A * time_constant_s_ * (1.0 - decay);
   charges_.motor_As += charge_As;
   charges_.supply_As += path.supply_share * charge_As;
-  // First-order amplifier driven by the current's exponential: the forced part lags it, the rest dies out.
+  // The amplifier is first order. The response of the amplifier is a lagging forced part and a decaying free part.
   const double forced_A = amplifier_lead_ * transient_A;
   amplifier_A_ = final_A + forced_A * decay + (amplifier_A_ - final_A - forced_A) * amplifier_decay;
   current_A_ = final_A + transient_A * decay;

@@ -50,15 +50,15 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 
 constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
-/// Of the supply's divider, as the pin sees it.
+/// Source resistance of the supply divider at the pin.
 double divider_ohm(const board::Facts& board) {
   return static_cast<double>(board.supply_upper_ohm / board.supply_divider());
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
-/// A bare contact to ground; the chip's own pull-up makes the high level.
+/// Level of a bare contact to ground; the chip's pull-up provides the high level.
 PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
-/// The bridges' open-drain wire with the board's pull-up.
+/// Level of the bridges' open-drain fault wire with the board's pull-up.
 PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high; }
 
 }  // namespace
@@ -90,7 +90,7 @@ Plant::Plant(const arms::Description& arm, const board::Facts& board, const Plan
     wire(board_.bridges[i].leg_a.pin, Role::leg_a, i);
     wire(board_.bridges[i].leg_b.pin, Role::leg_b, i);
     motors_[i].set_bus_V(supply_.bus_V());
-    // The wipers start in the middle of their tracks.
+    // Initially the wipers are in the middle of their tracks.
     const auto& [square, slope, offset] = gimbal_terms_[i];
     gimbal_rad_[i] = 0.25 * square + 0.5 * slope + offset;
   }
@@ -106,12 +106,12 @@ void Plant::connect(InputPins& pins) {
     pins.drive(board_.encoders[i].b.pin.port, board_.encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
   }
   inputs_stale_ = true;
-  shown_.fill(PinLevel::floating);  // as the chip sees a pin that nothing drives
+  shown_.fill(PinLevel::floating);  // level of an undriven pin
   show_inputs();
   show_hold();
 }
 
-// ---- the chip's calls ----------------------------------------------------------------------------------
+// ---- calls from the chip --------------------------------------------------------------------------------
 
 void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   const unsigned index = wire_index(port, pin);
@@ -119,7 +119,7 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   run_until(now);
   const Wire wire = wires_[index];
   if (wire.role == Role::enable || wire.role == Role::heartbeat) {
-    const bool high = level == PinLevel::high;  // the board's pull-downs keep pins that float low
+    const bool high = level == PinLevel::high;  // the board's pull-downs set floating pins low
     wire.role == Role::enable ? hold_.drive_clear(high, now) : hold_.drive_trigger(high, now);
     enable_bridges(hold_.ends_at() > now, now);
     return;
@@ -138,7 +138,7 @@ void Plant::enable_bridges(bool enabled, Ticks now) {
   note_driving(now);
 }
 
-/// If their time is over by then.
+/// Disables the bridges if the monostable's pulse ends by `until`.
 void Plant::let_go_of_bridges(Ticks until) {
   if (bridges_enabled_ && hold_.ends_at() <= until) enable_bridges(false, hold_.ends_at());
 }
@@ -163,13 +163,14 @@ bool Plant::shoots_through() const {
 
 void Plant::update_legs(unsigned motor, Ticks now) {
   if (bridges_enabled_ && !tripped_ && shoots_through()) {
-    // Microseconds, after which the bridge is off by itself and says so.
+    // The shoot-through lasts microseconds. Then the bridge trips and reports a fault.
     tripped_ = inputs_stale_ = true;
     for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
     return;
   }
   for (unsigned leg = 0; leg < 2; ++leg) {
-    // A disabled or tripped bridge leaves the current to its diodes. A floating pin is low: the inputs have pull-downs.
+    // A disabled or tripped bridge leaves the current to its diodes. The bridge inputs have pull-downs, so a floating
+    // pin is low.
     const bool off = !bridges_enabled_ || bridge_fault_ || tripped_;
     motors_[motor].set_leg(leg,
                            off                                       ? Leg::floating
@@ -210,7 +211,7 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
   }
   if (board_.supply.pin == wanted)
     return std::clamp(supply_divided_V_ + noise(imperfections_.supply_reading_noise_V), 0.0, analog_supply_V_);
-  return 0.0;  // nothing is wired there; the board's ground plane is near
+  return 0.0;  // unwired pin, coupled to the ground plane
 }
 
 AnalogSource Plant::analog_source(char port, unsigned pin) const {
@@ -218,7 +219,7 @@ AnalogSource Plant::analog_source(char port, unsigned pin) const {
   for (unsigned i = 0; i < 3; ++i) {
     if (board_.motor_current[i].pin == wanted)
       return {board_.current_filter_ohm, board_.current_filter_F, board_.current_pull_down_ohm};
-    // A wiper in the middle has the most behind it.
+    // The source resistance of the wiper is largest in the middle of the track.
     if (board_.gimbal[i].pin == wanted) return {board_.gimbal_track_ohm / 4, board_.gimbal_filter_F};
   }
   if (board_.supply.pin != wanted) return {};
@@ -226,13 +227,13 @@ AnalogSource Plant::analog_source(char port, unsigned pin) const {
 }
 
 double Plant::gimbal_V(unsigned axis) {
-  // angle = square r^2 + slope r + offset, for the r that lies on the track
+  // angle = square r^2 + slope r + offset, solved for the r on the track
   const auto& [square, slope, offset] = gimbal_terms_[axis];
   const double constant = offset - gimbal_rad_[axis];
   double ratio = -constant / slope;
   if (square != 0.0) {
     const double root = std::sqrt(std::max(slope * slope - 4.0 * square * constant, 0.0));
-    ratio = -2.0 * constant / (slope + std::copysign(root, slope));  // the root that the line above goes over into
+    ratio = -2.0 * constant / (slope + std::copysign(root, slope));  // the root that is finite for square = 0
   }
   return std::clamp(ratio, 0.0, 1.0) * analog_supply_V_;
 }
@@ -290,7 +291,7 @@ void Plant::step() {
 }
 
 void Plant::finish_docking() {
-  // The funnel takes over where the way ends, not wherever the way happens to cross it.
+  // The funnel captures the stylus only at the end of the path, not where the path crosses the funnel earlier.
   if (carrier_.is_moving(next_step_)) return;
   if (inkwell_.capture(probe_m_)) carrier_.release();
 }
@@ -303,7 +304,7 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
   pins_->drive(port, pin, level);
 }
 
-/// At once: it tells how long the bridges were on.
+/// Drives the pin immediately, because the chip measures the duration of the pulse.
 void Plant::show_hold() {
   if (pins_ != nullptr) show(board_.bridge_hold.port, board_.bridge_hold.number, level_of(bridges_enabled_), shown_[6]);
 }
@@ -311,14 +312,14 @@ void Plant::show_hold() {
 void Plant::show_inputs() {
   if (pins_ == nullptr || !inputs_stale_) return;
   inputs_stale_ = false;
-  // The arm has moved evenly since the inputs were shown.
+  // The arm moved at constant speed since the inputs were last driven.
   const Ticks from = shown_at_, to = next_step_ - step_ticks;
   shown_at_ = to;
   for (unsigned i = 0; i < 3; ++i) {
     const auto& wiring = board_.encoders[i];
     encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels, double share) {
       const Ticks when = from + static_cast<Ticks>(share * static_cast<double>(to - from));
-      // Neighbouring counts differ in one pin, so each edge is one call.
+      // Adjacent counts differ in one pin, so each edge is one call.
       const auto& changed = levels.a != encoder_levels_[i].a ? wiring.a.pin : wiring.b.pin;
       pins_->drive(changed.port, changed.number, level_of(&changed == &wiring.a.pin ? levels.a : levels.b), when);
       encoder_levels_[i] = levels;
@@ -335,7 +336,7 @@ void Plant::show_inputs() {
   show(board_.usb_supply.port, board_.usb_supply.number, level_of(usb_supply_), shown_[5]);
 }
 
-// ---- what a person does ----------------------------------------------------------------------------------
+// ---- user actions ---------------------------------------------------------------------------------------
 
 void Plant::press_buttons(bool first, bool second) {
   buttons_ = {first, second};
@@ -400,7 +401,7 @@ void Plant::dock(bool docked) {
   if (inkwell_.seated()) return;
   constexpr double speed_m_s = 0.2;
   constexpr double shortest_s = 0.1;
-  constexpr double stiffness_N_per_m = 800.0;  // sags by less than the funnel's radius under the arm's weight
+  constexpr double stiffness_N_per_m = 800.0;  // sags under the arm's weight by less than the funnel's radius
   constexpr double damping_Ns_per_m = 8.0;
   const double distance_m = (inkwell_.position_m() - probe_m_).norm();
   carrier_.hold(probe_m_, stiffness_N_per_m, damping_Ns_per_m);
@@ -417,7 +418,7 @@ void Plant::place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) 
 
 Truth Plant::truth(Ticks now) {
   run_until(now);
-  // Between two steps the arm moves on at its speed.
+  // Extrapolates from the last step at the arm's speed.
   const double since_step_s = seconds(now_ + step_ticks - next_step_);
   Truth t;
   t.at = now_;

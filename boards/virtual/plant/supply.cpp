@@ -24,16 +24,16 @@ double Supply::source_V() const {
 }
 
 void Supply::advance(double duration_s, double charge_As) {
-  // Implicit Euler: stable for any source resistance and capacitor.
+  // Implicit Euler is stable for any source resistance and capacitor.
   const auto next_V = [&](double source_S) {
     const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V();
     return charge / (capacitance_F_ + duration_s * (source_S + quiescent_conductance_S_));
   };
   swinging_s_ += duration_s;
   const double fed_V = next_V(source_conductance_S_);
-  // Above its own voltage a source that does not hunt blocks.
+  // A source that does not oscillate blocks when the bus voltage exceeds its own.
   bus_V_ = fed_V <= source_V() || swing_V_ != 0.0 ? fed_V : std::max(source_V(), next_V(0.0));
-  // Below ground the diodes of the bridges conduct.
+  // The bridges' diodes clamp the bus at ground.
   bus_V_ = std::max(bus_V_, 0.0);
 }
 

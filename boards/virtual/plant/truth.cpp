@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// A row of the table that is not here is a warning of the compiler.
+/// Value of one quantity. The compiler warns about a missing case.
 double value_of(protocol::SimulatedQuantity quantity, const Truth& truth) {
   using enum protocol::SimulatedQuantity;
   switch (quantity) {

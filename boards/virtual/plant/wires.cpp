@@ -13,7 +13,7 @@ const PinName* Wires::neighbour(PinName wire) const {
   return nullptr;
 }
 
-// What comes out at the other end. Of two wires that touch low wins; one that nothing drives does not count.
+// Returns the level at the receiving end. Of two touching wires low wins; an undriven wire is ignored.
 PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen) {
   const State& s = state(wire);
   switch (s.fault) {
@@ -49,7 +49,7 @@ void Wires::set(PinName wire, WireFault fault) {
   s.frozen_V = s.newest_V;
   s.since = now_;
   s.fault = fault;
-  // What a wire touches wins against the chip's output as well.
+  // A short also overrides the chip's output.
   const bool touches = fault == WireFault::low || fault == WireFault::high;
   if (chip_ != nullptr)
     chip_->hold(wire.port, wire.pin,
@@ -105,7 +105,7 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
   return read_V;
 }
 
-// A broken wire's own time constant is in its voltage already.
+// Returns an empty source for a broken wire, because the voltage of the wire already includes its time constant.
 AnalogSource Wires::analog_source(char port, unsigned pin) const {
   return states_[index({port, pin})].fault == WireFault::sound ? circuit_.analog_source(port, pin) : AnalogSource{};
 }

@@ -73,10 +73,10 @@ Board::Board(const Options& options, const local::SocketAddress& usbip, std::fun
   if (options.boot_loader) chip_.start_boot_loader();
   if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
   for (const Injection& injection : options.injections) injector_->add(injection);
-  chip_.clear_counters();  // resets are counted from here on
+  chip_.clear_counters();  // initial resets are not counted
   chip_.on_reset = [this](ResetCause cause) {
     locked_up_ = false;
-    if (trace_.is_running()) trace_.start();  // control periods count from 0 again
+    if (trace_.is_running()) trace_.start();  // control periods restart from 0
     log_line(chip_.now(), fmt::format("the chip was reset by {}", name_of(cause)));
   };
 }
@@ -138,7 +138,7 @@ void Board::plug(bool in) {
 void Board::reset() { chip_.reset(ResetCause::pin); }
 
 void Board::console(std::uint8_t byte) {
-  constexpr std::size_t longest_line = 400;  // firmware that never ends its line must not fill the memory
+  constexpr std::size_t longest_line = 400;  // limits the memory for firmware that never ends its line
   if (byte == '\r') return;
   if (byte != '\n') console_line_ += byte >= 32 && byte < 127 ? static_cast<char>(byte) : '?';
   if (byte != '\n' && console_line_.size() < longest_line) return;

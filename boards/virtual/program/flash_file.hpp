@@ -1,4 +1,4 @@
-// The chip's flash in a file, so that a board remembers from run to run what it has stored.
+// Storage of the chip's flash in a file, so that its contents survive the program.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace inkwell::virtual_board {
 
-/// All bytes of the flash in the order of their addresses, and nothing else. No other program can use the file
-/// meanwhile.
+/// The file contains only the bytes of the flash, in address order. The file is locked against other programs.
 class FlashFile {
  public:
-  /// Fills `flash` from the file; leaves it as it is if there is none, which save() will make.
-  /// @throws std::runtime_error with a sentence if the file is no flash of this chip, is in use, or cannot be read.
+  /// Fills `flash` from the file. If the file does not exist, `flash` does not change, and save() creates the file.
+  /// @throws std::runtime_error with a sentence if the file is not a flash image of this chip, is in use, or is
+  /// unreadable.
   FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash);
-  /// The file is whole at any time: another takes its place.
-  /// @throws std::runtime_error with a sentence if it cannot be written.
+  /// Replaces the file atomically.
+  /// @throws std::runtime_error with a sentence if the file cannot be written.
   void save(std::span<const std::uint8_t> flash);
 
  private:

@@ -1,4 +1,4 @@
-// The commands of the control socket that put faults in, and what they tell.
+// Control socket commands for fault injection, and their replies.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace inkwell::virtual_board {
 
-/// What is in now, and what is still to come.
+/// Lists of the active and of the planned faults.
 nlohmann::json injected(Board& board);
 nlohmann::json still_to_come(Board& board);
 nlohmann::json inject(const nlohmann::json& request, Simulation& simulation);

@@ -1,4 +1,4 @@
-// The program's log: lines on stderr, each with its board time once there is one.
+// The program's log: lines on stderr, with the board time if available.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// virtual-board: runs the firmware that would be flashed on a board made of software.
+// virtual-board: runs unchanged firmware on the virtual board.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction of_hang_up {};
   sigaction(SIGHUP, nullptr, &of_hang_up);
-  if (of_hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup has it ignored
+  if (of_hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores SIGHUP
 
   try {
     PrivateSockets sockets;

@@ -17,7 +17,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// As it was written, until all of it is read.
+/// The options as text, before they are checked.
 struct Given {
   Options options;
   std::string usbip = "0", control = "0", gdb;
@@ -201,9 +201,7 @@ std::string footer() {
          explain_commands();
 }
 
-/// The board that was asked for, else the one that the ELF is for. False after a sentence on stderr if there is none
-/// such.
-/// Empty: the file holds no firmware of ours.
+/// Name of the board of the image in the flash file; empty if the file contains no firmware of this project.
 std::string board_in_flash(const std::filesystem::path& file) {
   std::ifstream flash(file, std::ios::binary);
   protocol::ImageIdentity identity{};
@@ -226,7 +224,7 @@ bool take_board(Given& given) {
   return false;
 }
 
-/// False after a sentence on stderr.
+/// Prints a sentence on stderr and returns false on errors.
 bool take_ports(Given& given) {
   const auto read = [](const char* option, const std::string& text, PortOption& port) {
     try {
@@ -241,7 +239,7 @@ bool take_ports(Given& given) {
          (!*given.gdb_option || read("--gdb", given.gdb, given.options.gdb.emplace()));
 }
 
-/// False after a sentence on stderr.
+/// Prints a sentence on stderr and returns false on errors.
 bool take_serial_number(Given& given) {
   Options& options = given.options;
   try {
@@ -258,7 +256,7 @@ bool take_serial_number(Given& given) {
   return true;
 }
 
-/// Makes the options of what was written. False after a sentence on stderr if something of it can not be.
+/// Converts the text to options. Prints a sentence on stderr and returns false on errors.
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
     if (*given.mode_option && given.mode != "exact") {

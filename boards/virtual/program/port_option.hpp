@@ -1,4 +1,4 @@
-// Where a port of the board is to listen, as its option says.
+// Listening address of a port, from its option.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace inkwell::virtual_board {
 
-/// A Unix socket without a path is one in a private folder.
+/// A Unix socket without a path is created in a private folder.
 struct PortOption {
   local::SocketAddress address{};
   bool is_private = false;
-  /// Of "PORT", "unix:PATH" or "unix:". Throws std::invalid_argument with a sentence.
+  /// Parses "PORT", "unix:PATH" or "unix:". Throws std::invalid_argument with a sentence.
   static PortOption of(const std::string& text);
 };
 
-/// What the line "ready ..." says of a port: its number, or "unix:PATH".
+/// Text for a port in the line "ready ...": its number, or "unix:PATH".
 std::string announced(const local::SocketAddress& address);
 
-/// The folder of the private sockets, made once it is needed.
+/// The folder of the private sockets, created at the first use.
 class PrivateSockets {
  public:
-  /// `name` is the file's if the socket is private. Throws std::runtime_error with a sentence.
+  /// `name` is the file name of a private socket. Throws std::runtime_error with a sentence.
   local::SocketAddress address_of(const PortOption& option, const std::string& name);
 
  private:

@@ -1,4 +1,4 @@
-// Where the cycles of the longest interrupt go.
+// Cycles of the longest interrupt, by instruction.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace inkwell::virtual_board {
 
-/// Keeps the longest run of any handler, instruction by instruction. A handler that is preempted counts in pieces.
+/// Records the longest run of any handler, instruction by instruction. Preemption splits a run into separate runs.
 class Profile {
  public:
-  /// Before each instruction: the exception that runs (0 is none), its address, and the cycles so far.
+  /// Call before each instruction with the active exception (0: thread mode), the address, and the cycle count.
   void instruction(unsigned exception, std::uint32_t address, std::uint64_t cycles);
 
-  /// A line for each instruction of the longest run, in order: its address, hexadecimal, and its cycles. Throws
-  /// std::runtime_error if the file can not be written.
+  /// Writes one line per instruction of the longest run, in order: hexadecimal address and cycles. Throws
+  /// std::runtime_error if the file cannot be written.
   void write(const std::filesystem::path& file) const;
 
  private:
@@ -23,7 +23,7 @@ class Profile {
     std::uint64_t begin_cycle;
   };
   unsigned exception_ = 0;
-  std::vector<Step> run_, longest_;  ///< the last one of longest_ is where the handler ended
+  std::vector<Step> run_, longest_;  ///< the last step of longest_ is the end of the handler
   std::uint64_t longest_cycles_ = 0;
 };
 

@@ -12,9 +12,9 @@ using nlohmann::json;
 
 namespace {
 
-/// Of a trace; the rest waits for the next answer. A line of all rows would fill the memory.
+/// Limit of trace rows in a reply, which bounds its memory. The next reply returns the remaining rows.
 constexpr std::size_t rows_of_answer_maximum = 100'000;
-constexpr double reach_m = 2.0;  // farther away than any arm of the descriptions' ranges
+constexpr double reach_m = 2.0;  // beyond the reach of any arm that a description allows
 
 const json& at(const json& request, const char* key, const char* what) {
   const auto found = request.find(key);
@@ -119,7 +119,7 @@ std::string explain_commands() {
   std::string text;
   for (const CommandInfo& command : command_table()) {
     const std::string usage = fmt::format("{} {}", command.name, fmt::join(command.keys, " "));
-    constexpr std::size_t column = 26;  // of the explanations
+    constexpr std::size_t column = 26;  // column of the help texts
     text += usage.size() < column ? fmt::format("  {:<{}}{}\n", usage, column, command.help)
                                   : fmt::format("  {}\n  {:{}}{}\n", usage, "", column, command.help);
   }
@@ -131,7 +131,7 @@ Request read_request(std::string_view line) {
   if (values.is_discarded() || !values.is_object())
     throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
   const json& name = at(values, "command", "the name of a command, such as \"status\"");
-  // Only a text is quoted: writing lists in lists takes a stack as deep as they are.
+  // The error quotes only strings, because printing a nested list needs stack in proportion to its depth.
   if (!name.is_string()) throw Refused("\"command\" must be the name of a command, such as \"status\"");
   const auto table = command_table();
   const auto found = std::ranges::find(table, name.get_ref<const std::string&>(), &CommandInfo::name);

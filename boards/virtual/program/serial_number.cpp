@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t digits_of_word = 8, digits_of_all = 24;
 
-/// In the last word, so that no number made of one thing is that of another.
+/// Last word of the identifier. This word keeps identifiers from different sources distinct.
 enum Lot : std::uint32_t {
   of_seed = 0x3932'3539,
   of_flash = 0x3932'3546,

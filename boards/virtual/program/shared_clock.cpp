@@ -14,7 +14,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Beyond the places: held by a board that joins.
+/// Lock byte after the slots, locked by a board that joins.
 constexpr off_t joining = SharedClock::boards_maximum;
 
 struct flock lock_of(off_t byte, short type) {
@@ -65,12 +65,12 @@ SharedClock::SharedClock(const std::filesystem::path& file)
 SharedClock::~SharedClock() {
   (*places_)[mine_] = 0;
   ::munmap(places_, sizeof(Places));
-  ::close(file_);  // and with it the lock on its place
+  ::close(file_);  // also releases the lock on its slot
 }
 
 void SharedClock::join() {
   for (std::size_t place = 0; place < boards_maximum; ++place)
-    if (!is_taken(place)) (*places_)[place] = 0;  // of a board that was killed
+    if (!is_taken(place)) (*places_)[place] = 0;  // slot of a killed board
   joined_at_ = farthest();
   for (mine_ = 0; mine_ < boards_maximum; ++mine_)
     if (set_lock(file_, static_cast<off_t>(mine_), F_WRLCK)) break;
@@ -96,7 +96,7 @@ bool SharedClock::lets_pass() {
     std::uint64_t other = (*places_)[place];
     if (other == 0 || other >= mine) continue;
     if (is_taken(place)) return false;
-    (*places_)[place].compare_exchange_strong(other, 0);  // unless another board has just joined there
+    (*places_)[place].compare_exchange_strong(other, 0);  // unless another board has just joined in this slot
   }
   return true;
 }

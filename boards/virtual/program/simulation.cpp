@@ -14,9 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Ticks slice = ticks_per_s / 1000;  // about a USB frame
-constexpr auto attention = 50ms;             // how soon a paused board notices a signal
-constexpr auto look_at_others = 100us;       // how soon a board notices that those with the same clock have come up
+constexpr Ticks slice = ticks_per_s / 1000;  // about one USB bus frame
+constexpr auto attention = 50ms;             // time for a paused board to notice a signal
+constexpr auto look_at_others = 100us;       // polling interval for the other boards of a shared clock
 constexpr double debt_maximum_s = 0.1;
 constexpr int exit_code_of_lock_up = 3;
 constexpr int exit_code_of_violation = 4;
@@ -55,7 +55,7 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
     board_.usb().serve();
     if (time_passes() && !waits_for_others()) advance();
   }
-  uarts_.serve();  // the last of what was sent
+  uarts_.serve();  // sends the last bytes
   if (ends_by_violation()) {
     end_run(fmt::format("the firmware broke a rule of the chip: {}", sentence(board_.chip().violations().front())));
     list_violations();
@@ -79,7 +79,7 @@ void Simulation::list_violations() const {
 }
 
 bool Simulation::time_passes() const {
-  // As long as GDB is there, it alone stops and starts the time.
+  // While GDB is attached, only GDB stops and starts board time.
   if (gdb_.attached()) return !gdb_.halted();
   if (run_) return true;
   switch (passing_) {
@@ -118,7 +118,8 @@ void Simulation::serve(ControlRequest request) {
   request.reply.set_value(std::move(reply));
 }
 
-/// While board time stands still in the middle of a frame, because a program does not take its transfers.
+/// Answers commands while board time is stopped in the middle of a frame, because a program does not read its
+/// transfers.
 void Simulation::answer_within_frame() {
   while (auto request = server_.take(Clock::time_point::min()))
     request->reply.set_value(carry_out_within_frame(request->line, *this));
@@ -135,7 +136,8 @@ void Simulation::advance() {
     case Stop::requested:
     case Stop::debugger: break;
     case Stop::locked_up:
-      // Nobody may be there to reset it: with --seconds the time goes on, as a watchdog may do so.
+      // With --seconds no user may be present to reset the board. Board time continues, because a watchdog may reset
+      // it.
       if (options_.seconds) break;
       end_run("the processor locked up: " + board_.chip().lockup_reason());
       return pause();
@@ -159,8 +161,8 @@ void Simulation::start_pacing() {
   pace_board_ = board_.chip().now();
 }
 
-// Sleeps while board time is ahead. If it is far behind, the debt is dropped and counted: catching up would
-// show the user a burst of motion that never was.
+// Sleeps while board time is ahead of real time. A large lag is dropped and counted, because catching up would show the
+// user a burst of motion that never happened.
 void Simulation::pace() {
   const double board_s = seconds(board_.chip().now() - pace_board_);
   const double wall_s = std::chrono::duration<double>(Clock::now() - pace_wall_).count();

@@ -1,10 +1,9 @@
-// Lets board time pass: free, paced to the clock on the wall, or as far as a client asks.
+// Controls board time: free, in real time, or for the duration of a client's request.
 //
-// It passes in slices of a millisecond. Between two slices, and only there, what programs of this computer ask
-// for takes effect: transfers on USB and commands of the control socket. How long a slice takes makes no difference
-// then: a program that waits for each answer before it asks again finds the same board each time. While board time
-// waits for a program that has stopped, in the middle of a slice, commands that change nothing are answered all the
-// same.
+// Board time passes in slices of one millisecond. Requests of local programs, such as USB transfers and control socket
+// commands, take effect only between two slices. The wall-clock duration of a slice therefore has no effect. A program
+// that waits for each answer before its next request gets reproducible results. While board time waits for a stopped
+// program in the middle of a slice, commands that change nothing are still answered.
 #pragma once
 
 #include <atomic>
@@ -29,27 +28,25 @@ class Simulation {
   /// `gdb_server` may be null.
   Simulation(const Options& options, Board& board, ControlServer& server, StreamServer* gdb_server, UartLinks& uarts);
 
-  /// Runs until a client quits, `end_requested` is set, the time of --seconds is over or the firmware ends.
-  /// Without --seconds a locked-up board stands still, for somebody to look at it or reset it.
-  /// Returns the exit code.
+  /// Runs until a client quits, `end_requested` is set, the time of --seconds has passed or the firmware exits. Without
+  /// --seconds, board time stops for a locked-up board, so that a user can inspect or reset it. Returns the exit code.
   int run(const std::atomic<bool>& end_requested);
 
-  // ---- for the commands ----
+  // ---- interface for the commands ----
   Board& board() { return board_; }
   const Options& options() const { return options_; }
   bool paused() const { return passing_ != Passing::freely; }
   bool stands_by() const { return passing_ == Passing::when_asked; }
-  /// Board time that pacing gave up because the computer was too slow for it.
+  /// Lag of board time that was dropped because the computer was too slow.
   double time_dropped_s() const { return time_dropped_s_; }
-  /// Board time stands still.
   void pause();
-  /// Board time stands still, but passes, as fast as it can, while a USB control transfer is under way.
+  /// Stops board time, except during USB control transfers, which run at full speed.
   void stand_by();
   void resume();
   void quit() { quit_ = true; }
   bool is_running_for() const { return run_.has_value(); }
-  /// Runs for this long, then answers the request that is being carried out; board time stands still again, or stands
-  /// by if it did before.
+  /// Runs for this duration, then answers the present request. Afterward board time is paused, or stands by if it stood
+  /// by before this call.
   void run_for(double duration_s);
 
  private:

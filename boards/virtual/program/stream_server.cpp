@@ -58,13 +58,13 @@ void StreamServer::serve() {
       const std::lock_guard lock(mutex_);
       if (closing_) return;
       client_ = std::move(socket);
-      if (client >= 0) arrived_.bytes.clear();  // of another client
+      if (client >= 0) arrived_.bytes.clear();  // bytes of the previous client
     }
     if (has_failed) std::this_thread::sleep_for(local::accept_rest);
     if (client < 0) continue;
     const int on = 1;
     ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    const timeval patience{2, 0};  // a client that does not read must not hold up the board
+    const timeval patience{2, 0};  // a client that does not read must not block the board
     ::setsockopt(client, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     receive_from(client);
   }
@@ -78,7 +78,7 @@ void StreamServer::receive_from(int client) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     const std::string_view bytes(chunk.data(), static_cast<std::size_t>(count));
-    // A browser sends the begin of its request in one piece.
+    // A browser sends the start of its request in one piece.
     if (!is_welcome && !welcome_(bytes)) break;
     {
       const std::lock_guard lock(mutex_);
@@ -96,7 +96,7 @@ void StreamServer::receive_from(int client) {
   on_arrival_();
 }
 
-/// False if the server ends, or if another client is to take the place of one that is gone.
+/// Returns false if the server ends, or if a new client replaces a disconnected one.
 bool StreamServer::wait_for_room(int client) {
   std::unique_lock lock(mutex_);
   while (!closing_ && arrived_.bytes.size() >= unread_maximum) {

@@ -19,7 +19,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr int look_again_ms = 10;  // whether there is room again
+constexpr int look_again_ms = 10;  // polling interval for space in the output
 
 }  // namespace
 
@@ -35,7 +35,7 @@ TerminalStream::TerminalStream(const std::filesystem::path& path, std::function<
   if (input_ < 0 || ::grantpt(input_) != 0 || ::unlockpt(input_) != 0 ||
       ::ptsname_r(input_, name.data(), name.size()) != 0)
     throw std::runtime_error(fmt::format("no pseudo-terminal for --uart: {}.", std::strerror(errno)));
-  // Held open, so that bytes are not refused while nobody else has it open.
+  // Kept open so that writes succeed while no other program has the terminal open.
   other_side_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios raw{};
   ::tcgetattr(other_side_, &raw);
@@ -79,7 +79,7 @@ void TerminalStream::read() {
     if (is_full) continue;
     const ssize_t count = ::read(input_, chunk.data(), chunk.size());
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (count <= 0) return;  // the end of the input
+    if (count <= 0) return;  // end of the input
     {
       const std::lock_guard lock(mutex_);
       arrived_.append(chunk.data(), static_cast<std::size_t>(count));

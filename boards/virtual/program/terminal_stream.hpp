@@ -1,4 +1,4 @@
-// The terminal that the program was started in, or one of its own for picocom and its like.
+// The program's terminal, or a pseudo-terminal for picocom and similar programs.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@ namespace inkwell::virtual_board {
 
 class TerminalStream final : public ByteStream {
  public:
-  /// Standard input and output. `on_arrival` as for StreamServer.
+  /// Uses standard input and output. `on_arrival`: see StreamServer.
   explicit TerminalStream(std::function<void()> on_arrival);
-  /// A pseudo-terminal, to which `path` becomes a link for as long as this lives.
-  /// @throws std::runtime_error with a sentence if there can be none.
+  /// Creates a pseudo-terminal, and a link `path` to it for the lifetime of the object.
+  /// @throws std::runtime_error with a sentence if the pseudo-terminal cannot be created.
   TerminalStream(const std::filesystem::path& path, std::function<void()> on_arrival);
   ~TerminalStream() override;
   TerminalStream(const TerminalStream&) = delete;

@@ -1,4 +1,4 @@
-// The commands of the control socket that tell what no real board could.
+// Control socket commands for the true quantities, which no real board can measure.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// UARTs of the chip on terminals and sockets.
+// Connections of the chip's UARTs to terminals and sockets.
 #pragma once
 
 #include <cstdint>
@@ -16,25 +16,25 @@
 
 namespace inkwell::virtual_board {
 
-/// Where a UART leads.
+/// Destination of a UART.
 struct UartOption {
   unsigned number = 0;  ///< 1 to 6
   enum class Kind : std::uint8_t { terminal, socket, path } kind = Kind::terminal;
   PortOption socket;
   std::filesystem::path path;
-  /// Of a text such as usart1=stdio, uart4=5000, uart5=unix:PATH, usart3=PATH. Throws std::invalid_argument with a
+  /// Parses a text such as usart1=stdio, uart4=5000, uart5=unix:PATH, usart3=PATH. Throws std::invalid_argument with a
   /// sentence.
   static UartOption of(const std::string& text);
 };
 
 class UartLinks {
  public:
-  /// Throws std::runtime_error with a sentence if one cannot be had. `on_arrival` as for StreamServer.
+  /// Throws std::runtime_error with a sentence if a link fails. `on_arrival`: see StreamServer.
   UartLinks(const std::vector<UartOption>& options, Chip& chip, PrivateSockets& sockets,
             const std::function<void()>& on_arrival);
-  /// What the program says of them when it is ready: " uart1=PORT" or " uart1=unix:PATH" for each that listens.
+  /// Text for the line "ready ...": " uart1=PORT" or " uart1=unix:PATH" for each listening UART.
   const std::string& announcement() const { return announcement_; }
-  /// Between two slices of board time: hands over what came, and sends what the chip has sent.
+  /// Transfers bytes in both directions. Call between two slices of board time.
   void serve();
 
  private:
@@ -42,7 +42,7 @@ class UartLinks {
     unsigned number;
     std::unique_ptr<ByteStream> stream;
     std::string to_send;
-    std::string arrived;  ///< before the receiver was on
+    std::string arrived;  ///< received before the receiver was enabled
   };
   Chip& chip_;
   std::vector<UartLink> links_;

@@ -9,7 +9,7 @@ namespace {
 
 using Kind = Instruction::Kind;
 constexpr std::uint32_t line_bytes = 16;
-/// Words of instructions that the core fetches ahead.
+/// Size of the core's instruction prefetch buffer.
 constexpr std::uint32_t fetch_buffer_bytes = 12;
 
 unsigned base_cycles(const Instruction& it, const Costs& costs) {
@@ -17,7 +17,7 @@ unsigned base_cycles(const Instruction& it, const Costs& costs) {
     case Kind::plain:
     case Kind::hint:
     case Kind::if_then:
-    case Kind::load:  // what these two take beyond it depends on what follows
+    case Kind::load:  // additional cycles of load and store depend on the next instruction
     case Kind::store:
     case Kind::branch_immediate:
     case Kind::branch_register:
@@ -51,17 +51,17 @@ bool is_single_access(const Instruction& it) { return it.kind == Kind::load || i
 
 bool is_indexed_store(const Instruction& it) { return it.kind == Kind::store && it.register_offset; }
 
-/// Whether `next` starts while the load `it` still waits for its data.
+/// True if `next` starts while the load `it` still waits for its data.
 bool hides_load(const Instruction& it, const Instruction& next, std::uint32_t next_address) {
   if (next.kind == Kind::hint && next.bytes == 2) return true;
   if (!is_single_access(next)) return false;
   if ((next.address_registers & it.written) != 0) return false;
   if (next.kind == Kind::store) return !next.register_offset;
-  // A wide load must stand on a word, and two must not write back one base.
+  // A wide load can start only at a word address.
   return next.bytes == 2 || next_address % 4 == 0;
 }
 
-/// Cycles between two neighbours, beyond their own.
+/// Additional cycles between two adjacent instructions.
 unsigned between(const Instruction& it, const Instruction& next, std::uint32_t next_address, const Costs& costs) {
   unsigned cycles = 0;
   if (it.kind == Kind::load && !it.loads_program_counter && !hides_load(it, next, next_address))
@@ -73,24 +73,24 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
     const bool only_written_back = it.touches_memory && it.writes_back && !it.reads_memory;
     cycles += only_written_back ? costs[Cost::same_base_written_back] : costs[Cost::address_from_previous];
   }
-  // The addend of a multiply-accumulate, which is what it writes too, is not in float_read.
+  // float_read does not contain the addend of a multiply-accumulate, which is also its destination.
   const bool latency = it.kind == Kind::float_arithmetic || it.kind == Kind::float_accumulate;
   if (latency && (next.float_read & it.float_written) != 0) cycles += costs[Cost::float_result_used_next];
   return cycles;
 }
 
-/// The core's fetches where no wait states delay them: a word a cycle into a buffer of three.
+/// Instruction fetch without wait states: one word per cycle into a buffer of three words.
 class Fetch {
  public:
   Fetch(std::uint32_t address, CodeMemory memory, bool after_branch)
       : fetched_to_(after_branch ? (address & ~3u) + 4 : (address & ~3u) + fetch_buffer_bytes), memory_(memory) {}
-  /// Cycles that the instruction at `address` waits for its second half.
+  /// Cycles that the instruction at `address` waits for its second half-word.
   unsigned wait_for(std::uint32_t address, std::uint32_t bytes) {
     unsigned waited = 0;
     for (; fetched_to_ < address + bytes; fetched_to_ += 4) ++waited;
     return waited;
   }
-  /// The instruction at `address` runs for `cycles`, in `accesses` of which the bus is taken if code shares it.
+  /// Advances the fetch by an instruction of `cycles`. In SRAM its data accesses delay the fetch.
   void run(std::uint32_t address, unsigned cycles, unsigned accesses) {
     if (memory_ == CodeMemory::sram) cycles -= std::min(cycles, accesses);
     const std::uint32_t limit = (address & ~3u) + fetch_buffer_bytes;
@@ -107,7 +107,7 @@ unsigned accesses_of(const Instruction& it) {
   return it.words != 0 ? it.words : 1;
 }
 
-/// One walk along the run: fills all of `block`, or only counts its cycles.
+/// One pass over the run. Fills `block`, or only counts the cycles if `block` is null.
 class Walk {
  public:
   Walk(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
@@ -128,7 +128,7 @@ class Walk {
       if (it.uses_float()) cycle = std::max(cycle, float_ready);
       if (block != nullptr) note(*block, it, at, cycle, line);
       unsigned own = base_cycles(it, costs_);
-      // A narrow instruction before it folds IT into itself.
+      // After a narrow instruction, IT needs no separate cycle.
       if (it.kind == Kind::if_then && !first && before.bytes == 2 && governed == 0) own = 0;
       if (it.kind == Kind::float_divide) float_ready = cycle + costs_[Cost::float_divide];
       fetch.run(at, own, accesses_of(it));
@@ -201,8 +201,8 @@ class Walk {
   std::uint32_t address_;
   CodeMemory memory_;
   const Costs& costs_;
-  unsigned written_ = 0;                       ///< registers, a bit each
-  std::array<std::uint32_t, 16> constants_{};  ///< what the block has loaded from literals; 0: not known
+  unsigned written_ = 0;                       ///< one bit per register
+  std::array<std::uint32_t, 16> constants_{};  ///< literals that the block has loaded; 0: not known
   const WordReader& word_;
 };
 

@@ -19,7 +19,7 @@ void writes(Instruction& it, std::uint32_t number) {
   it.written = static_cast<std::uint16_t>(it.written | one(number));
 }
 
-/// One register to or from memory.
+/// Transfer of one register to or from memory.
 void single(Instruction& it, bool load, std::uint32_t data, std::uint32_t base) {
   it.kind = load ? Kind::load : Kind::store;
   it.reads_memory = load;
@@ -246,7 +246,7 @@ void decode_branch_or_system(Instruction& it, std::uint32_t first, std::uint32_t
   it.kind = Kind::branch_immediate;
   if ((second & 0xD000) == 0xD000) it.written = one(link_register);
   if ((second & 0xD000) != 0x8000 || (first & 0x0380) != 0x0380) return;
-  // Conditions 14 and 15 are no branches.
+  // Conditions 14 and 15 are not branches.
   it.kind = Kind::system_register;
   if ((first & 0xFFF0) == 0xF3A0) it.kind = Kind::hint;
   if ((first & 0xFFF0) == 0xF3B0) it.kind = bits(second, 7, 4) == 6 ? Kind::instruction_barrier : Kind::barrier;
@@ -289,7 +289,7 @@ void decode_multiply(Instruction& it, std::uint32_t first, std::uint32_t second)
   it.written = static_cast<std::uint16_t>(it.written | one(bits(second, 15, 12)));
 }
 
-/// ADR, MOVW and MOVT: how code builds the address of a table.
+/// ADR, MOVW and MOVT, with which code builds the address of a table.
 void decode_constant(Instruction& it, std::uint32_t first, std::uint32_t second, std::uint32_t address) {
   const std::uint32_t sort = first & 0xFBF0, low = bits(second, 14, 12) << 8 | (second & 0xFF);
   const std::uint32_t twelve = (first & 0x0400) << 1 | low;
@@ -311,7 +311,7 @@ void decode_wide(Instruction& it, std::uint32_t first, std::uint32_t second, std
       if (bit(first, 6)) return decode_dual_or_exclusive(it, first, second, address);
       return multiple(it, bit(first, 4), second, first & 0xF, bit(first, 5));
     }
-    if (!bit(first, 10)) {  // data processing with a shifted register; comparisons name no destination
+    if (!bit(first, 10)) {  // data processing with a shifted register; comparisons have no destination
       if (bits(second, 11, 8) != program_counter) it.written = one(bits(second, 11, 8));
       return;
     }

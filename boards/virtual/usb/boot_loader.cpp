@@ -1,4 +1,4 @@
-// Endpoint 0 of the boot loader: descriptors (AN2606, of the STM32F405), standard requests, stages of transfers.
+// Endpoint 0 of the boot loader: descriptors (AN2606, STM32F405), standard requests and transfer stages.
 #include <virtual_usb/boot_loader.hpp>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr std::uint8_t get_status = 0, set_address = 5, get_descriptor = 6, get_
 }
 constexpr std::uint8_t class_out = 0x21, class_in = 0xA1;
 
-/// One for each alternate setting: what can be read and written there (UM0424, "DfuSe memory layout").
+/// Readable and writable memory, one string per alternate setting (UM0424, "DfuSe memory layout").
 constexpr std::string_view alternates[] = {
     "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg",
     "@Option Bytes  /0x1FFFC000/01*016 e",
@@ -45,7 +45,7 @@ std::vector<std::byte> configuration_descriptor() {
          {std::uint8_t{9}, std::uint8_t{4}, std::uint8_t{0}, i, std::uint8_t{0}, application_class, firmware_update,
           dfu_mode, static_cast<std::uint8_t>(first_alternate + i)})
       bytes.push_back(byte);
-  // It can download and upload, leaves the bus by itself, and is not manifestation tolerant.
+  // Attributes: download, upload, will detach, not manifestation tolerant.
   for (const unsigned byte : {9u, 0x21u, 0x0Bu, 255u, 0u, BootLoaderDfu::transfer_bytes & 0xFFu,
                               unsigned{BootLoaderDfu::transfer_bytes} >> 8, 0x1Au, 0x01u})
     bytes.push_back(static_cast<std::uint8_t>(byte));
@@ -61,7 +61,7 @@ std::vector<std::byte> string_descriptor(std::string_view text) {
   return bytes;
 }
 
-/// As ST's device library makes it of the chip's unique identifier.
+/// Serial number from the chip's unique identifier, with the algorithm of ST's device library.
 std::string serial_of(DebugPort& memory) {
   std::array<std::uint32_t, 3> id{};
   std::array<std::uint8_t, sizeof id> bytes{};
@@ -82,7 +82,7 @@ LoaderOrder BootLoader::next_order(DebugPort& memory) {
     dfu_.start();
     begin_reset();
   }
-  // The host is to have the whole of the answer by which the loader says that it leaves.
+  // The host must receive the complete answer before the loader starts the program.
   if (is_answering_ && dfu_.is_about_to_leave()) return {};
   const LoaderOrder order = dfu_.next_order(memory);
   if (dfu_.has_left()) stop();
@@ -116,18 +116,18 @@ Handshake BootLoader::setup(unsigned address, unsigned endpoint, std::span<const
   return Handshake::ack;
 }
 
-/// Only requests of its class wait for what it is doing.
+/// Whether the request must wait. Only class requests wait for a running operation.
 bool BootLoader::has_to_wait() const { return (request_.type & 0x60) != 0 && dfu_.is_busy(); }
 
 Handshake BootLoader::out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) {
   if (!is_addressed(address, endpoint)) return Handshake::nothing;
   if (is_refused_) return Handshake::stall;
-  if ((request_.type & 0x80) != 0) {  // the status of a request for data
+  if ((request_.type & 0x80) != 0) {  // status stage of a request for data
     is_answering_ = false;
     return Handshake::ack;
   }
   if (has_to_wait()) return Handshake::nak;
-  if (data1 != data1_) return Handshake::ack;  // a repetition
+  if (data1 != data1_) return Handshake::ack;  // repeated packet
   data1_ = !data1_;
   if (data_.size() + data.size() > std::min<std::size_t>(request_.length, BootLoaderDfu::transfer_bytes)) {
     is_refused_ = true;
@@ -141,7 +141,7 @@ InReply BootLoader::in(unsigned address, unsigned endpoint, std::span<std::byte,
   if (!is_addressed(address, endpoint)) return {};
   if (is_refused_) return {.handshake = Handshake::stall};
   if (has_to_wait()) return {.handshake = Handshake::nak};
-  if ((request_.type & 0x80) == 0) {  // its status
+  if ((request_.type & 0x80) == 0) {  // status stage of a request without data or with OUT data
     if (!std::exchange(is_taken_, true) && !take()) {
       is_refused_ = true;
       return {.handshake = Handshake::stall};
@@ -151,7 +151,7 @@ InReply BootLoader::in(unsigned address, unsigned endpoint, std::span<std::byte,
   }
   if (!to_send_) {
     to_send_ = answer();
-    if (has_to_wait() && to_send_ && to_send_->empty()) {  // it has to look it up
+    if (has_to_wait() && to_send_ && to_send_->empty()) {  // the answer must be read from memory first
       to_send_.reset();
       return {.handshake = Handshake::nak};
     }

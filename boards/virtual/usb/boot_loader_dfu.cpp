@@ -1,4 +1,4 @@
-// Requests of DFU 1.1 and of ST's extension of it (AN3156).
+// Requests of DFU 1.1 and of ST's extension (AN3156).
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -26,7 +26,7 @@ constexpr std::uint32_t flash_keyr = 0x4002'3C04, flash_optkeyr = 0x4002'3C08, f
 constexpr std::uint32_t cr_pg = 1, cr_ser = 2, cr_mer = 4, cr_word_parallelism = 2 << 8, cr_strt = 1 << 16,
                         cr_lock = 1u << 31, sr_errors = 0xF2, optcr_lock = 1, optcr_start = 2;
 constexpr std::uint32_t system_reset_request = 0x05FA'0004;
-/// Bits of OPTCR that are option bytes: those of the user, RDP, nWRP.
+/// Bits of OPTCR that are option bytes: user options, RDP and nWRP.
 constexpr std::uint32_t user_options = 0xEC, write_protection = 0xFFF;
 
 constexpr bool lies_in(std::uint32_t address, std::uint32_t begin, std::uint32_t end) {
@@ -127,7 +127,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   if (request.value == 0)
     return std::vector{std::byte{dfu_command::get_commands}, std::byte{dfu_command::set_address},
                        std::byte{dfu_command::erase}, std::byte{dfu_command::read_unprotect}};
-  // AN3156: the length of this request, not that of the descriptor, counts the blocks.
+  // AN3156: block addresses use the length of this request, not the length in the descriptor.
   const std::uint32_t length = std::min(request.length, transfer_bytes);
   asked_ = Operation{.kind = Operation::Kind::read,
                      .address = pointer_ + (request.value - first_data_block) * length,
@@ -135,7 +135,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   return std::vector<std::byte>{};
 }
 
-/// The operation begins with this answer; the next one comes when it is over.
+/// Starts the waiting operation with this answer. The next answer follows after the operation.
 std::vector<std::byte> BootLoaderDfu::status() {
   State told = state_;
   unsigned poll_ms = 0;
@@ -163,7 +163,7 @@ std::vector<std::byte> BootLoaderDfu::status() {
           std::byte(poll_ms >> 16),        static_cast<std::byte>(told), std::byte{0}};
 }
 
-/// Data sheet, flash memory programming, typical.
+/// Typical programming times from the data sheet.
 unsigned BootLoaderDfu::poll_time_ms(const Operation& operation) {
   switch (operation.kind) {
     case Operation::Kind::erase: {
@@ -231,7 +231,7 @@ void BootLoaderDfu::begin(DebugPort& memory) {
       store(flash_optcr, options);
       store(flash_optcr, options | optcr_start);
       store(flash_optcr, options | optcr_lock);
-      store(aircr, system_reset_request);  // they are loaded by a reset only
+      store(aircr, system_reset_request);  // only a reset loads the option bytes
       break;
     }
   }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the files of a process that has this socket open are links to; empty if no socket has this port.
+/// Link target in /proc for the socket with this local port; empty if the socket does not exist.
 std::string link_of_socket(std::uint16_t port) {
   std::ostringstream address;
   address << "0100007F:" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << port;
@@ -28,7 +28,7 @@ std::string link_of_socket(std::uint16_t port) {
     std::string number, local, ignored, inode;
     words >> number >> local;
     for (int i = 0; i < 7; ++i) words >> ignored;
-    // A connection of the past that had this port may still stand here, without a socket.
+    // A closed connection with this port may still be listed, without a socket.
     const bool is_open = words >> inode && inode != "0";
     if (is_open && local == address.str()) return "socket:[" + inode + "]";
   }
@@ -36,7 +36,7 @@ std::string link_of_socket(std::uint16_t port) {
 }
 
 bool has_open(const fs::path& process, const std::string& link) {
-  std::error_code error;  // of processes that end meanwhile or are another user's
+  std::error_code error;  // set for processes that have ended or belong to another user
   for (fs::directory_iterator file(process / "fd", error), end; !error && file != end; file.increment(error)) {
     std::error_code unreadable;
     if (fs::read_symlink(*file, unreadable) == link) return true;

@@ -9,13 +9,14 @@ namespace inkwell::virtual_board {
 namespace {
 constexpr double nominal_frame_s = 0.001;
 constexpr Ticks byte_ticks = 8 * bit_ticks;
-// Bytes of bus time beside the payload (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronisation,
-// turn-around. 19 bulk packets of 64 bytes fit a frame. The bits that are stuffed into data come on top.
+// Bus time per transaction in addition to the payload, in bytes (USB 2.0, tables 5-8 to 5-10). The time covers token,
+// handshake, synchronization and turn-around. 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added
+// separately.
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
-// An endpoint that is not ready is asked again, ever less often: controllers differ here, and asking an idle
-// endpoint 180 times a frame tells nobody anything.
+// An endpoint that is not ready is polled again at increasing intervals. Real controllers differ in this. Polling an
+// idle endpoint 180 times per frame has no benefit.
 constexpr Ticks retry_first = refused_in_bytes * byte_ticks;
 constexpr Ticks retry_maximum = ticks(nominal_frame_s / 4);
 constexpr unsigned frames_until_suspend = 3;
@@ -69,7 +70,7 @@ void HostController::select_alternate(const ConfigurationDescription& configurat
     if (endpoint.interface == interface && endpoint.alternate == alternate) open(endpoint);
 }
 
-// Transfers of a pipe that vanishes with its configuration end as the host's driver would see it.
+// Completes the transfers of a removed pipe with the status that the host's driver would see.
 void HostController::close(Pipe& pipe) {
   std::deque<Urb> urbs = std::move(pipe.urbs);
   pipe = Pipe{};
@@ -98,8 +99,8 @@ void HostController::submit(Urb&& urb) {
     client_.completed(std::move(urb), transfer_status::invalid);
     return;
   }
-  // The schedule of a frame is fixed when it begins. Were a report sent in the frame in which it is submitted, one
-  // command between two forces would delay every later force by a frame.
+  // The schedule of a frame is fixed at its start. If a report were sent in the frame of its submission, one command
+  // between two forces would delay every later force by a frame.
   if (pipe.type == TransferType::interrupt && !urb.in && pipe.urbs.empty())
     pipe.due_frame = std::max(pipe.due_frame, frame_ + 1);
   pipe.urbs.push_back(std::move(urb));
@@ -198,8 +199,8 @@ std::span<const std::byte> HostController::next_out_data(const Pipe& pipe, const
   return length == 0 ? std::span<const std::byte>{} : std::span<const std::byte>(urb.data).subspan(urb.sent, length);
 }
 
-// False if it does not fit the rest of the frame. An OUT or SETUP reaches the device at its end, an IN token
-// at its begin.
+// Returns false if the transaction does not fit in the rest of the frame. The device receives an OUT or SETUP packet at
+// the end of the transaction, and an IN token at its start.
 bool HostController::start(unsigned index) {
   Pipe& pipe = pipes_[index];
   const Urb& urb = pipe.urbs.front();
@@ -262,7 +263,7 @@ void HostController::handle_in(unsigned index, Urb& urb, const InReply& reply) {
   pipe.errors = 0;
   pipe.retry_at = pipe.retry_after = 0;
   if (pipe.type == TransferType::interrupt) pipe.due_frame = frame_ + pipe.interval_frames;
-  if (reply.data1 != pipe.data1) return;  // a repetition of the packet before
+  if (reply.data1 != pipe.data1) return;  // repetition of the previous packet
   pipe.data1 = !pipe.data1;
   const bool control = pipe.type == TransferType::control;
   if (control && urb.stage == Urb::Stage::status) {
@@ -341,7 +342,7 @@ void HostController::complete(unsigned index, std::int32_t status) {
   if (pipe.urbs.empty()) busy_pipes_ &= ~(1u << index);
   pipe.errors = 0;
   pipe.retry_after = 0;
-  // A driver hears of the end of a control transfer at the end of the frame, and sends the next one then.
+  // A driver learns of a completed control transfer at the end of the frame, and then submits the next one.
   pipe.retry_at = pipe.type == TransferType::control ? frame_begin_ + frame_ticks_ : 0;
   client_.completed(std::move(urb), status);
 }

@@ -1,4 +1,4 @@
-// The OTG_FS core towards the bus: line states and transactions.
+// Bus side of the OTG_FS core: line states and transactions.
 #include <algorithm>
 #include <cstring>
 
@@ -10,17 +10,16 @@
 namespace inkwell::virtual_board {
 
 namespace {
-/// Words of the receive FIFO that data packets never take: ten for SETUP packets, one for the global OUT
-/// NAK (RM0090, "Peripheral FIFO architecture").
+/// Words of the receive FIFO that are reserved from data packets: ten for SETUP packets, one for the global OUT NAK
+/// (RM0090, "Peripheral FIFO architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
-/// So long a device may take to see that VBUS has gone (USB 2.0, section 7.1.5).
+/// Longest time for a device to detect the loss of VBUS (USB 2.0, section 7.1.5).
 constexpr Ticks pull_up_release = 10 * ticks_per_s;
-/// From an IN token to the end of the time in which the handshake may come, without the data and what is stuffed into
-/// it.
+/// From an IN token to the end of the handshake time-out, without the data and its stuffed bits.
 constexpr Ticks in_transaction_bits = 8 * 14;
 
-/// End of the periodic part of a frame, in thousandths of it (DCFG.PFIVL).
+/// End of the periodic part of a frame, in thousandths of a frame (DCFG.PFIVL).
 unsigned periodic_frame_per_mille(std::uint32_t device_configuration) {
   return 800 + 50 * otg.dcfg.pfivl.of(device_configuration);
 }
@@ -42,7 +41,7 @@ void OtgFsDevice::check_bus_power() {
   if (pulled_up_ && !bus_power_) rules_.violate(Rule::usb_pull_up_unpowered);
 }
 
-// Of the endpoints' bits only USBAEP is the core's to clear: enables, stalls and FIFOs stay as they are until firmware
+// In the endpoint registers the core clears only USBAEP. Enables, stalls and FIFOs do not change until the firmware
 // clears them.
 void OtgFsDevice::begin_reset() {
   bus_is_silent_ = true;
@@ -82,7 +81,7 @@ void OtgFsDevice::start_of_frame(std::uint16_t frame_number) {
       update_interrupt();
     });
   } else {
-    latched_interrupts_ |= otg.gintsts.eopf.mask();  // nobody waits for its moment
+    latched_interrupts_ |= otg.gintsts.eopf.mask();  // the exact time does not matter without this interrupt
   }
   update_interrupt();
 }
@@ -126,7 +125,7 @@ void OtgFsDevice::push_data(std::span<const std::byte> data) {
   }
 }
 
-// SETUP packets are always taken, whatever NAK and STALL say; they put NAK on both sides of endpoint 0.
+// SETUP packets are always accepted, regardless of NAK and STALL. A SETUP packet sets NAK on both sides of endpoint 0.
 Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) {
   if (endpoint != 0 || !answers(address, endpoint)) return Handshake::nothing;
   check_turnaround();
@@ -155,7 +154,7 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   return Handshake::ack;
 }
 
-// The core knows that no further SETUP packet follows when it sees the next token.
+// The next token shows that no further SETUP packet follows.
 void OtgFsDevice::end_setup_stage() {
   if (!setup_stage_open_) return;
   setup_stage_open_ = false;
@@ -179,13 +178,13 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
     endpoint.interrupts |= otg.doepint.otepdis.mask();
     update_interrupt();
   }
-  // The empty packet of a status stage needs no packet count.
+  // The empty packet of a status stage requires no packet count.
   const bool is_expected = endpoint.packets != 0 || (number == 0 && data.empty());
   if (!enabled || otg.doepctl.naksts.in(endpoint.control) || !is_expected || global_out_nak_asked_)
     return Handshake::nak;
-  const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and a transfer-complete status
+  const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and transfer-complete status
   if (receive_words_free() < words + reserved_receive_words) return Handshake::nak;
-  if (data1 != endpoint.data1) return Handshake::ack;  // a repetition: our acknowledgement was lost
+  if (data1 != endpoint.data1) return Handshake::ack;  // a repetition, because the acknowledgment was lost
 
   const std::size_t maximum = number == 0 ? in_packet_maximum(0) : otg.doepctl.mpsiz.of(endpoint.control);
   if (data.size() > maximum) return Handshake::nothing;
@@ -196,7 +195,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
   if (endpoint.packets != 0) --endpoint.packets;
   endpoint.bytes -= static_cast<std::uint32_t>(std::min<std::size_t>(endpoint.bytes, data.size()));
   if (endpoint.packets == 0 || data.size() < maximum) {
-    endpoint.control |= otg.doepctl.naksts.mask();  // EPENA falls when firmware pops the word
+    endpoint.control |= otg.doepctl.naksts.mask();  // EPENA is cleared when the firmware pops the word
     push_status(number, PacketStatus::out_done, 0, false);
   }
   update_interrupt();
@@ -247,7 +246,7 @@ bool OtgFsDevice::finish_in(unsigned number) {
     endpoint.control &= ~otg.diepctl.epena.mask();
     endpoint.interrupts |= otg.diepint.xfrc.mask();
   }
-  if (number == 0 && bytes == 0) {  // the status stage of a request without data to the host
+  if (number == 0 && bytes == 0) {  // status stage of a request without data to the host
     control_transfer_open_ = false;
     address_ = programmed_address();
   }

@@ -1,4 +1,4 @@
-// What the OTG_FS core is told to do and takes its time for: reset, flushes, NAK, disabling of endpoints.
+// Commands of the OTG_FS core that take time: reset, flushes, NAK, endpoint disable.
 #include <algorithm>
 #include <string>
 
@@ -13,16 +13,17 @@ namespace {
 constexpr Ticks transceiver_clock = ticks_per_s / 48'000'000;
 /// RM0090, OTG_FS reset register: a flush takes eight clocks of the slower of PHY and AHB.
 constexpr Ticks command_duration = 8 * transceiver_clock;
-/// The manual gives no figure, but has firmware wait for the bit.
+/// The manual states no duration, but requires the firmware to poll the bit.
 constexpr Ticks core_reset_duration = ticks_per_s / 1'000'000;
-/// Nothing may reach the PHY's clock domain so soon after the core's reset.
+/// Minimum time from the core's reset to the first access to the PHY clock domain.
 constexpr Ticks rest_after_reset = 3 * transceiver_clock;
 
 bool is_fifo_of(std::uint32_t offset, unsigned endpoint) {
   return offset >= otg_fifo_base && (offset - otg_fifo_base) / otg_fifo_window_bytes == endpoint;
 }
 bool is_transmit_size(std::uint32_t offset) { return offset == otg.dieptxf0 || otg.dieptxf.covers(offset); }
-/// Control or transfer size of an endpoint; flags may be cleared at any time.
+/// Whether the register is the control or transfer-size register of this IN endpoint. Interrupt flags are excluded,
+/// because the firmware may clear them at any time.
 bool is_of_in(std::uint32_t offset, unsigned endpoint) {
   const std::uint32_t of_device = offset - otg_device_base;
   return (otg.diepctl.covers(of_device) && otg.diepctl.index(of_device) == endpoint) ||
@@ -100,7 +101,7 @@ void OtgFsDevice::check_flush(std::uint32_t value) {
 
 // --- NAK and disabling ------------------------------------------------------------------------------------
 
-// The end of the packet that is on the wire now, if there is one.
+// Returns the end of the packet on the wire, or 0 without a packet.
 Ticks OtgFsDevice::free_of_packet(const InEndpoint& endpoint) const {
   return endpoint.bytes_on_wire ? endpoint.wire_until : 0;
 }
@@ -148,7 +149,7 @@ void OtgFsDevice::cancel_commands() {
   core_reset_until_ = receive_flush_until_ = transmit_flush_until_ = 0;
 }
 
-// --- Stores that come too early ---------------------------------------------------------------------------
+// --- Stores that arrive too early --------------------------------------------------------------------------
 
 bool OtgFsDevice::store_may_come(std::uint32_t offset, std::uint32_t value) {
   const Ticks now = scheduler_.now();

@@ -1,4 +1,4 @@
-// The OTG_FS core towards the processor: global and device registers, interrupts, pull-up.
+// Processor side of the OTG_FS core: global and device registers, interrupts, pull-up.
 #include <virtual_usb/otg_fs_device.hpp>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr Ticks millisecond = ticks_per_s / 1000;
 /// RM0090, OTG_FS_GUSBCFG: FDMOD.
 constexpr Ticks mode_change_duration = 25 * millisecond;
-/// A host looks for a reset only when D+ has been up for 100 ms; a driver is done with its settings before.
+/// A host resets the device only after D+ has been high for 100 ms. A driver finishes its settings earlier.
 constexpr Ticks connection_settles = 50 * millisecond;
 
 /// RM0090, table "TRDT values".
@@ -55,7 +55,7 @@ void OtgFsDevice::reset() {
   reset_core();
 }
 
-// CSRST. What describes the wiring (GUSBCFG, GCCFG, the speed in DCFG, PCGCCTL) survives it.
+// CSRST. The settings of the wiring (GUSBCFG, GCCFG, the speed in DCFG, PCGCCTL) are retained.
 void OtgFsDevice::reset_core() {
   scheduler_.cancel(end_of_periodic_frame_);
   cancel_commands();
@@ -190,7 +190,7 @@ void OtgFsDevice::write_global(std::uint32_t offset, std::uint32_t value) {
     return;
   }
   switch (offset) {
-    case otg.gotgctl: break;  // session request and host negotiation: the device is always the B side
+    case otg.gotgctl: break;  // session request and host negotiation: the device is always the B device
     case otg.gotgint: otg_interrupts_ &= ~(value & bits_of(otg.gotgint, Access::rc_w1)); break;
     case otg.gahbcfg: bus_configuration_ = value & writable(otg.gahbcfg); break;
     case otg.gusbcfg:
@@ -239,15 +239,15 @@ void OtgFsDevice::write_device(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
-// A new address is for the transactions after the status stage of the request that brought it: the manual
-// has firmware write it before that stage.
+// A new address applies after the status stage of its request. The manual requires the firmware to write the address
+// before that stage.
 void OtgFsDevice::write_device_configuration(std::uint32_t value) {
   device_configuration_ = (device_configuration_ & ~writable(otg.dcfg)) | (value & writable(otg.dcfg));
   if (!control_transfer_open_) address_ = programmed_address();
 }
 
 void OtgFsDevice::write_device_control(std::uint32_t value) {
-  if (otg.dctl.rwusig.in(value))  // the bus sleeps only while nobody uses the device, so nobody could wake
+  if (otg.dctl.rwusig.in(value))  // the bus is suspended only while no program uses the device
     note("remote wake-up is not modelled", otg_device_base + otg.dctl, true, value);
   device_control_ = value & writable(otg.dctl);
   if (otg.dctl.cginak.in(value)) global_in_nak_ = false;
@@ -298,7 +298,7 @@ bool OtgFsDevice::clock_is_exact() const {
   return chip_.usb_Hz() >= nominal_Hz - tolerance_Hz && chip_.usb_Hz() <= nominal_Hz + tolerance_Hz;
 }
 
-// What the host needs to see a device at all.
+// Checks the conditions for the host to detect the device.
 void OtgFsDevice::check_connection() {
   if (!pulled_up_) return;
   if (!pins_connected()) rules_.violate(Rule::usb_pins);
@@ -307,7 +307,7 @@ void OtgFsDevice::check_connection() {
   if (!otg.gusbcfg.fdmod.in(usb_configuration_) && !chip_.has_function('A', 10, otg_fs)) rules_.violate(Rule::usb_mode);
 }
 
-// What must be in place when the host has reset the bus and transfers may begin.
+// Checks the conditions for transfers after the host has reset the bus.
 void OtgFsDevice::check_core() {
   if (!otg.gusbcfg.physel.in(usb_configuration_))
     rules_.violate(Rule::usb_transceiver);
@@ -316,7 +316,7 @@ void OtgFsDevice::check_core() {
   if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
 }
 
-// From the first packet that the core answers; firmware may set it when the speed has been enumerated.
+// Called from the first answered packet on; the firmware may set TRDT after speed enumeration.
 void OtgFsDevice::check_turnaround() {
   if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
     rules_.violate(Rule::usb_turnaround);
@@ -326,7 +326,7 @@ std::uint32_t OtgFsDevice::in_interrupts(unsigned endpoint) const {
   return in_[endpoint].interrupts | otg.diepint.txfe.with(transmit_empty_level(endpoint));
 }
 
-// DAINT: TXFE has its own mask, one bit for each endpoint.
+// DAINT: TXFE has a separate mask with one bit for each endpoint.
 std::uint32_t OtgFsDevice::endpoint_interrupts() const {
   std::uint32_t active = 0;
   for (unsigned i = 0; i < endpoint_count; ++i) {
@@ -341,7 +341,7 @@ std::uint32_t OtgFsDevice::endpoint_interrupts() const {
 std::uint32_t OtgFsDevice::interrupt_status() const {
   const auto& flags = otg.gintsts;
   const std::uint32_t endpoints = endpoint_interrupts() & endpoint_mask_;
-  const std::uint32_t host_side = flags.ptxfe.mask();  // idle in device mode: reads as after reset
+  const std::uint32_t host_side = flags.ptxfe.mask();  // idle in device mode, with its reset value
   return latched_interrupts_ | host_side | flags.otgint.with(otg_interrupts_ != 0) |
          flags.rxflvl.with(!receive_.empty()) | flags.nptxfe.with(transmit_empty_level(0)) |
          flags.ginakeff.with(global_in_nak_) | flags.goutnakeff.with(global_out_nak_effective_) |

@@ -1,4 +1,4 @@
-// The OTG_FS core towards the processor: endpoint registers and the FIFO windows.
+// Processor side of the OTG_FS core: endpoint registers and FIFO windows.
 #include <algorithm>
 
 #include <virtual_usb/otg_fs_device.hpp>
@@ -9,7 +9,7 @@ namespace inkwell::virtual_board {
 
 namespace {
 
-/// From reading that the receive FIFO is empty to clearing NAK: some instructions, with interrupts held.
+/// Longest time from an empty receive FIFO to clearing NAK: a few instructions with interrupts disabled.
 constexpr Ticks look_before_clearing_nak = ticks_per_s / 1'000'000;
 
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
@@ -24,7 +24,7 @@ constexpr std::uint32_t stored_out_bits(unsigned endpoint) {
   return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
 }
 
-// Endpoint 0 transfers few bytes in few packets.
+// Endpoint 0 has narrower size and packet fields.
 constexpr std::uint32_t transfer_bytes(std::uint32_t size, unsigned endpoint) {
   return otg.dieptsiz.xfrsiz.of(size) & (endpoint == 0 ? 0x7F : otg.dieptsiz.xfrsiz.maximum());
 }
@@ -37,7 +37,7 @@ constexpr std::uint32_t out_packets(std::uint32_t size, unsigned endpoint) {
 
 }  // namespace
 
-// --- IN: towards the host ---------------------------------------------------------------------------------
+// --- IN: to the host --------------------------------------------------------------------------------------
 
 std::uint32_t OtgFsDevice::read_in_endpoint(std::uint32_t offset) {
   if (otg.diepctl.covers(offset)) {
@@ -80,7 +80,7 @@ void OtgFsDevice::write_in_control(unsigned number, std::uint32_t value) {
   layout_changed_ |= ((endpoint.control ^ value) & stored & chooses_fifo) != 0;
   endpoint.control = (endpoint.control & ~stored) | (value & stored);
   if (number == 0)
-    endpoint.control |= value & otg.diepctl.stall.mask();  // firmware can only set it: a SETUP packet clears it
+    endpoint.control |= value & otg.diepctl.stall.mask();  // the firmware can only set STALL; a SETUP packet clears it
   else
     endpoint.control = (endpoint.control & ~otg.diepctl.stall.mask()) | (value & otg.diepctl.stall.mask());
   if (otg.diepctl.cnak.in(value)) {
@@ -129,7 +129,7 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
   WordFifo& fifo = transmit_[fifo_number];
 
   if (endpoint.packet_words_to_load != 0 && writing_endpoint_ != number && !endpoint.damaged) {
-    // Seen on silicon: the packet goes out with a bad CRC, again and again, until the FIFO is flushed.
+    // Observed on silicon: the packet is sent with a bad CRC repeatedly, until the FIFO is flushed.
     rules_.violate(Rule::usb_interleaved);
     endpoint.damaged = true;
   }
@@ -188,7 +188,7 @@ bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
   return transmit_[fifo].count() <= level;
 }
 
-// Regions must lie one after another in the packet memory; the core does not check, it overwrites.
+// Regions must not overlap in the packet memory. The core does not check this and overwrites data.
 void OtgFsDevice::note_memory_layout() {
   if (!layout_changed_) return;
   layout_changed_ = false;
@@ -217,7 +217,7 @@ void OtgFsDevice::note_memory_layout() {
 std::uint32_t OtgFsDevice::read_out_endpoint(std::uint32_t offset) {
   if (otg.doepctl.covers(offset)) {
     const unsigned number = otg.doepctl.index(offset);
-    if (number == 0) return out_[0].control | (in_[0].control & 3);  // one packet size for both directions
+    if (number == 0) return out_[0].control | (in_[0].control & 3);  // both directions have the same packet size
     return out_[number].control | otg.doepctl.dpid.with(out_[number].data1);
   }
   if (otg.doepint.covers(offset)) return out_[otg.doepint.index(offset)].interrupts;
@@ -236,7 +236,7 @@ void OtgFsDevice::write_out_endpoint(std::uint32_t offset, std::uint32_t value) 
     out_[otg.doepint.index(offset)].interrupts &= ~value;
   } else if (otg.doeptsiz.covers(offset)) {
     const unsigned number = otg.doeptsiz.index(offset);
-    // Endpoint 0 has its count of SETUP packets here too, which is written while the endpoint is enabled.
+    // DOEPTSIZ0 also contains the SETUP packet count, which the firmware writes while endpoint 0 is enabled.
     if (number != 0 && otg.doepctl.epena.in(out_[number].control))
       rules_.violate(Rule::usb_out_size_while_enabled, "OUT " + std::to_string(number));
     out_[number].packets = out_packets(value, number);
@@ -277,8 +277,8 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
   }
 }
 
-// The manual asks for EPENA and CNAK together, but drivers in the field, ChibiOS's among them, start an OUT transfer
-// with CNAK alone, and silicon takes its packets.
+// The manual requires EPENA and CNAK together. Existing drivers, for example in ChibiOS, start an OUT transfer with
+// CNAK alone, and silicon accepts its packets.
 bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
   const OutEndpoint& endpoint = out_[number];
   const bool clears_nak =
@@ -301,8 +301,8 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
 }
 
-// Seen on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word
-// loses that word. Firmware can not help it if the packet came since it looked, just before.
+// Observed on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word loses that
+// word. The firmware cannot avoid this if the packet arrived just after its last check of the FIFO.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
   const bool looked = scheduler_.now() - receive_found_empty_at_ <= look_before_clearing_nak;

@@ -1,11 +1,12 @@
-// Registers of the OTG_FS core (RM0090, "OTG_FS control and status registers"). Offsets count from each block's base.
+// Registers of the OTG_FS core (RM0090, "OTG_FS control and status registers"). Offsets are relative to each block's
+// base.
 #pragma once
 
 #include <chip/register_map.hpp>
 
 namespace inkwell::virtual_board {
 
-/// GRXSTSR, and GRXSTSP which pops.
+/// GRXSTSR and GRXSTSP; reading GRXSTSP pops the entry.
 struct OtgReceiveStatus : Register {
   Field epnum{"EPNUM", 0, 4, Access::r}, bcnt{"BCNT", 4, 11, Access::r}, dpid{"DPID", 15, 2, Access::r},
       pktsts{"PKTSTS", 17, 4, Access::r}, frmnum{"FRMNUM", 21, 4, Access::r};
@@ -143,18 +144,18 @@ struct OtgPowerRegisters {
 inline constexpr OtgPowerRegisters otg_power;
 inline constexpr std::uint32_t otg_power_base = 0xE00;
 
-/// All blocks, for who wants a register's fields and not its place.
+/// All blocks, for code that needs a register's fields but not its address.
 struct OtgRegisters : OtgGlobalRegisters, OtgDeviceRegisters, OtgPowerRegisters {};
 inline constexpr OtgRegisters otg;
 
-/// Read-only description of the synthesised core: not in the manual, but common drivers read it.
+/// Read-only configuration of the synthesized core. The configuration is not in the manual, but common drivers read it.
 struct OtgSynthesisRegisters {
   Register gsnpsid{"GSNPSID", 0x040, 0x4F54'281A}, ghwcfg1{"GHWCFG1", 0x044}, ghwcfg2{"GHWCFG2", 0x048, 0x229D'CD20},
       ghwcfg3{"GHWCFG3", 0x04C, 0x0200'01E8}, ghwcfg4{"GHWCFG4", 0x050, 0x0FF0'8030};
 };
 inline constexpr OtgSynthesisRegisters otg_synthesis;
 
-/// Where the FIFOs are written and read: a window for each endpoint.
+/// FIFO access: one window per endpoint.
 inline constexpr std::uint32_t otg_fifo_base = 0x1000, otg_fifo_window_bytes = 0x1000;
 
 }  // namespace inkwell::virtual_board

@@ -5,11 +5,11 @@
 namespace inkwell::virtual_board {
 
 namespace {
-// USB 2.0, section 7.1.7 and 9.2.6, in frames of 1 ms.
+// Times in frames of 1 ms (USB 2.0, sections 7.1.7 and 9.2.6).
 constexpr unsigned debounce_frames = 100;
 constexpr unsigned reset_frames = 20;
 constexpr unsigned reset_recovery_frames = 10;
-constexpr unsigned before_second_reset_frames = 1;  ///< the device takes the end of its first transfer meanwhile
+constexpr unsigned before_second_reset_frames = 1;  ///< time for the device to process the end of its first transfer
 constexpr unsigned address_recovery_frames = 2;
 constexpr unsigned answer_frames = 500;
 
@@ -63,7 +63,7 @@ void RootPort::submit(Urb&& urb) {
   const bool sets_address =
       urb.endpoint == 0 && setup_byte(urb, 0) == request::to_device && setup_byte(urb, 1) == request::set_address;
   if (sets_address)
-    client_.completed(std::move(urb), transfer_status::success);  // the address is this port's business
+    client_.completed(std::move(urb), transfer_status::success);  // this port has already set the address
   else
     controller_.submit(std::move(urb));
 }
@@ -77,7 +77,7 @@ std::optional<Urb> RootPort::unlink(std::uint32_t sequence) {
 }
 
 void RootPort::between_transactions() {
-  // A hub sees within microseconds that a pull-up is gone, even if it is back by the next frame.
+  // A hub detects a missing pull-up within microseconds, even if the pull-up returns before the next frame.
   const std::uint32_t attachment = plugged_ ? device_.attachment() : 0;
   if (attachment != attachment_) {
     detach();
@@ -109,7 +109,7 @@ void RootPort::enter(State state, unsigned frames) {
   frames_left_ = frames;
 }
 
-// No frames while the bus is in reset.
+// The bus has no frames during a reset.
 void RootPort::begin_reset(State state) {
   controller_.cancel_all();
   controller_.configure(nullptr);
@@ -175,7 +175,7 @@ void RootPort::time_over() {
       for (Urb& urb : held) submit(std::move(urb));
       break;
     }
-    case State::import_addressing:  // it answered before and does not now: the importer must learn that
+    case State::import_addressing:  // the device no longer answers, and the importer must be notified
     default:
       if (enumerated()) client_.detached();
       held_.clear();
@@ -190,7 +190,7 @@ void RootPort::completed(Urb&& urb, std::int32_t status) {
     if (status == transfer_status::success)
       answered(urb);
     else
-      enter(state_, debounce_frames);  // then all over again
+      enter(state_, debounce_frames);  // then the enumeration restarts
     return;
   }
   if (status == transfer_status::success && urb.endpoint == 0) follow_standard_request(urb);
@@ -248,7 +248,7 @@ void RootPort::answered(const Urb& urb) {
   }
 }
 
-// Requests after which host and device must agree on endpoints and toggles.
+// Handles requests after which host and device must agree on endpoints and toggles.
 void RootPort::follow_standard_request(const Urb& urb) {
   const std::uint8_t type = setup_byte(urb, 0);
   const std::uint8_t value = setup_byte(urb, 2);

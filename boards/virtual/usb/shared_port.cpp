@@ -61,7 +61,7 @@ void SharedPort::release(std::uint32_t session) {
 }
 
 void SharedPort::submit(std::uint32_t session, Urb&& urb) {
-  if (!sessions_.contains(session)) return;  // the device went while this was on its way
+  if (!sessions_.contains(session)) return;  // the device was removed before this transfer arrived
   if (is_of_type(urb, TransferType::interrupt) && urb.in) {
     const std::uint8_t endpoint = urb.endpoint;
     sessions_[session].interrupt_requests[endpoint].push_back(std::move(urb));
@@ -89,7 +89,7 @@ void SharedPort::keep_asking(std::uint8_t endpoint) {
   for (auto& [number, session] : sessions_)
     if (const auto& requests = session.interrupt_requests[endpoint]; !requests.empty())
       urb.length = std::max(urb.length, requests.front().length);
-  if (urb.length == 0) return;  // nobody asks
+  if (urb.length == 0) return;  // no program has a request
   urb.sequence = ++sequence_;
   urb.endpoint = endpoint;
   urb.in = true;
@@ -149,7 +149,7 @@ void SharedPort::completed(Urb&& urb, std::int32_t status) {
 void SharedPort::hand_out(const Urb& report, std::int32_t status) {
   for (auto& [number, session] : sessions_) {
     auto& requests = session.interrupt_requests[report.endpoint];
-    if (requests.empty()) continue;  // this program lets a report go by
+    if (requests.empty()) continue;  // this program misses the report
     Urb urb = std::move(requests.front());
     requests.pop_front();
     const bool fits = report.data.size() <= urb.length;

@@ -1,12 +1,13 @@
-// One device for several programs at once, as an operating system shares it among those that open it.
+// One device for several simultaneous programs, like the device sharing of an operating system.
 //
-// USB/IP knows one importer of a device. Here each program that imports it finds a device of its own:
+// USB/IP allows one importer of a device. Here each importing program has its own view of the device:
 //
-//   interrupt IN   each report goes to every program that asked for one
-//   bulk           belongs to the program that asked first, until it is gone or has taken its requests back; others
-//                  get "busy", as from an interface that another program has claimed
-//   control, OUT   go through one after the other; a second SET_CONFIGURATION is answered here, because it would start
-//                  the others' endpoints anew
+//   interrupt IN   each report goes to every program that has requested one
+//   bulk           belongs to the first requesting program until it disconnects or unlinks its requests; the other
+//                  programs get "busy", as from a claimed interface
+//   control, OUT   are executed one after the other; a second SET_CONFIGURATION is answered here, because it would
+//   reset
+//                  the endpoints of the other programs
 //   import         resets and addresses the device for the first program only
 #pragma once
 
@@ -37,17 +38,17 @@ class SharedPort final : private RootPort::Client {
   bool imported() const { return port_.imported(); }
 
   void import(std::uint32_t session);
-  /// The program is gone: its transfers are forgotten. With the last one the bus falls silent.
+  /// The program has disconnected: its transfers are discarded. After the last program the bus suspends.
   void release(std::uint32_t session);
   void submit(std::uint32_t session, Urb&& urb);
-  /// Takes a transfer back. None if it is not there (any more).
+  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t session, std::uint32_t sequence);
 
  private:
-  /// Where the answer to a transfer on the bus goes.
+  /// Recipient of the answer to a transfer on the bus.
   struct Owner {
     std::uint32_t session;
-    std::uint32_t sequence;  ///< by which the program knows it
+    std::uint32_t sequence;  ///< the program's sequence number
     bool is_bulk = false;
   };
   struct Session {
@@ -61,7 +62,7 @@ class SharedPort final : private RootPort::Client {
 
   bool is_of_type(const Urb& urb, TransferType type) const;
   void pass_on(const Owner& owner, Urb&& urb);
-  /// One request stands on the bus for all that wait for a report of this endpoint.
+  /// Maintains one request on the bus for all programs that wait for a report of this endpoint.
   void keep_asking(std::uint8_t endpoint);
   void stop_asking_in_vain();
   void hand_out(const Urb& report, std::int32_t status);
@@ -69,10 +70,10 @@ class SharedPort final : private RootPort::Client {
   Client& client_;
   DeviceDescription description_{};
   std::map<std::uint32_t, Session> sessions_;
-  std::map<std::uint32_t, Owner> owners_;                ///< by sequence on the bus
-  std::map<std::uint8_t, std::uint32_t> shared_on_bus_;  ///< endpoint to the sequence of its request on the bus
-  std::optional<std::uint32_t> bulk_owner_;              ///< a session
-  std::optional<std::uint8_t> configuration_;            ///< that the device has
+  std::map<std::uint32_t, Owner> owners_;                ///< by sequence number on the bus
+  std::map<std::uint8_t, std::uint32_t> shared_on_bus_;  ///< endpoint to the sequence number of its request on the bus
+  std::optional<std::uint32_t> bulk_owner_;              ///< session number
+  std::optional<std::uint8_t> configuration_;            ///< present configuration of the device
   std::uint32_t sequence_ = 0;
   RootPort port_;
 };

@@ -1,4 +1,4 @@
-// A client's hold on the exported device, and what it still waits for.
+// A client's import of the device, and its unanswered transfers.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ class UsbIpImport {
  public:
   explicit UsbIpImport(std::uint32_t session) : session_(session) {}
 
-  /// Counts imports, so that late answers find nobody.
+  /// Number of the import. Late answers to an earlier import have another number and are discarded.
   std::uint32_t session() const { return session_; }
 
-  /// Throws std::runtime_error if the transfer's number is not free, or if this is more than the server holds.
+  /// Throws std::runtime_error if the sequence number is in use or the server's limit is exceeded.
   void add(const Urb& urb) {
     if (!lengths_.emplace(urb.sequence, urb.length).second)
       throw std::runtime_error("it uses a sequence number again before the first one was answered");
@@ -30,7 +30,7 @@ class UsbIpImport {
     bytes_ -= found->second;
     lengths_.erase(found);
   }
-  /// Throws std::runtime_error if requests to take transfers back wait, more than there can be transfers.
+  /// Throws std::runtime_error if more unlink requests are pending than transfers are allowed.
   void add_unlink() {
     if (++unlinks_ > transfers_maximum)
       throw std::runtime_error("it takes back more transfers at a time than the server holds");
@@ -42,9 +42,9 @@ class UsbIpImport {
   static constexpr std::uint64_t bytes_maximum = 64u << 20;
 
   std::uint32_t session_;
-  std::unordered_map<std::uint32_t, std::uint32_t> lengths_;  ///< of transfers without an answer, by sequence
+  std::unordered_map<std::uint32_t, std::uint32_t> lengths_;  ///< of unanswered transfers, by sequence number
   std::uint64_t bytes_ = 0;
-  std::size_t unlinks_ = 0;  ///< not answered yet
+  std::size_t unlinks_ = 0;  ///< unanswered
 };
 
 }  // namespace inkwell::virtual_board

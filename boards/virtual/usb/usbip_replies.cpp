@@ -26,7 +26,7 @@ usbip::Device describe(const DeviceDescription& device) {
       .device_class = device.byte(4),
       .device_subclass = device.byte(5),
       .device_protocol = device.byte(6),
-      .configuration = 0,  // none: that is the importer's first task
+      .configuration = 0,  // the importer sets the configuration
       .configuration_count = device.configuration_count(),
       .interface_count = static_cast<std::uint8_t>(configurations.empty() ? 0 : configurations[0].interfaces.size())};
 }

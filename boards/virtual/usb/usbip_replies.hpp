@@ -1,4 +1,4 @@
-// What the USB/IP server replies: descriptions and results of transfers, as bytes.
+// Replies of the USB/IP server as bytes: descriptions and transfer results.
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,7 @@ void check_transfer(const usbip::TransferHeader& header) {
   if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
 }
 
-/// Packets that an isochronous transfer announces; they follow its data.
+/// Number of packet descriptors after the data of an isochronous transfer.
 std::size_t packet_count_of(const usbip::Submit& submit) {
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)
@@ -25,7 +25,7 @@ std::size_t packet_count_of(const usbip::Submit& submit) {
   return submit.packet_count;
 }
 
-/// Without its data and packets.
+/// Converts the header, without data and packets.
 Urb transfer_of(const usbip::Submit& submit) {
   Urb urb;
   urb.sequence = submit.header.sequence;
@@ -35,7 +35,7 @@ Urb transfer_of(const usbip::Submit& submit) {
   urb.length = submit.length;
   urb.setup = submit.setup;
   if (urb.length > transfer_maximum) throw std::runtime_error("a transfer is longer than 16 MiB");
-  // The direction of a control transfer is what its request says; the two must not differ.
+  // The direction of a control transfer must match its request.
   const bool request_in = (urb.setup[0] & std::byte{0x80}) != std::byte{0};
   if (urb.endpoint == 0 && urb.length > 0 && request_in != urb.in)
     throw std::runtime_error("the direction of a control transfer differs from its request");
@@ -45,7 +45,7 @@ Urb transfer_of(const usbip::Submit& submit) {
 }  // namespace
 
 void UsbIpRequests::feed(std::span<const std::byte> bytes) {
-  // Shifted rarely: only when half of the buffer is used up.
+  // Moves the bytes only when half of the buffer is consumed, to keep moves rare.
   if (consumed_ * 2 >= received_.size()) {
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(consumed_));
     consumed_ = 0;
@@ -53,7 +53,7 @@ void UsbIpRequests::feed(std::span<const std::byte> bytes) {
   received_.insert(received_.end(), bytes.begin(), bytes.end());
 }
 
-/// Of the first bytes already: a browser may send fewer than a header at a time.
+/// Checks even an incomplete header, because a browser may send fewer bytes.
 void UsbIpRequests::check_version() const {
   const usbip::Big16 expected = usbip::protocol_version;
   const auto version = usbip::bytes_of(expected);

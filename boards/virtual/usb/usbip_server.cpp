@@ -24,10 +24,10 @@ namespace inkwell::virtual_board {
 
 namespace {
 constexpr std::size_t connections_maximum = 16;
-/// The device is shared (SharedPort), but others must be able to ask for it.
+/// Several importers are allowed because the device is shared (SharedPort).
 constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
-/// A client that lets more than this wait is not reading; it is disconnected.
+/// A client with more unsent data than this does not read and is disconnected.
 constexpr std::size_t unsent_maximum = 64u << 20;
 
 }  // namespace
@@ -48,7 +48,7 @@ UsbIpServer::~UsbIpServer() {
   thread_.join();
 }
 
-// --- The simulation's side --------------------------------------------------------------------------------
+// --- Simulation thread -------------------------------------------------------------------------------------
 
 void UsbIpServer::take(std::vector<Order>& orders) {
   if (!orders_waiting_.load(std::memory_order_acquire)) return;
@@ -94,11 +94,11 @@ void UsbIpServer::withdraw() {
   wake();
 }
 
-// --- The server's side ------------------------------------------------------------------------------------
+// --- Server thread -----------------------------------------------------------------------------------------
 
 void UsbIpServer::wake() {
   const std::uint64_t one = 1;
-  // A full counter means that the thread is about to wake anyway.
+  // A full counter means that the thread is about to wake up.
   [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
 }
 
@@ -119,11 +119,11 @@ void UsbIpServer::give(Order&& order) {
 
 void UsbIpServer::run() {
   std::vector<pollfd> descriptors;
-  std::uint64_t exchange = 0;  // that is under way
+  std::uint64_t exchange = 0;  // number of the exchange in progress
   while (true) {
     descriptors.clear();
     descriptors.push_back({wake_.number(), POLLIN, 0});
-    // A client that cannot be accepted keeps the listener readable, and nothing would ever be left to receive.
+    // A client that cannot be accepted keeps the listener readable, so the wait for remaining data would never end.
     const bool accepts = accepts_now();
     descriptors.push_back({accepts ? listener_.descriptor() : -1, POLLIN, 0});
     for (const Connection& connection : connections_) {
@@ -134,7 +134,7 @@ void UsbIpServer::run() {
     const int wait_ms = is_exchanging ? 0 : accepts ? -1 : static_cast<int>(local::accept_rest.count());
     const int ready = ::poll(descriptors.data(), descriptors.size(), wait_ms);
     if (ready < 0 || (ready == 0 && !is_exchanging)) continue;
-    if (ready == 0) {  // nothing is left to receive
+    if (ready == 0) {  // all data is received
       const std::lock_guard lock(mutex_);
       exchanges_done_ = std::exchange(exchange, 0);
       exchanged_.notify_one();
@@ -174,7 +174,7 @@ void UsbIpServer::accept_connections() {
   }
 }
 
-// Clients that only hold their connection must not keep others out. Not all of them are importers.
+// Disconnects the oldest client without an import, so that idle connections do not block others.
 void UsbIpServer::make_room() {
   const auto oldest = std::find_if(connections_.begin(), connections_.end(),
                                    [](const Connection& connection) { return !connection.import; });
@@ -182,7 +182,7 @@ void UsbIpServer::make_room() {
   connections_.erase(oldest);
 }
 
-// The order to release goes out at once, so that it comes before that of the next import.
+// Issues the release order immediately, so that it precedes the next import.
 void UsbIpServer::end(Connection& connection) {
   connection.dead = true;
   if (!connection.import) return;
@@ -303,7 +303,7 @@ void UsbIpServer::deliver_results() {
   if (!withdrawn) return;
   for (Connection& importer : connections_) {
     if (!importer.import) continue;
-    send(importer);  // as much as goes without waiting
+    send(importer);  // as much as possible without waiting
     if (!importer.dead) end(importer);
   }
 }

@@ -1,7 +1,7 @@
-// Exports the one device by USB/IP, on a TCP port of this computer or on a Unix socket.
+// Exports the device through USB/IP, on a local TCP port or on a Unix socket.
 //
-// The server's own thread does all that can wait. The simulation's thread exchanges orders and results with
-// it through two queues and never waits for a socket.
+// The server thread does all blocking work. The simulation thread exchanges orders and results with the server thread
+// through two queues and never waits for a socket.
 #pragma once
 
 #include <atomic>
@@ -29,12 +29,12 @@ namespace inkwell::virtual_board {
 
 class UsbIpServer {
  public:
-  /// What the importer asks of the bus. `session` counts imports, so that late answers find nobody.
+  /// A request of an importer. `session` is the number of the import, which identifies late answers.
   struct Order {
     enum class Kind : std::uint8_t { import, release, submit, unlink };
     Kind kind;
     std::uint32_t session;
-    Urb urb;  ///< of a submit; its `sequence` is also that of an unlink
+    Urb urb;  ///< of a submit; its `sequence` is also used for an unlink
     std::uint32_t unlink_sequence = 0;
     Peer client{};  ///< of an import
   };
@@ -47,8 +47,8 @@ class UsbIpServer {
     std::uint32_t unlink_sequence = 0;
   };
 
-  /// Throws std::runtime_error with a sentence that names --usbip if it cannot listen there.
-  /// `on_order` is called from the server's thread when there is something to take.
+  /// Throws std::runtime_error with a sentence that names --usbip if listening fails. `on_order` is called from the
+  /// server thread when take() has orders.
   UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
@@ -56,18 +56,16 @@ class UsbIpServer {
 
   const local::SocketAddress& address() const { return listener_.address(); }
 
-  // For the simulation's thread.
-  /// Appends the orders that came in to `orders`; costs next to nothing if there are none.
+  // For the simulation thread.
+  /// Appends the received orders to `orders`; the call is cheap if there are none.
   void take(std::vector<Order>& orders);
-  /// Returns once everything that clients had sent before this call is among the orders, and everything that was
-  /// answered before it is on its way to them.
+  /// Returns once all data that clients sent before this call is among the orders, and all earlier answers are sent.
   void exchange_all();
-  /// Waits until there are orders to take; false if there are none at `give_up_at`.
+  /// Waits for orders; false if there are none at `give_up_at`.
   bool wait_for_order(std::chrono::steady_clock::time_point give_up_at);
   void answer(Result&& result);
-  /// Offers a device for import.
   void offer(const DeviceDescription& device);
-  /// The device is gone: its importers are disconnected.
+  /// The device is removed: its importers are disconnected.
   void withdraw();
 
  private:
@@ -76,8 +74,8 @@ class UsbIpServer {
     UsbIpRequests requests;
     std::vector<std::byte> to_send;
     std::size_t sent = 0;
-    std::optional<UsbIpImport> import;  ///< of the device, by this client
-    bool closing = false;               ///< once everything is sent
+    std::optional<UsbIpImport> import;  ///< set if this client has imported the device
+    bool closing = false;               ///< disconnect after all data is sent
     bool dead = false;
   };
 
@@ -101,7 +99,7 @@ class UsbIpServer {
   local::Listener listener_;
   local::Descriptor wake_;  // eventfd
 
-  std::mutex mutex_;  // guards the next seven
+  std::mutex mutex_;  // guards the next seven members
   std::vector<Order> orders_;
   std::vector<Result> results_;
   std::optional<DeviceDescription> offered_;
@@ -111,7 +109,7 @@ class UsbIpServer {
   std::condition_variable order_given_, exchanged_;
   std::atomic<bool> orders_waiting_ = false;
 
-  // Only for the server's thread.
+  // The server thread owns the members below.
   std::list<Connection> connections_;
   std::uint32_t sessions_ = 0;
   std::chrono::steady_clock::time_point accept_again_at_{};

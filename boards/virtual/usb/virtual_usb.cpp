@@ -20,7 +20,7 @@ namespace inkwell::virtual_board {
 
 namespace {
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds attention{50};  // how soon a board that waits for its host notices its end
+constexpr std::chrono::milliseconds attention{50};  // time for a waiting board to notice its end
 }  // namespace
 
 struct VirtualUsb::Implementation final : SharedPort::Client {
@@ -45,7 +45,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   bool any(Condition condition) const {
     return std::ranges::any_of(paces, [&](const auto& entry) { return (entry.second.*condition)(); });
   }
-  /// Whether a program that board time waits for is waited for no longer than a while.
+  /// Whether the wait has a time limit.
   bool is_limited(Condition condition) const {
     if (is_in_lock_step()) return false;
     if (has_limit || paces.size() > 1) return any(condition);
@@ -53,7 +53,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
       return (entry.second.*condition)() && !entry.second.is_waited_for_without_limit();
     });
   }
-  /// Those that are waited for.
+  /// Names of the programs that are waited for.
   template <class Waited>
   std::vector<std::string> names(Waited is_waited_for) const {
     std::vector<std::string> names;
@@ -69,7 +69,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     orders.clear();
   }
 
-  /// Waits, but without a limit only as long as `goes_on` says so, which is asked once it lasts.
+  /// Waits while the condition is true. A wait without a limit continues only while `goes_on` returns true.
   void wait_while(Condition condition, const std::function<bool()>& goes_on) {
     if (!any(condition)) return;
     std::optional<bool> was_limited;
@@ -139,8 +139,8 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   SharedPort port;
   std::map<std::uint32_t, HostPace> paces;  ///< of each program that has imported the device
   std::map<std::uint32_t, Peer> clients;
-  bool has_limit = false;         ///< every program is waited for no longer than a while
-  std::vector<std::string> late;  ///< programs that are waited for without a limit, and have been for a while
+  bool has_limit = false;         ///< every wait has a time limit
+  std::vector<std::string> late;  ///< programs with an unlimited wait that has exceeded HostPace::patience
   std::function<bool()> go_on_while_late = [] { return true; };
   std::function<bool()> is_ending;
   std::function<void()> on_stop;  ///< in lock step only

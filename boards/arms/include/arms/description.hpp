@@ -1,4 +1,4 @@
-// Arm descriptions: what boards/arms/*.toml say about an arm, checked key by key.
+// Arm descriptions: the contents of boards/arms/*.toml, checked key by key.
 #pragma once
 
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace inkwell::arms {
 
-/// What is not a parameter of the three motors, which are alike in it.
+/// Properties of the three identical motors that are not parameters.
 struct Motor {
   double inductance_H;
 };
 
-/// What only a simulation needs. Links are slender: their inertia is about an axis across the link.
+/// Properties that only a simulation needs. Links are slender, so their inertia is about an axis perpendicular to the
+/// link.
 struct Simulation {
-  double base_inertia_kg_m2;  ///< all that turns with joint 1 only, about its axis
+  double base_inertia_kg_m2;  ///< of the parts that turn with joint 1 only, about its axis
   double link_2_mass_kg;
-  double link_2_centre_m;       ///< centre of mass, from the shoulder
-  double link_2_inertia_kg_m2;  ///< about the centre of mass
+  double link_2_centre_m;       ///< center of mass, from the shoulder
+  double link_2_inertia_kg_m2;  ///< about the center of mass
   double link_3_mass_kg;
-  double link_3_centre_m;  ///< centre of mass, from the elbow
+  double link_3_centre_m;  ///< center of mass, from the elbow
   double link_3_inertia_kg_m2;
   double probe_mass_kg;
   double rotor_inertia_kg_m2;                 ///< of each motor, before the gear
@@ -38,24 +39,25 @@ struct Simulation {
 struct Description {
   std::string name;
   std::string description;
-  /// The arm's rows as the file sets them; the other rows have their defaults.
+  /// Parameters from the file; the other parameters have their defaults.
   protocol::ParameterSet parameters;
   Motor motor;
   Simulation simulation;
 };
 
-/// A sentence that names the file, the line where there is one, what is wrong and what to do. It is safe to print.
+/// A sentence that names the file, the line if known, the error and its remedy. The text is safe to print.
 class DescriptionError : public std::runtime_error {
  public:
   explicit DescriptionError(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
 /// Reads an arm description.
-/// @throws DescriptionError if the file is missing or not TOML, a key is missing or unknown (a wrong unit
-///         included), or a value is no number, out of its range, not whole, or a lower bound not below the upper.
+/// @throws DescriptionError if the file is missing or is not TOML, or if a key is missing or unknown (also because of
+///         its unit). Also thrown if a value is not a number, is out of range or is not an integer where required, or
+///         if a lower bound is not below its upper bound.
 Description read(const std::filesystem::path& file);
 
-/// The same for a text; `source` names it in errors.
+/// Reads an arm description from a string; `source` names it in errors.
 Description parse(std::string_view text, const std::string& source);
 
 }  // namespace inkwell::arms

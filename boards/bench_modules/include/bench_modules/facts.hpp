@@ -1,5 +1,5 @@
-// A board of bought modules, wired by hand, as facts: README.md has the modules and the wires, and where each figure is
-// from.
+// Facts of a board of purchased modules with manual wiring. README.md describes the modules and wires, and the sources
+// of the figures.
 #pragma once
 
 #include <board/checks.hpp>
@@ -12,11 +12,11 @@ inline constexpr Facts bench_modules{
     .encoders = {{5, {{'A', 0}, 2}, {{'A', 1}, 2}},
                  {3, {{'B', 4}, 2}, {{'B', 5}, 2}},
                  {4, {{'B', 6}, 2}, {{'B', 7}, 2}}},
-    // Channels count down, so that the wires of a bridge do not cross those of the next.
+    // The channels are in descending order, so that the wires of adjacent bridges do not cross.
     .bridges = {{3, {{'A', 10}, 1}, {{'C', 8}, 3}},
                 {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
                 {1, {{'A', 8}, 1}, {{'C', 6}, 3}}},
-    // BOOT1, which the boot loader wants low: the monostable's pull-down does both.
+    // BOOT1 must be low for the boot loader. The pull-down of the monostable ensures this too.
     .bridge_enable = {'B', 2},
     .bridge_heartbeat = {'B', 1},
     .bridge_hold = {'B', 0},

@@ -1,4 +1,4 @@
-// Refuses facts of a board that cannot work: each board instantiates Checks for itself.
+// Compile-time checks of board facts. Each board instantiates Checks.
 #pragma once
 
 #include <board/facts.hpp>
@@ -14,7 +14,7 @@ constexpr bool pins_are_distinct(const Facts& facts) {
   return true;
 }
 
-/// The LQFP64 part has ports A, B and C whole, D only pin 2 and H only pins 0 and 1.
+/// The LQFP64 package has ports A, B and C, pin 2 of port D, and pins 0 and 1 of port H. Boards may use A, B and C.
 constexpr bool package_has_pins(const Facts& facts) {
   for (const auto& use : facts.pin_uses())
     if (use.pin.port < 'A' || use.pin.port > 'C' || use.pin.number > 15) return false;
@@ -37,7 +37,7 @@ constexpr bool third_converter_reaches(const AnalogInput& input) {
   return input.channel <= 3 || (input.channel >= 10 && input.channel <= 13);
 }
 
-/// Data sheet, table of alternate functions: TIM1 and TIM8 have their first three channels at these pins only.
+/// Data sheet, table of alternate functions: the allowed pins for the first three channels of TIM1 and TIM8.
 constexpr bool legs_are_at_their_pins(const Facts& facts) {
   unsigned channels = 0;
   for (const auto& [channel, leg_a, leg_b] : facts.bridges) {

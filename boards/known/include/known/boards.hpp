@@ -1,4 +1,3 @@
-// The boards that there are, by name.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 
 namespace inkwell::board {
 
-/// nullptr if there is none of this name.
+/// Returns nullptr if no board has this name.
 constexpr const Facts* find_board(std::string_view name) {
   const auto found = std::ranges::find(known_boards, name, [](const Facts* board) { return board->name; });
   return found == std::end(known_boards) ? nullptr : *found;
@@ -22,7 +21,7 @@ inline std::string names_of_boards() {
   return names;
 }
 
-/// File of the firmware for a board.
+/// File name of the firmware image for a board.
 inline std::string image_name(const Facts& board) {
   return &board == &default_board ? "inkwell.elf" : "inkwell-" + std::string(board.name) + ".elf";
 }

@@ -1,4 +1,4 @@
-// The driver board as facts: pins, crystal, scales. README.md has the same as wires and parts.
+// Facts of the driver board: pins, crystal, scales. README.md describes the wiring and parts.
 #pragma once
 
 #include <board/checks.hpp>

@@ -1,8 +1,8 @@
 // An STM32F405 for any firmware: Cortex-M4F processor, memories, and the peripherals of RM0090.
 //
-// Instructions cost the cycles that the core's pipeline, the flash and the buses take (timing/costs.hpp); the clock
-// tree, timers, converters, and watchdogs run in board time. `Chip` is not thread-safe: everything, the circuit
-// included, runs in the thread that calls run_until().
+// Instructions take the cycles of the core pipeline, the flash and the buses (timing/costs.hpp). The clock tree,
+// timers, converters and watchdogs run in board time. `Chip` is not thread-safe: the chip and the circuit run in the
+// thread that calls run_until().
 #pragma once
 
 #include <array>
@@ -27,29 +27,29 @@
 namespace inkwell::virtual_board {
 
 enum class Mode : std::uint8_t {
-  exact,  ///< an interrupt can fall at any instruction
-  fast,   ///< interrupts fall between basic blocks; several times faster
+  exact,  ///< interrupts can occur at any instruction
+  fast,   ///< interrupts occur between basic blocks; several times faster
 };
 
 struct ChipOptions {
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
-  std::uint32_t crystal_Hz = 8'000'000;          ///< HSE, by its name
-  std::int32_t crystal_ppm = 0;                  ///< and how much faster than that it swings
-  std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz by the data sheet
-  unsigned brown_out_level = 0;                  ///< of the option bytes: 0 is off, as in a new chip, to 3
-  bool slowest_flash = false;                    ///< the data sheet's longest times to erase and program, not the usual
+  std::uint32_t crystal_Hz = 8'000'000;          ///< nominal frequency of HSE
+  std::int32_t crystal_ppm = 0;                  ///< deviation from the nominal frequency
+  std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz (data sheet)
+  unsigned brown_out_level = 0;                  ///< option bytes: 0 (off, as in a new chip) to 3
+  bool slowest_flash = false;  ///< longest erase and program times of the data sheet instead of the typical times
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
-  std::uint32_t random_seed = 1;  ///< of the RNG peripheral, and of what a reset leaves in the flash that was busy
-  /// Takes each line of the log (without a newline); by default it goes to stderr.
+  std::uint32_t random_seed = 1;  ///< for the RNG peripheral and for flash operations that a reset interrupts
+  /// Receives each line of the log (without a newline). By default the log goes to stderr.
   std::function<void(const std::string&)> log;
-  /// The function at an address, for lines of the log; may give nothing. By default there are no names.
+  /// Returns the function name at an address for log lines, or an empty string. By default there are no names.
   std::function<std::string(std::uint32_t address)> name_of_code;
-  /// Called in exact mode before each instruction with the cycles that the processor has run.
+  /// Called in exact mode before each instruction. `cycles` counts the cycles that the processor has run.
   std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 
-/// RCC_CSR's reset flags, in the order of its bits 26..31, and its bit 25.
+/// Reset flags of RCC_CSR, in the order of its bits 26 to 31, then bit 25.
 enum class ResetCause : std::uint8_t {
   pin,
   power_on,
@@ -63,11 +63,11 @@ inline constexpr std::size_t reset_causes = 7;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;
-  /// Cycles of the longest run, entry and return included, without those of exceptions that preempted it.
+  /// Cycles of the longest run with entry and return, without the exceptions that preempted the run.
   std::uint64_t longest_cycles = 0;
 };
 
-/// Since construction, or since clear_counters().
+/// Counts since construction or clear_counters().
 struct Counters {
   std::uint64_t instructions = 0;
   std::uint64_t cycles = 0;  ///< without sleep
@@ -81,16 +81,16 @@ struct Counters {
   }
 };
 
-/// Why run_until() came back.
+/// Reason why run_until() returned.
 enum class Stop : std::uint8_t {
   time_reached,
-  firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED, see exit_code()
-  locked_up,  ///< time reached, but the processor is locked up: only reset() or a watchdog helps. See lockup_reason()
+  firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED; see exit_code()
+  locked_up,  ///< time reached with a locked-up processor; only reset() or a watchdog resumes it; see lockup_reason()
   requested,  ///< request_stop()
-  debugger,   ///< a breakpoint, a watch point or the end of a step: see debug_port()
+  debugger,   ///< a breakpoint, a watch point or the end of a step; see debug_port()
 };
 
-/// Frequencies that firmware has set up, in Hz; 0 is a clock that stands still.
+/// Frequencies that the firmware has configured, in Hz. 0 means that the clock is stopped.
 struct Clocks {
   std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
   std::uint32_t timer1_Hz;  ///< timers on APB1
@@ -98,11 +98,11 @@ struct Clocks {
   std::uint32_t usb_Hz;     ///< PLL48CLK
 };
 
-/// A fault as the processor met it.
 struct Fault {
   std::string what;  ///< cause and addresses
   Ticks when = 0;
-  CoreRegisters registers;  ///< before the fault's handler was entered; R0 to R3, R12, LR, PC, XPSR are what it stacks
+  /// Registers before the entry of the fault handler. R0 to R3, R12, LR, PC and XPSR are the stacked values.
+  CoreRegisters registers;
 };
 
 class Chip {
@@ -113,101 +113,101 @@ class Chip {
   Chip(const Chip&) = delete;
   Chip& operator=(const Chip&) = delete;
 
-  /// Erases the sectors of the flash that the ELF's load segments touch, and programs those by their physical
+  /// Erases the flash sectors that the ELF's load segments touch, and programs the segments at their physical
   /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated, not a 32-bit ARM
   /// executable, or does not fit.
   void load_elf(const std::filesystem::path& path);
-  /// Resets processor and peripherals as the pin NRST does (board time goes on).
+  /// Resets processor and peripherals like the NRST pin. Board time continues.
   void reset(ResetCause cause = ResetCause::pin);
 
-  /// Runs until board time reaches `when`, or the firmware exits. Calls of the circuit, of
-  /// peripherals and of scheduled events come from inside it.
+  /// Runs until board time reaches `when` or the firmware exits. This function calls the circuit, the peripherals and
+  /// scheduled events.
   Stop run_until(Ticks when);
-  /// Lets the boot loader in the chip start the firmware, after a reset, as it does when it is told to go there
-  /// (AN2606): with clocks, CCM and vector table as a loader may leave them, which is not as a reset does.
+  /// Starts the firmware after a reset as the boot loader does on its "go" command (AN2606). Clocks, CCM and vector
+  /// table have the state that a boot loader may leave, which differs from their reset state.
   void start_by_boot_loader();
-  /// Lets the boot loader run, after a reset, as the chip does that comes out of it with BOOT0 high.
+  /// Starts the boot loader, like a reset with BOOT0 high.
   void start_boot_loader();
-  /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
-  /// Not from inside run_until().
+  /// Sets the program counter, like a debugger between two instructions or a bit flip in the register. Not allowed
+  /// inside run_until().
   void jump(std::uint32_t address);
-  // Faults that are put into it, not from inside run_until(). A reset ends a stall and a halt; the others last.
-  /// The core does nothing for this long, as when the bus keeps it waiting; all else goes on.
+  // Injected faults, not allowed inside run_until(). A reset ends a stall and a halt; the other faults remain.
+  /// Stops the core for this time, like a long bus wait. All other parts continue.
   void stall(Ticks duration);
-  /// The program comes no further for this long, as in a loop that does not end; exceptions are handled all the same.
-  /// Where the program holds exceptions back it still goes on, to where it lets them come.
+  /// Stops the program for this time, like an endless loop; exceptions are still handled. If the program masks
+  /// exceptions, the stop begins only after the instruction that unmasks them.
   void stall_thread(Ticks duration);
-  /// A debug probe halts the core for this long; what firmware asked for in DBGMCU_APBx_FZ stands still too. Unlike the
-  /// halts of debug_port(), in which all of board time stands.
+  /// Halts the core for this time like a debug probe. Peripherals that firmware selected in DBGMCU_APBx_FZ freeze too.
+  /// In contrast, a halt by debug_port() stops board time.
   void halt(Ticks duration);
-  /// For this long the pin is the opposite of what the circuit drives, as by a spike that couples into its wire.
+  /// Inverts the level that the circuit drives at the pin for this time, like a voltage spike.
   void glitch(char port, unsigned pin, Ticks duration);
-  /// An exception by number that never reaches the core, or does again.
+  /// Suppresses an exception: it no longer reaches the core, until `lost` is false.
   void lose_exception(unsigned exception, bool lost);
-  /// An exception that reaches the core so many cycles of HCLK late, from the next time on; 0 is in time again.
+  /// Delays an exception, from its next occurrence on, by this number of HCLK cycles. 0 ends the delay.
   void delay_exception(unsigned exception, std::uint32_t cycles);
-  /// Turns a bit of a byte of RAM or flash over, as a particle does. False if there is no memory.
+  /// Flips one bit of a byte of RAM or flash. Returns false if there is no memory at `address`.
   [[nodiscard]] bool flip_bit(std::uint32_t address, unsigned bit);
-  /// ADC `number` (1 to 3) begins no conversion any more, or does again.
+  /// Prevents new conversions of ADC `number` (1 to 3), or allows them again.
   void stop_converter(unsigned number, bool stopped);
-  /// Neither DMA takes a request any more, or both do again.
+  /// Prevents both DMA controllers from accepting requests, or allows it again.
   void stop_dma(bool stopped);
-  /// The power fails in the middle of so many erases and programmed words from now on, and is back at once; 0 is never.
+  /// Interrupts the power in the middle of the erase or word program with this number, counted from now. Power returns
+  /// immediately. 0 cancels the interruption.
   void cut_power_at_flash_operation(std::uint64_t number);
-  /// Erases and programmed words since the chip was made.
+  /// Number of erases and programmed words since construction.
   std::uint64_t flash_operations() const;
-  /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.
-  /// VDDA goes with it.
+  /// Sets the 3.3 V supply of the chip and VDDA. Below the brown-out level of the option bytes the chip stays in reset.
   void set_supply_V(double volts);
-  /// VDDA alone, the reference of the converters.
+  /// Sets VDDA alone. VDDA is the reference of the converters.
   void set_analog_supply_V(double volts);
-  /// The crystal stops, or swings again.
   void let_crystal_swing(bool swings);
-  /// It swings faster than its name by so many parts in a million; ChipOptions::crystal_ppm to begin with.
+  /// Sets the deviation of the crystal from its nominal frequency; ChipOptions::crystal_ppm initially.
   void drift_crystal(std::int32_t ppm);
-  /// The exception that runs; 0 in thread mode.
+  /// Number of the running exception; 0 in thread mode.
   unsigned current_exception() const;
 
-  /// From inside a callback: run_until() returns as soon as it can.
+  /// For callbacks: makes run_until() return as soon as possible.
   void request_stop();
 
   Scheduler& scheduler();
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
-  /// What a meter would show at a pin ('A' to 'I', 0 to 15), and what the chip itself puts out there.
+  /// Level at a pin ('A' to 'I', 0 to 15) as a meter shows it, and the output level of the chip itself.
   PinLevel pin_level(char port, unsigned pin) const;
   PinLevel pin_output(char port, unsigned pin) const;
   ChipConnections connections();
 
-  /// Puts a peripheral on the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or
-  /// 0x50000000..0x50060BFF. It is reset with the chip. It must outlive the chip.
+  /// Adds a peripheral to the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or 0x50000000..0x50060BFF.
+  /// The peripheral is reset with the chip. It must outlive the chip.
   void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
 
-  /// Called at the trigger of each injected sequence of the ADCs with its index since reset. ADCs that are
-  /// triggered at the same instant count once.
+  /// Called at the trigger of each injected ADC sequence with its index since reset. ADCs that are triggered at the
+  /// same instant count once.
   std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
-  /// A character that semihosting writes (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or any USART sends.
+  /// A character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
   std::function<void(std::uint8_t byte)> on_console;
-  /// A character that USART `number` (1..6) has sent, at the end of its stop bit.
+  /// A character from USART `number` (1..6), reported at the end of its stop bit.
   std::function<void(unsigned number, std::uint8_t byte)> on_usart;
-  /// Called at each change of a pin's level. Once it is set, each pin that has one is told. Nothing ends it.
+  /// Calls `changed` at each level change of a pin, and initially for each pin that is not floating. An empty
+  /// function ends the watch.
   void watch_pins(std::function<void(char port, unsigned pin, PinLevel level, Ticks when)> changed);
-  /// Called when an exception begins to run, and with 0 when the thread goes on. Nothing ends it.
+  /// Calls `changed` when an exception starts to run, and with 0 when thread mode resumes. An empty function ends the
+  /// watch.
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
-  /// Called when the firmware breaks a rule, once for each place.
+  /// Called when the firmware breaks a rule, once per peripheral or pin.
   std::function<void(const Violation& violation)> on_violation;
-  /// Called some thousand times a second, and after each order, while the boot loader in the chip runs: what it does
-  /// next.
+  /// Called after each order while the boot loader in the chip runs. Returns the next order.
   std::function<LoaderOrder()> on_boot_loader;
-  /// Called after each reset that the firmware or a watchdog causes (and those by reset()).
+  /// Called after each reset by the firmware, a watchdog or reset().
   std::function<void(ResetCause cause)> on_reset;
 
-  /// A character for the receiver of USART `number` (1..6); they follow each other at the baud rate.
+  /// Sends a character to the receiver of USART `number` (1..6). Characters follow each other at the baud rate.
   void usart_receive(unsigned number, std::uint8_t byte);
-  /// Its receiver is on; what arrives before is lost.
+  /// True if the receiver is on. Earlier characters are lost.
   bool usart_listens(unsigned number) const;
-  /// Bytes of usart_receive() that it has not received yet.
+  /// Number of bytes from usart_receive() that the USART has not received yet.
   std::size_t usart_waiting(unsigned number) const;
 
   Ticks now() const;
@@ -215,24 +215,23 @@ class Chip {
   Clocks clocks() const;
   const Counters& counters() const;
   void clear_counters();
-  /// Of SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, once run_until() returned Stop::firmware_exit.
+  /// Argument of SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, valid after Stop::firmware_exit.
   int exit_code() const;
-  /// Fault and addresses in a sentence, once run_until() returned Stop::locked_up.
+  /// Description of the fault with its addresses, valid after Stop::locked_up.
   const std::string& lockup_reason() const;
-  /// The newest fault that did not come from the handler of another one: what a lock-up began with.
+  /// Most recent fault that did not occur in the handler of another fault. This fault is the cause of a lock-up.
   const std::optional<Fault>& first_fault() const;
-  /// Registers of all peripherals, as their models declare them.
   std::vector<RegisterMap> register_maps() const;
-  /// Rules that the firmware has broken so far, in the order of their first time.
+  /// Rules that the firmware has broken so far, in the order of first occurrence.
   const std::vector<Violation>& violations() const;
-  /// Lines of unmodelled accesses so far.
+  /// Log lines of accesses to unmodeled registers so far.
   const std::vector<std::string>& unmodelled_accesses() const;
 
-  /// Memory as a debugger sees it (flash, SRAM, CCM; no registers, no side effects). 0 outside of memory.
+  /// Memory word for debuggers (flash, SRAM, CCM; no registers, no side effects). Returns 0 outside of memory.
   std::uint32_t memory_word(std::uint32_t address) const;
-  /// All of the flash, as a programmer reads and writes it; reset() has to follow.
+  /// The whole flash, for programmers. Call reset() after a change.
   std::span<std::uint8_t> flash();
-  /// A number of all of the state that firmware can see in memory and core registers, to compare runs by.
+  /// Hash of memory and core registers, to compare runs.
   std::uint64_t state_hash() const;
 
  private:

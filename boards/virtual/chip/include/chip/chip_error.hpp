@@ -4,7 +4,7 @@
 
 namespace inkwell::virtual_board {
 
-/// An ELF that can not be loaded, or a processor that can not be set up: a sentence that says what to do.
+/// Failure to load an ELF file or to set up the processor. The text includes the remedy.
 class ChipError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

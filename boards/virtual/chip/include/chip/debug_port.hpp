@@ -1,4 +1,4 @@
-// What a debug probe does to the processor: look, change, stop. Board time stands still meanwhile.
+// Debug access to the processor. Board time is stopped during the access.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace inkwell::virtual_board {
 
-/// What the core's programmer sees, without the FPU.
+/// Core registers of the programmer's model, without the FPU.
 struct CoreRegisters {
   std::array<std::uint32_t, 16> general{};  ///< R0 to R12, SP, LR, PC
   std::uint32_t xpsr = 0;
@@ -15,7 +15,7 @@ struct CoreRegisters {
 };
 
 struct FloatRegisters {
-  std::array<std::uint64_t, 16> doubles{};  ///< D0 to D15: two of S0 to S31 each
+  std::array<std::uint64_t, 16> doubles{};  ///< D0 to D15; each consists of two of S0 to S31
   std::uint32_t fpscr = 0;
 };
 
@@ -25,35 +25,36 @@ struct WatchPoint {
   bool operator==(const WatchPoint&) const = default;
 };
 
-/// Why run_until() came back with Stop::debugger.
+/// Reason why run_until() returned Stop::debugger.
 struct DebugStop {
   enum class Reason : std::uint8_t {
-    breakpoint,   ///< before the instruction there; also at a BKPT instruction
-    watch_point,  ///< after the instruction that touched it
+    breakpoint,   ///< before the instruction at that address, or at a BKPT instruction
+    watch_point,  ///< after the instruction that accessed the address
     step,
   };
   Reason reason = Reason::step;
-  std::uint32_t address = 0;  ///< that was touched, of a watch point
+  std::uint32_t address = 0;  ///< accessed address, for watch points
 };
 
-/// Of a chip in exact mode: in fast mode the processor is stopped between blocks only. Not from inside run_until().
+/// Debugger of a chip. Use exact mode: in fast mode the processor stops only between blocks. Not allowed inside
+/// run_until().
 class DebugPort {
  public:
   virtual ~DebugPort() = default;
-  /// From now on BKPT instructions stop the processor, and firmware can read that a debugger is there.
+  /// Makes BKPT instructions stop the processor. Firmware can read that a debugger is present.
   virtual void attach() = 0;
-  /// Forgets breakpoints and watch points.
+  /// Removes all breakpoints and watch points.
   virtual void detach() = 0;
 
   virtual CoreRegisters core_registers() const = 0;
-  /// Of xPSR the flags only.
+  /// Sets the registers; of xPSR only the flags.
   virtual void set_core_registers(const CoreRegisters& registers) = 0;
   virtual FloatRegisters float_registers() const = 0;
   virtual void set_float_registers(const FloatRegisters& registers) = 0;
 
-  /// Memory, or registers of peripherals with what reading them does there. False: nothing is there.
+  /// Reads memory, or peripheral registers with their side effects. Returns false if nothing is mapped there.
   virtual bool read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
-  /// RAM, or registers of peripherals. False: nothing that can be written is there.
+  /// Writes RAM or peripheral registers. Returns false if nothing writable is mapped there.
   virtual bool write(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
 
   virtual void add_breakpoint(std::uint32_t address) = 0;
@@ -61,9 +62,9 @@ class DebugPort {
   virtual void add_watch_point(const WatchPoint& watch_point) = 0;
   virtual void remove_watch_point(const WatchPoint& watch_point) = 0;
 
-  /// The next run_until() goes on from here, past a breakpoint at this very place.
+  /// Makes the next run_until() continue past a breakpoint at the current address.
   virtual void resume() = 0;
-  /// The next run_until() executes one instruction, or an if-then block as a whole. Interrupts wait meanwhile.
+  /// Makes the next run_until() execute one instruction, or one whole if-then block, with interrupts held off.
   virtual void step() = 0;
   virtual DebugStop last_stop() const = 0;
 };

@@ -1,7 +1,6 @@
-// What the parts of the virtual board share: time, events, interrupt lines, peripherals, pins.
+// Interfaces between the parts of the virtual board: time, events, interrupt lines, peripherals, pins.
 //
-// One thread runs everything in here. Other threads (sockets) hand over work through their own queues,
-// which are emptied by events.
+// One thread runs all these parts. Other threads (sockets) pass work through queues, and events drain the queues.
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -18,94 +17,95 @@ inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
 constexpr Ticks ticks(double time_s) { return static_cast<Ticks>(time_s * static_cast<double>(ticks_per_s) + 0.5); }
 
-/// Of the chip, and of its converters' reference VDDA, unless something is wrong with them.
+/// Nominal supply of the chip and nominal VDDA.
 inline constexpr double logic_supply_V = 3.3;
 
-/// Events in the order of board time; equal times run in the order in which they were asked for.
+/// Runs events in the order of board time. Events with equal times run in the order of their requests.
 class Scheduler {
  public:
   using Id = std::uint64_t;
   virtual ~Scheduler() = default;
   virtual Ticks now() const = 0;
-  /// Runs `action` once when board time reaches `when` (at once, but not re-entrantly, if that has passed).
+  /// Runs `action` once when board time reaches `when`. If `when` has passed, the action runs at the current board
+  /// time, but not inside this call.
   virtual Id at(Ticks when, std::function<void()> action) = 0;
   virtual void cancel(Id id) = 0;
 };
 
-/// Level-sensitive inputs of the interrupt controller, by position in RM0090's vector table.
+/// Level-sensitive inputs of the interrupt controller, by position in the vector table of RM0090.
 class InterruptController {
  public:
   virtual ~InterruptController() = default;
   virtual void set_level(unsigned position, bool asserted) = 0;
 };
 
-/// A block of registers on a bus. Offsets are within the block; sizes are 1, 2 or 4 bytes.
+/// A block of registers on a bus. Offsets are relative to the block; sizes are 1, 2 or 4 bytes.
 class Peripheral {
  public:
   virtual ~Peripheral() = default;
   virtual std::uint32_t read(std::uint32_t offset, unsigned size) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
   virtual void reset() = 0;
-  /// Its registers under the names of the reference manual, if it is called `name` and lies at `base`.
+  /// Registers with the names of the reference manual. The arguments are the name and base address of the peripheral.
   virtual std::vector<RegisterMap> register_maps(const std::string&, std::uint32_t) const { return {}; }
 };
 
-/// Says once per place that firmware touched a register that is not modelled.
+/// Logs accesses to unmodeled registers, once per register.
 class UnmodelledLog {
  public:
   virtual ~UnmodelledLog() = default;
   virtual void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) = 0;
 };
 
-/// Clocks and pins as they are now, for a peripheral that depends on them.
+/// Current clocks and pin functions, for peripherals that depend on them.
 class ChipState {
  public:
   virtual ~ChipState() = default;
   virtual std::uint32_t hclk_Hz() const = 0;
-  virtual std::uint32_t usb_Hz() const = 0;  ///< PLL48CLK; 0 if it stands still
+  virtual std::uint32_t usb_Hz() const = 0;  ///< PLL48CLK; 0 if it is stopped
   virtual bool has_function(char port, unsigned pin, unsigned alternate_function) const = 0;
 };
 
-/// Signals that lead from a peripheral to the trigger inputs of the timers.
+/// Signals from a peripheral to the trigger inputs of the timers.
 class TriggerLines {
  public:
   virtual ~TriggerLines() = default;
-  /// The USB core OTG_FS has received a start of frame.
+  /// Call this when the USB core OTG_FS receives a start of frame.
   virtual void usb_start_of_frame() = 0;
 };
 
 enum class PinLevel : std::uint8_t { low, high, floating };
 
-/// What stands behind a voltage at an analogue pin. None of either is an ideal source.
+/// Source of the voltage at an analog pin. A source without resistance and capacitance is ideal.
 struct AnalogSource {
   double resistance_ohm = 0.0;
   double capacitance_F = 0.0;  ///< from the pin to ground
-  double pull_down_ohm = 0.0;  ///< at the pin, the chip's side of what may break; 0 where there is none
+  double pull_down_ohm = 0.0;  ///< on the chip's side of a wire break; 0 if there is none
 };
 
-/// What is soldered to the chip. Times of calls never run backward.
+/// Circuit around the chip. The times of calls never decrease.
 class Circuit {
  public:
   virtual ~Circuit() = default;
-  /// The chip drives a pin (GPIO output or a timer's output), or lets go of it. `port` is 'A'..'I'.
+  /// Called when the chip drives a pin (GPIO output or timer output) or releases it. `port` is 'A'..'I'.
   virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
-  /// Voltage that an ADC samples at a pin, in volts. Called at the sampling instant.
+  /// Returns the voltage at a pin, in volts. Called at the sampling instant of an ADC.
   virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
-  /// How fast that voltage reaches the ADC's sampling capacitor.
+  /// Source of the voltage at a pin, which sets the charging time of the sampling capacitor.
   virtual AnalogSource analog_source(char /*port*/, unsigned /*pin*/) const { return {}; }
-  /// Lets the circuit's own time pass; called at least once every 50 us of board time.
+  /// Advances the circuit to `now`. Called at least once every 50 us of board time.
   virtual void advance(Ticks now) = 0;
 };
 
-/// How a circuit drives the chip's digital inputs; edges reach GPIO, EXTI and timer inputs.
+/// Inputs through which the circuit drives the pins. Edges reach GPIO, EXTI and timer inputs.
 class InputPins {
  public:
   virtual ~InputPins() = default;
   static constexpr Ticks just_now = ~Ticks{0};
-  /// A circuit that looks back, as one that moves in steps does, tells since when the level has been so. Calls for one
-  /// pin come in the order of these times.
+  /// Drives a pin. A circuit that computes in steps passes the past time of the edge in `since`. Calls for one pin
+  /// must be in the order of these times.
   virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
-  /// The pin touches something that wins against the chip's own output; `floating` is nothing any more.
+  /// Forces the pin to a level that overrides the output of the chip. `floating` removes the force.
   virtual void hold(char /*port*/, unsigned /*pin*/, PinLevel /*level*/) {}
 };
 

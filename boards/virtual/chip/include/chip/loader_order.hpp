@@ -1,5 +1,6 @@
-// What the boot loader in the chip's system memory does. The model's loader has hands, which are instructions that the
-// processor runs, so that flash, buses and clocks are those of the chip; its head is whoever plays its part on USB.
+// Orders to the boot loader in the system memory of the chip. Instructions on the emulated processor execute the
+// orders, with the timing of flash, buses and clocks. The program that emulates the USB side of the boot loader issues
+// the orders.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +11,15 @@ namespace inkwell::virtual_board {
 
 struct LoaderOrder {
   enum class Kind : std::uint32_t {
-    wait,     ///< ask again in a tenth of a millisecond
-    store,    ///< `word` at `address`, and wait until the flash is not busy
-    program,  ///< `data` from `address` on, word by word, each waited for
-    go,       ///< start the program at the begin of the flash
+    wait,     ///< ask again after 0.1 ms
+    store,    ///< write `word` to `address`, then wait until the flash is idle
+    program,  ///< write `data` from `address` on, word by word, with a wait after each word
+    go,       ///< start the program at the beginning of the flash
   };
   Kind kind = Kind::wait;
   std::uint32_t address = 0;
   std::uint32_t word = 0;
-  std::span<const std::byte> data{};  ///< whole words, 4 KiB at most; copied before the next order is asked for
+  std::span<const std::byte> data{};  ///< whole words, 4 KiB at most; copied before the next order is requested
 };
 
 }  // namespace inkwell::virtual_board

@@ -11,7 +11,7 @@
 
 namespace inkwell::virtual_board {
 
-/// As 0x08000000.
+/// Formats a number, for example 0x08000000.
 std::string hexadecimal(std::uint32_t value);
 
 class Memory {
@@ -22,12 +22,12 @@ class Memory {
   std::uint8_t* ccm() { return ccm_.data(); }
   std::uint8_t* system() { return system_.data(); }
 
-  /// Where `bytes` at `address` lie, or nullptr if they are not all within one memory.
+  /// Host address of `bytes` bytes at `address`, or nullptr unless all of them are within one memory.
   std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
   const std::uint8_t* at(std::uint32_t address, std::uint32_t bytes) const {
     return const_cast<Memory*>(this)->at(address, bytes);
   }
-  /// Writable memory only (SRAM, CCM).
+  /// Like at(), for writable memory (SRAM, CCM) only.
   std::uint8_t* ram_at(std::uint32_t address, std::uint32_t bytes);
   std::uint32_t word(std::uint32_t address) const {
     std::uint32_t value = 0;
@@ -41,12 +41,13 @@ class Memory {
   }
 
  private:
-  // Unicorn wants pages of 4 KB, page-aligned sizes; alignment of the host memory does not matter.
+  // Unicorn requires page-aligned sizes with pages of 4 KB. The host memory needs no alignment.
   std::vector<std::uint8_t> flash_, sram_, ccm_, system_;
 };
 
-/// Writes the load segments of an ELF file by physical address, and erases the sectors of the flash that they touch.
-/// Throws ChipError, whose sentence has the file's name. Returns a sentence about what will hardly work, or nothing.
+/// Erases the flash sectors that the load segments of an ELF file touch, and writes the segments at their physical
+/// addresses. Throws ChipError with the name of the file. Returns a warning about a doubtful image, or an empty
+/// string.
 std::string program_elf(std::span<const char> file, const std::string& name, Memory& memory);
 
 }  // namespace inkwell::virtual_board

@@ -1,4 +1,4 @@
-// Where the memories of an STM32F405 with 1 MB of flash lie (RM0090 2.3).
+// Memory addresses of an STM32F405 with 1 MB of flash (RM0090 2.3).
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@ namespace inkwell::virtual_board {
 inline constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
 inline constexpr std::uint32_t sram_base = 0x2000'0000, sram_bytes = 128 * 1024;  ///< SRAM1 and SRAM2 are adjacent
 inline constexpr std::uint32_t ccm_base = 0x1000'0000, ccm_bytes = 64 * 1024;
-inline constexpr std::uint32_t private_bus_base = 0xE000'0000, private_bus_bytes = 0x10'0000;  ///< the core's own
+inline constexpr std::uint32_t private_bus_base = 0xE000'0000, private_bus_bytes = 0x10'0000;  ///< of the core
 inline constexpr std::uint32_t system_base = 0x1FFF'0000, system_bytes = 64 * 1024;            ///< with option bytes
 
 struct FlashSector {
-  std::uint32_t offset, bytes;  ///< in the flash
+  std::uint32_t offset, bytes;  ///< offset within the flash
 };
 inline constexpr unsigned flash_sectors = 12;
 constexpr FlashSector flash_sector(unsigned number) {

@@ -1,4 +1,4 @@
-// What a pin of the chip is called, and with it the wire that is soldered to it.
+// Names of the pins of the chip, such as PA8.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@ struct PinName {
   unsigned pin;
   bool operator==(const PinName&) const = default;
 
-  /// Of a name such as PA8; none if it is no pin's.
+  /// Returns the pin with this name, or nothing if there is none.
   static std::optional<PinName> find(std::string_view name);
-  /// The same; throws std::invalid_argument with a sentence.
+  /// Returns the pin with this name. Throws std::invalid_argument if there is none.
   static PinName of(std::string_view name);
   std::string text() const { return std::string("P") + port + std::to_string(pin); }
 };

@@ -1,6 +1,6 @@
-// Registers and their fields, declared by name: what a peripheral of the virtual chip takes its bits from.
+// Declarations of registers and their fields by name. The peripheral models of the virtual chip use these declarations.
 //
-// Apart from the firmware's register map on purpose, so that a mistake in one is not made in the other.
+// This map is independent of the firmware's register map, so that the two do not share mistakes.
 // tools/check_registers.py compares both with the manufacturer's description of the chip.
 //
 //   struct CrcRegisters {
@@ -13,9 +13,8 @@
 //   };
 //   inline constexpr CrcRegisters crc_registers;
 //
-// A map holds nothing but registers and fields, so it can be read as an array of entries: nothing in it can be
-// forgotten when it is printed. All of it is known to the compiler: `crc_registers.cr.reset.in(word)` is a mask.
-// Names are those of the reference manual.
+// A map contains only registers and fields, so it can be read as an array of entries. It is known at compile time:
+// `crc_registers.cr.reset.in(word)` compiles to a mask. Names are from the reference manual.
 #pragma once
 
 #include <array>
@@ -27,26 +26,26 @@
 
 namespace inkwell::virtual_board {
 
-/// What firmware can do to a field, in RM0090's words ("List of abbreviations for registers").
+/// Access rights of firmware to a field, with the abbreviations of RM0090 ("List of abbreviations for registers").
 enum class Access : std::uint8_t {
   rw,     ///< read and write
   r,      ///< read only
   w,      ///< write only
-  rc_w0,  ///< a 0 clears it
-  rc_w1,  ///< a 1 clears it
-  rs,     ///< a 1 sets it, hardware clears it
+  rc_w0,  ///< writing 0 clears it
+  rc_w1,  ///< writing 1 clears it
+  rs,     ///< writing 1 sets it, hardware clears it
 };
 
-/// Registers or fields of one form that follow each other: how many, how far apart (registers: bytes, fields:
-/// bits), and the number of the first. The number stands in for the `#` in their name; from 'A' on it is a letter.
-/// A field that is not repeated takes the number of its register.
+/// Repetition of a register or field: count, stride (in bytes for registers, in bits for fields) and number of the
+/// first. The number replaces the `#` in the name; numbers from 'A' on are letters. A field without repetition uses
+/// the number of its register.
 struct Repeat {
   unsigned count = 1, stride = 0, first = 0;
 };
 
 struct MapEntry {
   std::array<char, 20> name{};
-  std::uint32_t reset_value = 0;  ///< of a register
+  std::uint32_t reset_value = 0;  ///< registers only
   std::uint16_t place = 0;        ///< byte offset of a register, bit position of a field
   std::uint16_t stride = 0;
   std::uint8_t width = 32, count = 1, first = 0;
@@ -76,17 +75,17 @@ struct Field : MapEntry {
   constexpr unsigned position(unsigned index = 0) const { return place + stride * index; }
   constexpr std::uint32_t maximum() const { return width == 32 ? 0xFFFF'FFFF : (1u << width) - 1; }
   constexpr std::uint32_t mask(unsigned index = 0) const { return maximum() << position(index); }
-  /// The field's value in a word of its register.
+  /// Value of the field in a word of its register.
   constexpr std::uint32_t of(std::uint32_t word, unsigned index = 0) const {
     return word >> position(index) & maximum();
   }
-  /// The field is not 0 in a word of its register.
+  /// True if the field is not 0 in a word of its register.
   constexpr bool in(std::uint32_t word, unsigned index = 0) const { return of(word, index) != 0; }
-  /// A value at its place.
+  /// Value shifted to the position of the field.
   constexpr std::uint32_t with(std::uint32_t value, unsigned index = 0) const {
     return (value & maximum()) << position(index);
   }
-  /// Masks of all the fields of a repeated one together.
+  /// Combined mask of all repetitions.
   constexpr std::uint32_t masks() const {
     std::uint32_t bits = 0;
     for (unsigned i = 0; i < count; ++i) bits |= mask(i);
@@ -94,7 +93,7 @@ struct Field : MapEntry {
   }
 };
 
-/// Used as a number it is the offset.
+/// A register. A register converts to its offset.
 struct Register : MapEntry {
   consteval Register(const char* text, unsigned offset, std::uint32_t value_after_reset = 0, Repeat repeat = {})
       : MapEntry{named(text),
@@ -110,17 +109,17 @@ struct Register : MapEntry {
   constexpr bool covers(std::uint32_t offset) const {
     return offset >= place && offset < place + std::uint32_t{stride} * count && (offset - place) % stride == 0;
   }
-  /// Of a repeated register that covers the offset.
+  /// Index of the repeated register at this offset.
   constexpr unsigned index(std::uint32_t offset) const { return (offset - place) / stride; }
 };
 
-/// Registers and fields of a map, or of one register, in the order of declaration.
+/// Registers and fields of a map or of one register, in the order of declaration.
 template <class Map>
 constexpr auto entries_of(const Map& map) {
   return std::bit_cast<std::array<MapEntry, sizeof(Map) / sizeof(MapEntry)>>(map);
 }
 
-/// Masks of a register's fields with this access.
+/// Combined mask of the register's fields with this access.
 template <class OneRegister>
 consteval std::uint32_t bits_of(const OneRegister& one_register, Access access) {
   std::uint32_t bits = 0;
@@ -130,13 +129,13 @@ consteval std::uint32_t bits_of(const OneRegister& one_register, Access access) 
   return bits;
 }
 
-/// What a write can change and a read gives back.
+/// Mask of the read-write bits.
 template <class OneRegister>
 consteval std::uint32_t writable(const OneRegister& one_register) {
   return bits_of(one_register, Access::rw);
 }
 
-/// A peripheral's registers, to be shown to who checks them.
+/// Registers of one peripheral, for tools that compare register maps.
 struct RegisterMap {
   std::string name;
   std::uint32_t base;

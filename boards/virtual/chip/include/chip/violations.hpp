@@ -1,7 +1,7 @@
-// What firmware can do that this model would bear and silicon would not: the rules, and who has broken them.
+// Rules for firmware. This model tolerates violations of these rules, but real hardware does not.
 //
-// A rule is a row of the table. Who finds it broken says so by its name and, where it can happen in several places,
-// which of them it was.
+// Each rule is a row of the table. The model that detects a violation passes the rule and, if necessary, the affected
+// peripheral or pin.
 #pragma once
 
 // To add a rule:
@@ -21,7 +21,7 @@
 
 namespace inkwell::virtual_board {
 
-/// RULE(name, register, section, what was done, what silicon does, what to do instead)
+/// RULE(name, register, section, action, consequence on real hardware, remedy)
 #define INKWELL_CHIP_RULES(RULE)                                                                                       \
   RULE(float_unit_off, "CPACR", "PM0214, Enabling the FPU", "An instruction of the FPU runs while the FPU is off",     \
        "it is a UsageFault (NOCP)", "write CPACR |= 0xF << 20, then DSB and ISB, before the first one")                \
@@ -202,7 +202,7 @@ enum class Rule : std::uint8_t {
 
 struct RuleInfo {
   std::string_view name;
-  std::string_view of_register;  ///< that is at fault, or has to be written first
+  std::string_view of_register;  ///< register with the wrong value, or register to be written first
   std::string_view section;
   std::string_view done, consequence, remedy;
 };
@@ -217,23 +217,23 @@ constexpr const RuleInfo& info(Rule rule) { return rules[static_cast<std::size_t
 
 struct Violation {
   Rule rule;
-  std::string where;           ///< which of several peripherals or pins; may be empty
-  std::uint32_t code_address;  ///< of the instruction (fast mode: of its block) when it happened first
+  std::string where;           ///< affected peripheral or pin; may be empty
+  std::uint32_t code_address;  ///< instruction (fast mode: block) of the first occurrence
   Ticks first;
   std::uint64_t count = 1;
 };
 
-/// What was done and where, what silicon does then, what to do instead.
+/// Sentence with action, location, consequence and remedy.
 std::string sentence(const Violation& violation);
 
-/// Told when a rule is found broken.
+/// Receives detected violations.
 class RuleKeeper {
  public:
   virtual ~RuleKeeper() = default;
   virtual void violate(Rule rule, const std::string& where = {}) = 0;
 };
 
-/// All that a peripheral from outside of this library is given of the chip.
+/// Parts of the chip that a peripheral from outside of this library may use.
 struct ChipConnections {
   Scheduler& scheduler;
   InterruptController& interrupts;

@@ -1,4 +1,4 @@
-// A lock-up explained: its first fault with registers, function and the way there.
+// Explanation of a lock-up: its first fault with registers, function and call stack.
 #pragma once
 
 #include <chip/chip.hpp>
@@ -12,15 +12,14 @@
 
 namespace inkwell::virtual_board {
 
-/// Reads a word of memory without any effect.
+/// Reads a word of memory without side effects.
 using MemoryReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Where the code at `registers` was probably called from, the innermost first: return addresses in LR and on the
-/// stack, that is, words that point behind a call. What an earlier call left on the stack looks the same. At most
-/// `limit`.
+/// Returns probable callers of the code at `registers`, innermost first, at most `limit`. Candidates are LR and stack
+/// words that point to the instruction after a call. Remains of earlier calls on the stack can give wrong results.
 std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const MemoryReader& word, std::size_t limit);
 
-/// Lines about the fault that a lock-up began with. `elf` is named in a command that tells source lines.
+/// Lines about the first fault of a lock-up. `elf` is part of the suggested addr2line command.
 std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf);
 
 }  // namespace inkwell::virtual_board

@@ -1,5 +1,5 @@
-// GDB's remote serial protocol, as far as the wire goes: packets, checksums, hexadecimal (GDB manual, appendix
-// "Remote Protocol", "Overview").
+// Packet layer of GDB's remote serial protocol: packets, checksums, hexadecimal (GDB manual, appendix "Remote
+// Protocol", "Overview").
 #pragma once
 
 #include <cstdint>
@@ -11,35 +11,35 @@
 
 namespace inkwell::virtual_board {
 
-/// Finds packets in the bytes that GDB sends.
+/// Extracts packets from the received bytes.
 class GdbPackets {
  public:
   struct Received {
     enum class Kind : std::uint8_t {
       packet,
-      damaged,    ///< a packet whose checksum is wrong
+      damaged,    ///< a packet with a wrong checksum
       interrupt,  ///< Ctrl-C
     };
     Kind kind;
-    std::string payload;  ///< of a packet, without escapes
+    std::string payload;  ///< of a packet, without escape characters
   };
   void feed(std::string_view bytes) { bytes_ += bytes; }
-  /// The next one, once it is there whole.
+  /// Returns the next complete packet, or nothing.
   std::optional<Received> take();
 
  private:
   std::string bytes_;
 };
 
-/// A packet on the wire.
+/// A packet with frame, escapes and checksum.
 std::string gdb_packet(std::string_view payload);
 
-/// Two digits a byte.
+/// Two digits per byte.
 std::string hexadecimal(std::span<const std::uint8_t> bytes);
 std::string hexadecimal(std::string_view text);
-/// Nothing if `digits` are not pairs of hexadecimal digits.
+/// Returns nothing if `digits` is not a sequence of hexadecimal digit pairs.
 std::optional<std::vector<std::uint8_t>> bytes_of(std::string_view digits);
-/// Nothing if `digits` are not a hexadecimal number of up to 32 bits.
+/// Returns nothing if `digits` is not a hexadecimal number of up to 32 bits.
 std::optional<std::uint32_t> number_of(std::string_view digits);
 
 }  // namespace inkwell::virtual_board

@@ -1,5 +1,4 @@
-// What GDB asks for, as far as it can be understood and checked without a chip (GDB manual, appendix "Remote Protocol",
-// "Packets").
+// Parsing and validation of GDB requests without a chip (GDB manual, appendix "Remote Protocol", "Packets").
 #pragma once
 
 #include <cstddef>
@@ -11,15 +10,15 @@
 
 namespace inkwell::virtual_board::gdb {
 
-/// Bytes of memory that go into one packet, at most.
+/// Maximum number of memory bytes per packet.
 inline constexpr std::uint32_t memory_maximum = 0x2000;
 
-/// What GDB calls the registers, by the description of the target that it reads: r0 to r15, xPSR, d0 to d15, FPSCR.
+/// Register numbers from the target description for GDB: r0 to r15, xPSR, d0 to d15, FPSCR.
 inline constexpr unsigned xpsr_number = 16, first_double = 17, fpscr_number = 33, register_count = 34;
 constexpr std::size_t size_of_register(unsigned number) {
   return number >= first_double && number < fpscr_number ? 8 : 4;
 }
-/// Where a register begins among the bytes of all of them, in the packets g and G.
+/// Offset of a register in the packets g and G.
 constexpr std::size_t place_of_register(unsigned number) {
   std::size_t place = 0;
   for (unsigned i = 0; i < number; ++i) place += size_of_register(i);
@@ -32,35 +31,35 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Needs no chip: what GDB is answered. Empty for a packet that is not known, by which GDB learns just that.
+/// Reply that needs no chip. An empty reply means that the packet is not supported.
 struct Answered {
   std::string reply;
 };
 struct WhyStopped {};
 struct ReadRegisters {};
 struct WriteRegisters {
-  std::vector<std::uint8_t> bytes;  ///< size_of_all_registers of them
+  std::vector<std::uint8_t> bytes;  ///< size_of_all_registers bytes
 };
 struct ReadRegister {
   unsigned number;  ///< below register_count
 };
 struct WriteRegister {
   unsigned number;                  ///< below register_count
-  std::vector<std::uint8_t> bytes;  ///< size_of_register(number) of them
+  std::vector<std::uint8_t> bytes;  ///< size_of_register(number) bytes
 };
 struct ReadMemory {
-  Range range;  ///< memory_maximum bytes at most
+  Range range;  ///< at most memory_maximum bytes
 };
 struct WriteMemory {
   std::uint32_t address;
-  std::vector<std::uint8_t> bytes;  ///< one at least
+  std::vector<std::uint8_t> bytes;  ///< at least one
 };
 struct ChangeBreakpoint {
-  bool sets;  ///< or removes
+  bool sets;  ///< true: adds; false: removes
   std::uint32_t address;
 };
 struct ChangeWatchPoint {
-  bool sets;  ///< or removes
+  bool sets;  ///< true: adds; false: removes
   char kind;  ///< of the packet: '2' write, '3' read, '4' both
   Range range;
 };
@@ -68,18 +67,18 @@ struct Resume {
   bool steps;  ///< one instruction only
 };
 struct LetGo {
-  bool wants_answer;  ///< GDB detaches; it does not wait when it kills
+  bool wants_answer;  ///< true for detach; GDB does not wait after kill
 };
 struct StopAcknowledging {};
 struct Monitor {
-  std::string command;  ///< as the user typed it behind `monitor`
+  std::string command;  ///< user input after `monitor`
 };
 
 using Request =
     std::variant<Answered, WhyStopped, ReadRegisters, WriteRegisters, ReadRegister, WriteRegister, ReadMemory,
                  WriteMemory, ChangeBreakpoint, ChangeWatchPoint, Resume, LetGo, StopAcknowledging, Monitor>;
 
-/// What a packet without its frame asks for. Any bytes are borne; what is malformed is Answered with an error.
+/// Parses a packet without its frame. Any input is allowed; malformed packets return Answered with an error.
 Request request_of(std::string_view packet);
 
 }  // namespace inkwell::virtual_board::gdb

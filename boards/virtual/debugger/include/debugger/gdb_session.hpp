@@ -1,4 +1,4 @@
-// One GDB at the chip's debug port: answers its packets (GDB manual, appendix "Remote Protocol").
+// One GDB connection to the debug port of the chip (GDB manual, appendix "Remote Protocol").
 #pragma once
 
 #include <chip/chip.hpp>
@@ -12,28 +12,28 @@ namespace inkwell::virtual_board {
 
 class GdbSession {
  public:
-  /// `chip` is in exact mode and outlives the session.
+  /// `chip` must be in exact mode and must outlive the session.
   explicit GdbSession(Chip& chip) : chip_(chip) {}
 
-  /// GDB has connected: the processor stands still from now on.
+  /// Call this when GDB has connected. The processor stops.
   void attach();
-  /// GDB has gone, or let go: the processor runs on.
+  /// Call this when GDB has disconnected or detached. The processor continues.
   void detach();
   bool attached() const { return attached_; }
-  /// Board time stands still until GDB goes on.
+  /// True while board time is stopped until GDB continues.
   bool halted() const { return attached_ && halted_; }
 
-  /// Takes bytes of GDB and returns those of the answer.
+  /// Handles received bytes and returns the bytes of the reply.
   std::string receive(std::string_view bytes);
-  /// run_until() came back. Returns what GDB is told.
+  /// Call this when run_until() has returned. Returns the message to GDB.
   std::string report(Stop stop);
 
  private:
   struct Watched {
     WatchPoint place;
-    char kind;  ///< of the packet: 2 write, 3 read, 4 both
+    char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
-  // Each returns what GDB is answered; nothing is said while the processor runs.
+  // Each function returns the reply to GDB; a running processor sends no reply.
   static std::string carry_out(const gdb::Answered& asked);
   std::string carry_out(gdb::WhyStopped asked);
   std::string carry_out(gdb::ReadRegisters asked);
@@ -50,7 +50,7 @@ class GdbSession {
   std::string carry_out(const gdb::Monitor& asked);
   std::string stop_reply(unsigned signal) const;
   std::vector<std::uint8_t> all_registers() const;
-  /// `bytes` are gdb::size_of_all_registers.
+  /// `bytes` must have the size gdb::size_of_all_registers.
   void set_all_registers(const std::vector<std::uint8_t>& bytes);
 
   Chip& chip_;

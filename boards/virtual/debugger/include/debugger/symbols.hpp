@@ -1,4 +1,4 @@
-// Names of functions, from the symbol table of an ELF file.
+// Function names from the symbol table of an ELF file.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace inkwell::virtual_board {
 class Symbols {
  public:
   Symbols() = default;
-  /// Of an ELF file that the chip has taken. A file without symbols (stripped, or damaged there) has no names.
+  /// Reads an ELF file that the chip has loaded. A file without a valid symbol table has no names.
   explicit Symbols(const std::filesystem::path& elf);
 
-  /// The function at `address` and how far into it that is, such as "main+0x12"; empty if no function is there.
+  /// Returns the function at `address` with the offset, such as "main+0x12", or an empty string.
   std::string name(std::uint32_t address) const;
 
  private:
@@ -23,10 +23,10 @@ class Symbols {
     std::uint32_t address, bytes;
     std::string name;
   };
-  std::vector<Function> functions_;  ///< by address
+  std::vector<Function> functions_;  ///< sorted by address
 };
 
-/// The text, ended by a zero, that an ELF file has under this name; empty if it has none.
+/// Returns the zero-terminated text of this symbol in an ELF file, or an empty string.
 std::string text_in_elf(const std::filesystem::path& elf, std::string_view name);
 
 }  // namespace inkwell::virtual_board

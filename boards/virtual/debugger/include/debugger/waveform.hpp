@@ -1,5 +1,5 @@
-// Levels of pins and the running exception over board time, as a value change dump (IEEE 1364-2005, clause 18): the
-// file that GTKWave and its like show.
+// Value change dump (IEEE 1364-2005, clause 18) of pin levels and the running exception over board time, for GTKWave
+// and similar viewers.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace inkwell::virtual_board {
 
 class Waveform {
  public:
-  /// Throws std::runtime_error with a sentence if the file cannot be written. No pins is all of them. Watches the
-  /// chip's pins and exceptions, and must live as long as the chip runs.
+  /// Throws std::runtime_error if the file cannot be written. An empty `pins` selects all pins. The object watches the
+  /// pins and exceptions of the chip until its destruction, and `chip` must outlive it.
   Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip);
   ~Waveform();
   Waveform(const Waveform&) = delete;
@@ -28,7 +28,7 @@ class Waveform {
   void note_exception(unsigned exception);
   Chip& chip_;
   std::ofstream file_;
-  std::array<std::string, places> codes_{};  ///< of the pins that are written, by port and pin
+  std::array<std::string, places> codes_{};  ///< codes of the written pins, indexed by port and pin
   Ticks written_until_ = 0;
   bool begun_ = false;
 };

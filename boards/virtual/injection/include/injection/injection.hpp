@@ -1,4 +1,4 @@
-// A fault that is asked for, as a command line, a script or a client of the control socket writes it, checked against
+// A requested fault from a command line, a script or a client of the control socket, checked against
 // protocol/injections.hpp.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace inkwell::virtual_board {
 
-/// What was asked for can not be; what() is a sentence that says what would.
+/// The request is invalid; what() is a sentence that states the valid requests.
 class InvalidInjection : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,24 +24,24 @@ class InvalidInjection : public std::runtime_error {
 
 struct Injection {
   protocol::InjectedFault fault;
-  std::string of;                        ///< under its full name; empty where there is one only
-  unsigned number = 0;                   ///< of the motor (from 0), the exception or the converter
+  std::string of;                        ///< full name of the position; empty if the fault has only one position
+  unsigned number = 0;                   ///< index of the motor (from 0), the exception or the converter
   unsigned leg = 0;                      ///< 0 is A
   std::array<PinName, 2> wires{};        ///< one or two
-  std::optional<std::uint32_t> address;  ///< none: by the seed
+  std::optional<std::uint32_t> address;  ///< std::nullopt: chosen from the seed
   double amount = 0.0;
   double after_s = 0.0;
-  std::optional<double> for_s;  ///< then it is healed
+  std::optional<double> for_s;  ///< duration, after which the fault is cleared
 };
 
-/// For a board, whose wires it may name. All throw InvalidInjection.
+/// Checks a request against the wires of `board`. All functions below also throw InvalidInjection.
 Injection checked(const protocol::InjectionRequest& request, const board::Facts& board);
 /// NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2; times in seconds.
 Injection parse_injection(std::string_view text, const board::Facts& board);
-/// One a line; what follows a # is a comment. Names the line that is wrong.
+/// Parses one injection per line; text after a # is a comment. An error names its line.
 std::vector<Injection> parse_injections(std::string_view script, const board::Facts& board);
 
-/// The table for --help, a line each.
+/// Table of all injections for --help, one line each.
 std::string explain_injections();
 
 }  // namespace inkwell::virtual_board

@@ -1,4 +1,4 @@
-// Puts faults into the chip and what surrounds it, at their times, and takes them out again.
+// Applies faults to the chip and its surroundings at their times, and clears them.
 #pragma once
 
 #include <functional>
@@ -21,46 +21,46 @@ class Injector {
     Chip& chip;
     Plant& plant;
     Wires& wires;
-    std::int32_t crystal_ppm = 0;                 ///< of a crystal that does not drift
+    std::int32_t crystal_ppm = 0;                 ///< offset of the crystal without drift
     std::function<void(bool in)> plug;            ///< the USB cable
     std::function<void(bool asks)> let_host_ask;  ///< see VirtualUsb
   };
-  /// A fault that is in, or has happened.
+  /// A fault that is present or has occurred.
   struct Active {
     unsigned number;      ///< see add()
-    Injection injection;  ///< with the place and the bit that the seed chose
+    Injection injection;  ///< with the address and bit chosen from the seed
     Ticks since;
     std::optional<Ticks> until;
   };
 
-  /// One that is still to come.
+  /// A fault with a later start time.
   struct Planned {
     unsigned number;
     Injection injection;
     Ticks at;
   };
 
-  /// In and still to come.
+  /// Limit of active and planned faults together.
   static constexpr std::size_t faults_maximum = 10'000;
 
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
-  /// At once, or when its time has come: see next(). Takes the place of one of its kind at the same place. Throws
-  /// InvalidInjection if there is nothing at its address, or if it would be one too many. Not from inside
-  /// Chip::run_until(). Returns a number that identifies it, also among others with the same name and position.
+  /// Applies the fault immediately or at its time: see next(). Replaces a fault of the same kind at the same position.
+  /// Throws InvalidInjection if the address has no memory, or above `faults_maximum`. Must not be called inside
+  /// Chip::run_until(). Returns a unique number for the fault.
   unsigned add(const Injection& injection);
-  /// When something is to be done, at the earliest. The board runs as far, then calls carry_out().
+  /// Earliest time of the next change. The board runs up to this time, then calls carry_out().
   Ticks next() const;
   void carry_out();
 
-  /// Takes out what is in under this name and place (any, if empty), and forgets what is still to come. Says how many
-  /// there were. What has happened stays so, but is no longer told.
+  /// Clears the active faults with this name and position (any position if empty) and cancels planned ones. Returns
+  /// their number. The effect of a momentary fault remains, but the fault is no longer listed.
   unsigned heal(protocol::InjectedFault fault, const std::string& of);
   void heal_all();
 
-  /// In the order in which they came.
+  /// Active faults in the order of their start.
   const std::vector<Active>& active() const { return active_; }
-  /// In the order in which they were asked for.
+  /// Planned faults in the order of their requests.
   const std::vector<Planned>& planned() const { return planned_; }
 
  private:
@@ -79,7 +79,7 @@ class Injector {
   std::vector<Active> active_;
   struct Spikes {
     PinName wire;
-    std::shared_ptr<double> rate_Hz;  ///< spikes come as long as it lives
+    std::shared_ptr<double> rate_Hz;  ///< the spikes stop when this object is destroyed
   };
   std::vector<Spikes> spikes_;
 };

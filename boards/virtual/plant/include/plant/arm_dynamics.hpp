@@ -1,15 +1,16 @@
-// The arm as a rigid body: kinematics and the terms of its equation of motion, from its energies.
+// Rigid-body model of the arm: kinematics and the terms of the equation of motion.
 //
-// Two sets of coordinates. Joints q = (q1, q2, q3) are what the encoders see: q3 is relative to link 2 on a
-// serial arm and absolute on a parallelogram. Links u = (q1, a, b) are the directions of links 2 and 3 in the
-// arm's plane against the horizontal, in which the energies of both transmissions are the same:
+// The model has two sets of coordinates. The encoders measure the joint coordinates q = (q1, q2, q3). On a serial arm
+// q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b), where a and b
+// are the angles of links 2 and 3 above the horizontal, in the arm's plane. In u both transmissions have the same
+// energies:
 //
 //   kinetic energy    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2
 //                     with M11 = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b
 //   potential energy  g (S2 sin a + S3 sin b)
 //
-// J2, J3, H, S2, S3 lump the masses of links and probe, I is the turret. The rotors turn with the joints by
-// their gears. The rods of the parallelogram count as parts of link 2 and link 3.
+// J2, J3, H, S2 and S3 combine the masses of the links and the probe. I is the inertia of the turret. The rotors turn
+// with the joints through their gears. The parallelogram rods are included in links 2 and 3.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,11 +27,11 @@ class ArmDynamics {
 
   /// Terms of M(q) q'' + coriolis(q, q') + gravity(q) = torque, and the Jacobian of the probe.
   struct Terms {
-    Matrix3 mass_matrix;  ///< kg m^2, rotors included
+    Matrix3 mass_matrix;  ///< kg m^2, including the rotors
     Vector3 coriolis_Nm;  ///< centrifugal and Coriolis torques
     Vector3 gravity_Nm;
-    Vector3 position_m;  ///< of the probe in the workspace
-    Matrix3 jacobian_m;  ///< as of jacobian_m()
+    Vector3 position_m;  ///< probe position in the workspace
+    Matrix3 jacobian_m;  ///< see jacobian_m()
   };
   Terms terms(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
 
@@ -39,7 +40,7 @@ class ArmDynamics {
   Matrix3 jacobian_m(const Vector3& joints_rad) const { return jacobian_m(links(joints_rad)); }
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
-  /// Joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram: what the elbow's stops act on.
+  /// Angle that the elbow's stops limit: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram.
   double elbow_rad(const Vector3& joints_rad) const {
     return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2];
   }
@@ -62,7 +63,7 @@ class ArmDynamics {
   double link_2_kg_m2_, link_3_kg_m2_;  ///< J2, J3
   double coupling_kg_m2_;               ///< H
   double weight_2_Nm_, weight_3_Nm_;    ///< g S2, g S3
-  Vector3 rotors_kg_m2_;                ///< seen at the joints
+  Vector3 rotors_kg_m2_;                ///< reflected to the joints
 };
 
 }  // namespace inkwell::virtual_board

@@ -1,4 +1,4 @@
-// The arm's motion: friction that holds at rest, joint stops, and what pulls at the probe, step by step.
+// Time integration of the arm: motor torques, couplings at the probe, static friction and joint stops.
 #pragma once
 
 #include <array>
@@ -13,17 +13,17 @@ class ArmMotion {
  public:
   ArmMotion(const arms::Description& arm, const Vector3& joints_rad);
 
-  /// One step with the motors' torques at the joints and the couplings at the probe. Position Verlet (the
-  /// forces are those half a step on, so energy does not drift); damping is implicit; Coulomb friction is the
-  /// impulse that stops a joint if it lies within its cone (time stepping after Moreau), so that a held arm
-  /// comes to rest instead of creeping.
+  /// Advances by one step with the motor torques at the joints and the couplings at the probe. The integrator is
+  /// position Verlet: forces are evaluated in the middle of the step, which avoids energy drift. Damping is implicit.
+  /// Coulomb friction is the impulse that stops a joint, limited to its friction cone (time stepping after Moreau). A
+  /// held arm therefore comes to rest and does not creep.
   void step(double duration_s, const Vector3& torque_Nm, std::span<const Coupling> couplings);
 
   const Vector3& joints_rad() const { return joints_rad_; }
   const Vector3& joint_speeds_rad_s() const { return speeds_rad_s_; }
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
   const ArmDynamics& dynamics() const { return dynamics_; }
-  /// Torques of the stops at these joints.
+  /// Torques of the stops at these joint angles and speeds.
   Vector3 stop_torque_Nm(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
 
  private:
@@ -39,8 +39,8 @@ class ArmMotion {
 
   Vector3 joints_rad_;
   Vector3 speeds_rad_s_ = Vector3::Zero();
-  Vector3 speed_change_rad_s_ = Vector3::Zero();    ///< of the last step, to foresee the middle of the next
-  Vector3 friction_impulse_Nms_ = Vector3::Zero();  ///< of the last step: where the search for the next starts
+  Vector3 speed_change_rad_s_ = Vector3::Zero();    ///< of the last step, to predict the middle of the next
+  Vector3 friction_impulse_Nms_ = Vector3::Zero();  ///< of the last step, initial guess of the next
 };
 
 }  // namespace inkwell::virtual_board

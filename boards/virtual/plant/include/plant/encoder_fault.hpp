@@ -1,4 +1,4 @@
-// What may be wrong with an encoder whose wires are sound: a disc that stands, counts that are lost, a disc that slips.
+// Faults of an encoder with intact wires: a disc that does not turn, lost counts, or a slipping disc.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ class EncoderFault {
   void lose(double share) { lost_share_ = share; }
   void slip(double counts) { to_slip_ += counts; }
 
-  /// Whether a count that the motor has turned on by shows no edge.
+  /// Whether the next count of the motor produces no edge.
   bool swallows() {
     return stands_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
   }
-  /// How far the disc slips before it is looked at again. Not so fast that the chip's filters swallow the edges.
+  /// Slip of the disc in this step. The rate is limited so that the chip's input filters pass all edges.
   double slipped_counts() {
     constexpr double fastest = 20.0;
     const double now = std::clamp(to_slip_, -fastest, fastest);

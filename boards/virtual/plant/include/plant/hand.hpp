@@ -1,4 +1,4 @@
-// What touches the probe: the user's hand and the inkwell, each a spring and a damper to a moving point.
+// The two couplings at the probe: the user's hand and the inkwell. Each is a spring and a damper to a moving point.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Pulls the probe with stiffness (target - probe) + damping (target velocity - probe velocity).
+/// Force on the probe: stiffness (target - probe) + damping (target velocity - probe velocity).
 struct Coupling {
   double stiffness_N_per_m = 0.0;
   double damping_Ns_per_m = 0.0;
@@ -22,12 +22,12 @@ struct Coupling {
 };
 
 struct Waypoint {
-  double after_s;  ///< rising, counted from when the path is given
+  double after_s;  ///< since the call of follow(), increasing
   Vector3 target_m;
 };
 
-/// The hand: an impedance whose target stands still or moves from point to point with minimum jerk
-/// (Flash and Hogan 1985), as people move theirs.
+/// The hand: an impedance with a fixed target or a target that moves from point to point. The motion has minimum jerk,
+/// like human motion (Flash and Hogan 1985).
 class Hand {
  public:
   static constexpr double stiffness_maximum_N_per_m = 5000.0;
@@ -36,14 +36,14 @@ class Hand {
   bool holds() const { return holds_; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void release();
-  /// Moves the target along the waypoints, starting at `now` where it is. A hand that does not hold takes
-  /// hold at `probe_m` with its last stiffness and damping.
+  /// Moves the target along the waypoints, starting at its present position at `now`. If the hand does not hold the
+  /// stylus, the hand grips the stylus at `probe_m` with its last stiffness and damping.
   void follow(const std::vector<Waypoint>& waypoints, const Vector3& probe_m, Ticks now);
 
   double stiffness_N_per_m() const { return stiffness_N_per_m_; }
   double damping_Ns_per_m() const { return damping_Ns_per_m_; }
   bool is_moving(Ticks now) const { return holds_ && !path_.empty() && now < path_.back().at; }
-  /// Where it pulls to; no force if it does not hold.
+  /// Coupling to the present target, without force if the hand does not hold the stylus.
   Coupling coupling(Ticks now) const;
 
  private:
@@ -56,20 +56,20 @@ class Hand {
   double damping_Ns_per_m_ = 3.0;
   Vector3 target_m_ = Vector3::Zero();
   std::vector<Node> path_;           ///< the first node is the start
-  mutable std::size_t segment_ = 0;  ///< where the last look-up ended; time does not run backward
+  mutable std::size_t segment_ = 0;  ///< result of the last look-up, since time never decreases
 };
 
-/// The inkwell: a socket that guides the stylus in, holds it until it is pulled out, and closes a switch.
+/// The inkwell: a socket that guides the stylus in, retains it until it is pulled out, and closes a switch.
 class Inkwell {
  public:
   Inkwell(const Vector3& position_m, bool seated) : position_m_(position_m), guide_m_(position_m), seated_(seated) {}
 
   bool seated() const { return seated_; }
   const Vector3& position_m() const { return position_m_; }
-  /// Takes the stylus if it is in the funnel; true if it is seated then.
+  /// Seats the stylus if it is in the funnel. Returns whether the stylus is seated.
   bool capture(const Vector3& probe_m);
   void eject() { seated_ = false; }
-  /// One step: the funnel guides the stylus home, and a pull beyond the socket's grip takes it out.
+  /// Advances by one step. The funnel guides the stylus in, and a pull stronger than the socket's grip removes it.
   void advance(double duration_s, const Vector3& probe_m);
   bool switch_closed(const Vector3& probe_m) const;
   Coupling coupling() const;

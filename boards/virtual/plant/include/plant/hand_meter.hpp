@@ -1,4 +1,4 @@
-// What the hand gets from the arm over a while, whatever becomes of the chip meanwhile.
+// Measures force, energy and motion of the hand over a time interval, independent of the chip's state.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@ class HandMeter {
   struct Reading {
     Ticks since = 0;
     double peak_force_N = 0.0;
-    double energy_J = 0.0;  ///< that the arm gave to the hand; what it took is not taken off
-    double travel_m = 0.0;  ///< the farthest from where it began
-    double lag_m = 0.0;     ///< the farthest from where the hand pulls to
+    double energy_J = 0.0;  ///< from the arm to the hand; energy in the other direction is not subtracted
+    double travel_m = 0.0;  ///< largest distance from the initial position
+    double lag_m = 0.0;     ///< largest distance from the hand's target
   };
 
   void start(const Vector3& position_m, Ticks now) {
@@ -26,7 +26,7 @@ class HandMeter {
   bool runs() const { return runs_; }
   const Reading& reading() const { return reading_; }
 
-  /// A step later: where the probe is now, where the hand pulls to, and the force on the hand.
+  /// Adds one step: probe position, hand target and force on the hand.
   void step(const Vector3& position_m, const Vector3& target_m, const Vector3& force_N) {
     reading_.peak_force_N = std::max(reading_.peak_force_N, force_N.norm());
     reading_.energy_J += std::max(0.0, force_N.dot(position_m - newest_m_));

@@ -1,5 +1,5 @@
-// What keeps a real driver board from being ideal. Typical data-sheet values; the board's nominal facts are
-// in its facts and the arm's in its description.
+// Imperfections of a real driver board, as typical data-sheet values. Nominal values are in the board facts and in the
+// arm description.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@ namespace inkwell::virtual_board {
 
 struct Imperfections {
   // Bridges
-  double leg_resistance_ohm = 0.03;  ///< of a switch that is on
+  double leg_resistance_ohm = 0.03;  ///< of one closed switch
   double diode_drop_V = 0.8;
 
   // Shunt amplifiers
@@ -20,7 +20,7 @@ struct Imperfections {
   // Supply
   double source_resistance_ohm = 0.15;
   double bulk_capacitance_F = 2200e-6;
-  double quiescent_resistance_ohm = 300.0;  ///< what bridges and regulator draw
+  double quiescent_resistance_ohm = 300.0;  ///< load of bridges and regulator
   double supply_reading_noise_V = 0.0008;   ///< rms at the pin
 
   // Gimbal

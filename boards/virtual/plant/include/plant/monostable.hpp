@@ -1,5 +1,5 @@
-// The retriggerable monostable between the chip and the bridges' enable input: 74LVC1G123, its input A on ground (data
-// sheet, function table).
+// The retriggerable monostable between the chip and the enable input of the bridges: 74LVC1G123 with input A grounded
+// (data sheet, function table).
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@ class Monostable {
  public:
   explicit Monostable(Ticks duration) : duration_(duration) {}
 
-  /// CLR: ends the output when it is low, starts it when it rises while the trigger is high.
+  /// CLR input. A low level ends the output pulse; a rising edge starts a pulse while the trigger is high.
   void drive_clear(bool high, Ticks now) { drive(clear_high_, high, now); }
-  /// B: each rise starts the output anew, unless CLR is low.
+  /// B input. Each rising edge restarts the output pulse, unless CLR is low.
   void drive_trigger(bool high, Ticks now) { drive(trigger_high_, high, now); }
 
-  /// The output Q is high until then, if nothing comes before.
+  /// End of the output pulse (Q high) if no further edge arrives.
   Ticks ends_at() const { return ends_at_; }
 
  private:

@@ -1,5 +1,5 @@
-// One motor on its full bridge: terminal voltage from the legs, current between switching edges in closed
-// form, so that the ripple, the discontinuous current of a floating bridge and the dead time are really there.
+// One motor on its full bridge. The legs set the terminal voltage, and the current between switching edges has a closed
+// form. The model therefore includes ripple, dead time and the discontinuous current of a floating bridge.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace inkwell::virtual_board {
 
-/// What a gate driver is told to do with one leg. `floating` leaves the current to the diodes.
+/// Command to the gate driver of one leg. `floating` leaves the current to the diodes.
 enum class Leg : std::uint8_t { low, high, floating };
 
-/// What a leg is whatever it is told.
+/// State of a defective leg, independent of its command.
 enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
@@ -25,28 +25,28 @@ class MotorDrive {
  public:
   MotorDrive(const MotorConstants& motor, const Imperfections& imperfections, double dead_time_s);
 
-  /// Tells leg 0 (A, motor terminal +) or 1 (B) what to do from `now` on; it obeys after the dead time. Runs
-  /// the current up to `now` first.
+  /// Commands leg 0 (A, motor terminal +) or leg 1 (B) from `now` on. The leg switches after the dead time. This
+  /// function first advances the current to `now`.
   void set_leg(unsigned leg, Leg level, Ticks now);
 
-  /// Another winding in the same motor, from `now` on; none conducts nothing.
+  /// Replaces the motor's winding from `now` on; std::nullopt is an open winding.
   void set_winding(const std::optional<MotorConstants>& motor, Ticks now);
   void set_leg_fault(unsigned leg, LegFault fault, Ticks now);
-  /// This much after the dead time the leg's switches conduct.
+  /// Sets the extra delay after the dead time until the leg's switches conduct.
   void set_leg_delay(unsigned leg, Ticks delay);
 
-  /// Integrates the current up to `now`. Times do not run backward.
+  /// Integrates the current up to `now`, which never decreases.
   void advance(Ticks now);
 
-  /// Supply and back-EMF hold from the last advance() on.
+  /// Supply and back-EMF are constant from the last advance() on.
   void set_bus_V(double volts) { bus_V_ = volts; }
   void set_back_emf_V(double volts) { back_emf_V_ = volts; }
 
   double current_A() const { return current_A_; }
-  /// The current as the shunt amplifier follows it, before offset, gain error and noise.
+  /// Output of the shunt amplifier as a current, without offset, gain error and noise.
   double amplifier_A() const { return amplifier_A_; }
 
-  /// Integrals since the last call: of the current, and of what the bridge drew from the supply.
+  /// Integrals since the last call: the motor current and the current that the bridge drew from the supply.
   struct Charges {
     double motor_As;
     double supply_As;
@@ -63,12 +63,12 @@ class MotorDrive {
     Leg acting() const;
   };
   void configure(const MotorConstants& motor);
-  /// A voltage behind no resistance that drives the current until it changes its sign or a leg switches.
+  /// An ideal voltage source that drives the current until the current changes sign or a leg switches.
   struct Branch {
-    double voltage_V;     ///< from terminal + to terminal -, without the legs' resistance
-    double supply_share;  ///< supply current over motor current: -1, 0 or 1
+    double voltage_V;     ///< from terminal + to terminal -, without the leg resistance
+    double supply_share;  ///< ratio of supply current to motor current: -1, 0 or 1
     bool conducts;
-    bool holds_at_zero;  ///< diodes block once the current has fallen to nothing
+    bool holds_at_zero;  ///< the diodes block once the current is zero
   };
   Branch branch() const;
   void integrate(Ticks duration);

@@ -1,4 +1,4 @@
-// How hard the bridges have the motors press with the probe, whether or not a hand is there to feel it.
+// Measures the force of the motors at the probe, with or without a hand.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +10,22 @@
 
 namespace inkwell::virtual_board {
 
-/// The force F with J^T F = tau. In the mean over a control period, because what a bridge's current swings by within
-/// one is neither asked for nor felt; and how large that was in the mean over a millisecond, of which a hand feels more
-/// than of a shorter push. An arm that is braked, or whose currents fade, resists by its own motion and is left out.
+/// Measures the force F with J^T F = tau. The mean over one control period removes the current ripple, which no hand
+/// feels. The mean over one millisecond excludes short pushes, which a hand feels less. A braked arm, or an arm with
+/// decaying currents, only resists its own motion and is excluded.
 class MotorForceMeter {
  public:
   static constexpr unsigned steps_per_period = 3, steps_per_ms = 60;
 
-  /// What is told from now on may reach back by as much as it is a mean over.
+  /// Resets the peaks. The averages are not reset, so the first values include steps before this call.
   void start() { peak_N_ = peak_over_ms_N_ = 0.0; }
   double peak_N() const { return peak_N_; }
   double peak_over_ms_N() const { return peak_over_ms_N_; }
 
-  /// A step later; whether a leg was at the supply within the last period. Where the arm cannot move the probe in every
-  /// direction no force stands for the torques, so that they are left out.
+  /// Adds one step. `is_driven`: a leg was driven high within the last period. Near a singular Jacobian the torques do
+  /// not define a force, and the step is skipped.
   void step(const Vector3& torque_Nm, const Matrix3& jacobian_m, bool is_driven) {
-    constexpr double singular_m3 = 1e-5;  // the middle of an Omni's reach has 2e-3
+    constexpr double singular_m3 = 1e-5;  // an Omni has 2e-3 in the middle of its reach
     const bool is_singular = std::abs(jacobian_m.determinant()) < singular_m3;
     if (!is_driven || is_singular) {
       period_N_.count = ms_N_.count = 0;
@@ -38,14 +38,14 @@ class MotorForceMeter {
   }
 
  private:
-  /// Of the newest values in a row.
+  /// Sum of the newest values of an uninterrupted sequence.
   template <class Value, unsigned length>
   struct Sum {
     std::array<Value, length> values;
     Value sum;
     unsigned long count = 0;
 
-    /// Whether there are as many as it is of.
+    /// Returns whether the sum has all its values.
     bool add(const Value& value) {
       Value& oldest = values[count % length];
       if (count == 0)

@@ -1,9 +1,8 @@
-// Everything around the chip: bridges and motors, sensors, the arm, the inkwell and the user's hand, wired as a
-// board's facts say.
+// Everything around the chip: bridges, motors, sensors, arm, inkwell and hand, wired according to the board facts.
 //
-// Currents are exact between the edges of the bridges; the arm, the supply and the back-EMF take fixed steps
-// of 16.7 us (a third of a control period) with the mean of the true currents. Pins of the chip move only
-// inside advance(), so that a chip may call output_changed() and analog_V() from anywhere.
+// Currents are exact between the edges of the bridges. The arm, the supply and the back-EMF advance in fixed steps of
+// 16.7 us (a third of a control period) with the mean of the true currents. The chip's pins change only inside
+// advance(). A chip may therefore call output_changed() and analog_V() at any point.
 #pragma once
 
 #include <array>
@@ -30,19 +29,19 @@
 namespace inkwell::virtual_board {
 
 struct PlantOptions {
-  std::uint64_t seed = 1;  ///< of all noise
+  std::uint64_t seed = 1;
   Imperfections imperfections{};
 };
 
-/// Starts docked: the stylus rests in the inkwell, the supply is on, buttons are open, no hand.
+/// Initial state: the stylus is in the inkwell, the supply is on, the buttons are open, and no hand holds the stylus.
 class Plant final : public Circuit {
  public:
   static constexpr Ticks step_ticks = ticks_per_s / 60'000;
 
-  /// The facts must outlive it.
+  /// The facts must outlive the plant.
   Plant(const arms::Description& arm, const board::Facts& board, const PlantOptions& options = {});
 
-  /// Solders the chip in: from here on the plant drives its inputs, with their present levels to begin with.
+  /// Connects the chip. From here on the plant drives the chip's inputs, starting with their present levels.
   void connect(InputPins& pins);
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
@@ -50,42 +49,42 @@ class Plant final : public Circuit {
   AnalogSource analog_source(char port, unsigned pin) const override;
   void advance(Ticks now) override;
 
-  // ---- what a person does to it, from the time of the last call of the chip on ----
+  // ---- user actions, which take effect at the time of the chip's last call ----
   void press_buttons(bool first, bool second);
   void set_supply_V(double volts) { supply_.set_source_V(volts); }
   void set_bridge_fault(bool fault);
-  /// The USB cable brings VBUS.
+  /// Sets whether the USB cable supplies VBUS.
   void set_usb_supply(bool present);
   /// Turns the gimbal, as the hand does with the stylus: yaw, pitch, roll.
   void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void let_go();
   void follow(const std::vector<Waypoint>& waypoints);
-  /// Carries the stylus to the inkwell and leaves it there (the hand lets go), or takes it out of the socket.
+  /// True: the hand carries the stylus to the inkwell and releases it. False: the hand pulls the stylus out.
   void dock(bool docked);
-  /// Puts the arm somewhere at once, for tests.
+  /// Moves the arm to a position immediately, for tests.
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
 
-  // ---- what fails in it, from the same time on; `motor` counts from 0 ----
+  // ---- faults, which take effect at the same time; `motor` counts from 0 ----
   EncoderFault& encoder_fault(unsigned motor) { return encoders_[motor].fault; }
   ShuntFault shunt_fault(unsigned motor) const { return shunt_faults_[motor]; }
-  /// A frozen output stays at what it is now.
+  /// A frozen output retains its present value.
   void set_shunt_fault(unsigned motor, const ShuntFault& fault);
   MotorFault motor_fault(unsigned motor) const { return motor_faults_[motor]; }
   void set_motor_fault(unsigned motor, const MotorFault& fault);
-  /// A leg whose one switch has fused trips its bridge when the other one is asked for: see `tripped_`.
+  /// A leg with a fused switch trips its bridge when the other switch is commanded: see `tripped_`.
   void set_leg_fault(unsigned motor, unsigned leg, LegFault fault);
   void set_leg_delay(unsigned motor, unsigned leg, double delay_s) {
     motors_[motor].set_leg_delay(leg, ticks(delay_s));
   }
-  /// The source of the bridges gives this whatever it was set to; none heals it.
+  /// The bridge supply delivers this voltage and ignores its setting; std::nullopt clears the fault.
   void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
-  /// It swings by so much to either side, 100 times a second; 0 heals it.
+  /// The supply swings by this amplitude at 100 Hz; 0 clears the fault.
   void swing_supply_by_V(double amplitude_V) { supply_.swing_by_V(amplitude_V); }
-  /// What amplifiers and potentiometers are fed with, 3.3 V to begin with.
+  /// Sets the supply of the amplifiers and potentiometers, initially 3.3 V.
   void set_analog_supply_V(double volts) { analog_supply_V_ = volts; }
 
-  /// Measures what the hand gets and how hard the motors press, from now on.
+  /// Starts to measure the force on the hand and the force of the motors.
   void start_meters() {
     hand_meter_.start(probe_m_, now_);
     motor_force_meter_.start();
@@ -131,33 +130,33 @@ class Plant final : public Circuit {
   std::array<MotorDrive, 3> motors_;
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
-  Monostable hold_;  ///< what `bridges_enabled_` follows
+  Monostable hold_;  ///< source of `bridges_enabled_`
   Supply supply_;
-  double supply_divided_V_;  ///< at the pin, behind the divider and its capacitor
+  double supply_divided_V_;  ///< at the pin, after the divider and its capacitor
   double analog_supply_V_;
-  std::array<MotorConstants, 3> windings_;  ///< and shunts, of sound motors
+  std::array<MotorConstants, 3> windings_;  ///< winding and shunt of each motor without faults
   std::array<MotorFault, 3> motor_faults_{};
   std::array<ShuntFault, 3> shunt_faults_{};
   std::array<std::array<LegFault, 2>, 3> leg_faults_{};
-  bool driving_ = false;  ///< a bridge that is on has a leg at the supply
+  bool driving_ = false;  ///< an enabled bridge drives a leg high
   Ticks driven_until_ = 0;
-  bool tripped_ = false;  ///< a bridge's over-current protection, until it is disabled
+  bool tripped_ = false;  ///< over-current protection of a bridge, until the bridge is disabled
 
   // Mechanical
-  std::array<double, 3> torque_per_A_;  ///< at the joint, sign of the wiring included
+  std::array<double, 3> torque_per_A_;  ///< at the joint, with the sign of the wiring
   ArmMotion arm_;
-  Vector3 probe_m_;  ///< where the last step brought it
+  Vector3 probe_m_;  ///< position after the last step
   Hand hand_;
-  Hand carrier_;  ///< holds while it carries the stylus to the inkwell
+  Hand carrier_;  ///< holds the stylus while carrying it to the inkwell
   Inkwell inkwell_;
-  HandMeter hand_meter_;  ///< runs with the other one
+  HandMeter hand_meter_;  ///< runs together with motor_force_meter_
   MotorForceMeter motor_force_meter_;
   Vector3 torque_Nm_ = Vector3::Zero();
 
   // Inputs of the chip
   InputPins* pins_ = nullptr;
-  bool inputs_stale_ = true;  ///< something that the inputs show has moved since
-  Ticks shown_at_ = 0;        ///< the arm, by the encoders
+  bool inputs_stale_ = true;  ///< a quantity at the inputs has changed since they were driven
+  Ticks shown_at_ = 0;        ///< time of the arm position that the encoders show
   std::array<QuadratureEncoder, 3> encoders_;
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};
@@ -165,10 +164,10 @@ class Plant final : public Circuit {
   std::array<PinLevel, 7> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply, hold
 
   // Gimbal: joint angles and the inverse of the potentiometers' characteristic
-  std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each
+  std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope and offset of each potentiometer
   Vector3 gimbal_rad_;
 
-  double divider_follows_;  ///< how much of its way the divided supply goes in a step
+  double divider_follows_;  ///< fraction of the voltage difference that the divided supply covers in a step
   Ticks now_ = 0;
   Ticks next_step_ = step_ticks;
   std::mt19937_64 random_;

@@ -1,4 +1,4 @@
-// A quadrature encoder on a motor: counts from the motor's angle, edges one pin at a time.
+// A quadrature encoder on a motor: counts from the motor's angle, and edges of one pin at a time.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ class QuadratureEncoder {
         shown_at_(joint_rad * counts_per_rad),
         reached_(count_at(joint_rad)) {}
 
-  /// Counts of the disc at this joint angle; zero is where the joint's angle is zero.
+  /// Counts of the disc at this joint angle; the count is zero at joint angle zero.
   std::int64_t count_at(double joint_rad) const {
     return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_));
   }
-  /// The count that its outputs stand at: that of the disc, less what was lost.
+  /// Count that the outputs show: the disc's count minus the lost counts.
   std::int64_t shown() const { return reached_ - lost_; }
 
   /// Both outputs at `count`. A leads B while counting up (RM0090, "Encoder interface mode").
@@ -36,8 +36,8 @@ class QuadratureEncoder {
     return {phase == 1 || phase == 2, phase >= 2};
   }
 
-  /// Moves to the count at `joint_rad`, calling `edge(levels, share)` for each count on the way, at which that share of
-  /// the way is behind it.
+  /// Moves to the count at `joint_rad` and calls `edge(levels, share)` for each count passed. `share` is the fraction
+  /// of the motion at that count.
   template <class Edge>
   void follow(double joint_rad, Edge&& edge) {
     slipped_ += fault.slipped_counts();
@@ -59,7 +59,7 @@ class QuadratureEncoder {
 
  private:
   double counts_per_rad_;
-  double shown_at_;  ///< where the disc stands, in counts
+  double shown_at_;  ///< position of the disc in counts
   double slipped_ = 0.0;
   std::int64_t reached_, lost_ = 0;
 };

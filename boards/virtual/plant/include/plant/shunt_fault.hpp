@@ -1,4 +1,4 @@
-// What may be wrong with the amplifier of a motor's shunt.
+// Faults of a motor's shunt amplifier.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct ShuntFault {
   Output output = Output::follows;
   double frozen_V = 0.0;
 
-  /// The current that the reading stands for, while its output follows.
+  /// Current that corresponds to the reading while the output is not frozen.
   double read_A(double current_A) const { return gain * current_A + offset_A; }
 };
 

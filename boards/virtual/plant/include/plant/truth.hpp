@@ -1,4 +1,4 @@
-// What no real board could tell: every true quantity at an instant, and its record over time.
+// The true quantities at an instant, which no real board can measure, and their record over time.
 #pragma once
 
 #include <array>
@@ -17,29 +17,29 @@ struct Truth {
   Ticks at = 0;
   Vector3 position_m, velocity_m_s;  ///< probe, workspace
   Vector3 joints_rad, joint_speeds_rad_s;
-  Vector3 current_A;      ///< motor currents, ripple included
-  Vector3 torque_Nm;      ///< of the motors at the joints
+  Vector3 current_A;      ///< motor currents including ripple
+  Vector3 torque_Nm;      ///< of the motors, at the joints
   Vector3 hand_force_N;   ///< of the hand on the probe
-  Vector3 hand_target_m;  ///< where the hand pulls to; the probe if it does not hold
+  Vector3 hand_target_m;  ///< target of the hand, or the probe if no hand holds the stylus
   double supply_V = 0.0;
   std::array<std::int64_t, 3> encoder_counts{};
   bool hand_holds = false, docked = false, inkwell_switch = false, bridge_fault = false;
   std::array<bool, 2> buttons{};
-  bool bridges_enabled = false;                         ///< their own enable input is high
-  Ticks driven_until = 0;                               ///< when a bridge that was on had a leg at the supply last
-  std::array<std::array<PinLevel, 2>, 3> leg_levels{};  ///< what the chip drives the inputs of the bridges with
+  bool bridges_enabled = false;                         ///< level of the bridges' enable input
+  Ticks driven_until = 0;                               ///< last time at which an enabled bridge drove a leg high
+  std::array<std::array<PinLevel, 2>, 3> leg_levels{};  ///< levels that the chip drives at the bridge inputs
 };
 
-/// What a trace records, in the order of protocol::simulated_quantity_table.
+/// Values of a trace row, in the order of protocol::simulated_quantity_table.
 using TracedValues = std::array<double, protocol::simulated_quantity_count>;
 TracedValues traced_values(const Truth& truth);
 
-/// Rows of true quantities, one for each control period. Bounded: when it is full the oldest rows are dropped
-/// and counted.
+/// Rows of true quantities, one for each control period. When the trace is full, the oldest rows are dropped and
+/// counted.
 class Trace {
  public:
   struct Row {
-    std::uint64_t period;  ///< index of the injected sequence since reset
+    std::uint64_t period;  ///< index of the ADC's injected conversion sequence since reset
     Ticks at;
     TracedValues values;
   };
@@ -49,7 +49,7 @@ class Trace {
   void stop() { running_ = false; }
   bool is_running() const { return running_; }
   void record(std::uint64_t period, const Truth& truth);
-  /// Takes out the oldest rows, at most `maximum`.
+  /// Removes and returns the oldest rows, at most `maximum`.
   std::vector<Row> read(std::size_t maximum);
   std::size_t waiting() const { return rows_.size(); }
   std::uint64_t dropped() const { return dropped_; }

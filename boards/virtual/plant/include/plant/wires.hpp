@@ -1,4 +1,5 @@
-// The wires between the chip and what is soldered to it, as far as they are broken: each call passes through here.
+// The wires between the chip and its circuit, with their faults. Each call between chip and circuit passes through this
+// class.
 #pragma once
 
 #include <array>
@@ -12,19 +13,19 @@ namespace inkwell::virtual_board {
 
 enum class WireFault : std::uint8_t {
   sound,
-  open,    ///< what it drives floats; an analogue input sinks to ground, by its resistor or as its capacitor leaks
-  low,     ///< touches ground
-  high,    ///< touches the chip's 3.3 V
-  frozen,  ///< stays as it is
+  open,    ///< its receiver floats; an analog input falls to 0 V through its resistor or through leakage
+  low,     ///< shorted to ground
+  high,    ///< shorted to the chip's 3.3 V supply
+  frozen,  ///< retains its level
 };
 
-/// Stands between a chip, for which it is the circuit, and a circuit, for which it is the chip's inputs.
+/// Connects a chip and its circuit. This class is the Circuit of the chip and the InputPins of the circuit.
 class Wires final : public Circuit, public InputPins {
  public:
-  static constexpr double open_input_s = 0.01;  ///< time constant of an analogue input without a resistor to ground
+  static constexpr double open_input_s = 0.01;  ///< time constant of an analog input without a resistor to ground
 
   explicit Wires(Circuit& circuit) : circuit_(circuit) {}
-  /// Solders the chip in.
+  /// Connects the chip.
   void connect(InputPins& chip) { chip_ = &chip; }
 
   void set(PinName wire, WireFault fault);
@@ -39,10 +40,10 @@ class Wires final : public Circuit, public InputPins {
  private:
   struct State {
     WireFault fault = WireFault::sound;
-    PinLevel by_chip = PinLevel::floating, by_circuit = PinLevel::floating;  ///< what drives it at either end
+    PinLevel by_chip = PinLevel::floating, by_circuit = PinLevel::floating;  ///< driven level at either end
     PinLevel frozen_by_chip = PinLevel::floating, frozen_by_circuit = PinLevel::floating;
     double newest_V = 0.0, frozen_V = 0.0;
-    Ticks since = 0;  ///< the fault
+    Ticks since = 0;  ///< time at which the fault began
   };
   struct Pair {
     PinName a, b;

@@ -1,4 +1,4 @@
-// Bytes both ways between the board and a program of this computer; what comes in waits for the simulation's thread.
+// A byte stream between the board and a local program. Received bytes wait for the simulation thread.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,17 @@ namespace inkwell::virtual_board {
 
 class ByteStream {
  public:
-  /// So many bytes wait for `take`; the other end waits with the rest.
+  /// Limit of bytes that wait for take(); the sender is blocked above it.
   static constexpr std::size_t unread_maximum = 64 * 1024;
 
   struct Arrived {
-    bool connected = false, gone = false;  ///< since the last call; who came and went is both
+    bool connected = false, gone = false;  ///< since the last call; both are true for a client that connected and
+                                           ///< disconnected
     std::string bytes;
   };
   virtual ~ByteStream() = default;
   virtual Arrived take() = 0;
-  /// What nobody reads is lost.
+  /// Without a reader, the bytes are discarded.
   virtual void send(std::string_view bytes) = 0;
 };
 

@@ -1,4 +1,4 @@
-// The control socket: lines of JSON from several clients, handed to the simulation's thread one by one.
+// The control socket: JSON lines from several clients, passed to the simulation thread one by one.
 #pragma once
 
 #include <chrono>
@@ -25,20 +25,20 @@ struct ControlRequest {
 
 class ControlServer {
  public:
-  /// One more is refused with a sentence.
+  /// Further clients are refused with a sentence.
   static constexpr std::size_t clients_maximum = 32;
 
-  /// @throws std::runtime_error with a sentence that names --control if it cannot listen there.
+  /// @throws std::runtime_error with a sentence that names --control if listening fails.
   explicit ControlServer(const local::SocketAddress& where);
-  /// Answers what was asked, hangs up on all clients and joins their threads.
+  /// Answers pending requests, disconnects all clients and joins their threads.
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
 
   const local::SocketAddress& address() const { return listener_.address(); }
-  /// The oldest request, waiting for one at most until `give_up` or until `wake` was called.
+  /// Returns the oldest request. Waits for a request until `give_up` or a call of wake().
   std::optional<ControlRequest> take(std::chrono::steady_clock::time_point give_up);
-  /// Ends a `take` that waits, or the next one. From any thread.
+  /// Ends the present or next wait of take(). May be called from any thread.
   void wake();
 
  private:
@@ -50,7 +50,7 @@ class ControlServer {
   void accept_clients();
   void accept(local::Descriptor socket);
   void serve(Client& client);
-  /// False if the client is to be disconnected.
+  /// Returns false if the client must be disconnected.
   bool serve_lines(int socket, std::string& received);
   std::optional<nlohmann::json> ask(std::string line);
 

@@ -1,5 +1,5 @@
-// What a client of the control socket asks for, as far as it can be understood and checked without a board. Each reader
-// says what it wants, in the sentence of its refusal.
+// Requests of control socket clients, parsed and checked as far as possible without a board. Each error states the
+// expected input.
 #pragma once
 
 #include <array>
@@ -51,28 +51,28 @@ enum class Command : std::uint8_t {
   trace,
 };
 
-/// All that is said about a command: it is known, checked and explained by this alone.
+/// Name, keys and help of a command. The parser, the checks and --help use only this data.
 struct CommandInfo {
   Command command;
   std::string_view name;
-  std::vector<std::string_view> keys;  ///< that it knows besides "command"
+  std::vector<std::string_view> keys;  ///< accepted keys except "command"
   std::string_view help;
-  bool is_for_any_time = false;  ///< also in the middle of a frame
+  bool is_for_any_time = false;  ///< allowed in the middle of a frame
 };
 std::span<const CommandInfo> command_table();
-/// One line for each command, with its keys, for --help.
+/// Help text with one line per command and its keys.
 std::string explain_commands();
 
 struct Request {
   const CommandInfo* info;
-  nlohmann::json values;  ///< an object with keys that the command knows, and any values
+  nlohmann::json values;  ///< an object with known keys and unchecked values
 };
-/// Of a line of a client. Throws Refused, as all that follow do.
+/// Parses a client's line. This function and all following ones throw Refused.
 Request read_request(std::string_view line);
 
 bool truth_value(const nlohmann::json& request, const char* key);
 double run_time_s(const nlohmann::json& request);
-/// In the middle of which operation of the flash the power fails; none: at once.
+/// Number of the flash operation during which the power fails; std::nullopt: immediately.
 std::optional<std::uint64_t> flash_operation(const nlohmann::json& request);
 double supply_voltage_V(const nlohmann::json& request);
 double glitch_time_s(const nlohmann::json& request);
@@ -81,20 +81,20 @@ enum class MeterAction : std::uint8_t { start, read };
 MeterAction meter_action(const nlohmann::json& request);
 enum class TraceAction : std::uint8_t { start, stop, read };
 TraceAction trace_action(const nlohmann::json& request);
-/// So many rows are read at most.
+/// Largest number of rows to read.
 std::size_t trace_rows(const nlohmann::json& request);
 
 struct HandRequest {
   bool holds = false;
   Vector3 target_m = Vector3::Zero();
-  std::optional<double> stiffness_N_per_m = {};  ///< none: as it was
-  std::optional<double> damping_Ns_per_m = {};   ///< none: as it was
+  std::optional<double> stiffness_N_per_m = {};  ///< std::nullopt: unchanged
+  std::optional<double> damping_Ns_per_m = {};   ///< std::nullopt: unchanged
 };
 HandRequest hand_request(const nlohmann::json& request);
 std::vector<Waypoint> hand_path_request(const nlohmann::json& request);
 std::array<bool, 2> pressed_buttons(const nlohmann::json& request);
 PinName pin_of(const nlohmann::json& request);
-/// What a pin is driven to; none if it is only looked at.
+/// Level to drive at the pin; std::nullopt if the pin is only read.
 std::optional<PinLevel> pin_drive(const nlohmann::json& request);
 protocol::InjectionRequest injection_request(const nlohmann::json& request);
 

@@ -1,4 +1,4 @@
-// One clock for virtual boards that run at the same time: none gets more than a millisecond ahead of another.
+// Common clock of simultaneous virtual boards: no board gets more than a millisecond ahead of another.
 #pragma once
 
 #include <array>
@@ -9,37 +9,38 @@
 
 namespace inkwell::virtual_board {
 
-/// The boards of a group share a small file. Each has a place in it, which the system gives back when the board's
-/// process ends in any way: its lock on the place is gone then.
+/// The boards of a group share a small file with one slot per board. Each board owns a file lock on its slot. The
+/// system releases the lock when the board's process exits for any reason.
 class SharedClock {
  public:
   static constexpr std::size_t boards_maximum = 16;
 
-  /// Joins the group, or begins one. A board that comes later starts where the group is. Throws std::runtime_error with
-  /// a sentence.
+  /// Joins the group or creates it. A later board starts at the group's time. Throws std::runtime_error with a
+  /// sentence.
   explicit SharedClock(const std::filesystem::path& file);
   ~SharedClock();
   SharedClock(const SharedClock&) = delete;
   SharedClock& operator=(const SharedClock&) = delete;
 
-  /// Tells the others that `milliseconds` of this board's time have passed since it joined.
+  /// Publishes that `milliseconds` of this board's time have passed since it joined.
   void note(std::uint64_t milliseconds);
-  /// Whether all others are as far as this board, so that its next millisecond may begin.
+  /// Returns true if all other boards have reached this board's time. The next millisecond of this board may then
+  /// begin.
   bool lets_pass();
 
  private:
-  /// 0: no board is there. Else one more than the milliseconds that have passed for the group.
+  /// 0: the slot is free. Otherwise 1 plus the group time of the board in milliseconds.
   using Place = std::atomic<std::uint64_t>;
   static_assert(Place::is_always_lock_free, "processes share it");
   using Places = std::array<Place, boards_maximum>;
 
   void join();
   bool is_taken(std::size_t place) const;
-  /// How far the boards are; 1 if there is none.
+  /// Largest value of all slots; 1 if there is no board.
   std::uint64_t farthest() const;
 
   int file_ = -1;
-  Places* places_ = nullptr;  ///< in the file
+  Places* places_ = nullptr;  ///< mapping of the file
   std::size_t mine_ = 0;
   std::uint64_t joined_at_ = 1;
 };

@@ -1,4 +1,4 @@
-// Where GDB, or a terminal for a UART, connects: one at a time.
+// Server for GDB, or for a terminal on a UART, with one client at a time.
 #pragma once
 
 #include <condition_variable>
@@ -14,18 +14,18 @@
 
 namespace inkwell::virtual_board {
 
-/// Whether the first bytes that a client sends may be of the expected protocol.
+/// Returns whether the first bytes of a client can belong to the expected protocol.
 using FirstBytes = bool (*)(std::string_view bytes);
-/// GDB begins with an acknowledgement, a packet or Ctrl-C.
+/// GDB starts with an acknowledgment, a packet or Ctrl-C.
 bool may_be_gdb(std::string_view bytes);
-/// A UART carries any bytes, but a browser's requests are not meant for it: HTTP, or the begin of TLS.
+/// A UART accepts any bytes except the requests of a browser: HTTP or the start of TLS.
 bool may_be_terminal(std::string_view bytes);
 
 class StreamServer final : public ByteStream {
  public:
-  /// A client is disconnected if its first bytes are not `welcome`; until they come it is not reported as connected.
-  /// `on_arrival` is called from another thread when there is something to take.
-  /// @throws std::runtime_error with a sentence that names `option` if it cannot listen there.
+  /// A client is disconnected if `welcome` rejects its first bytes. Until the first bytes arrive, the client is not
+  /// reported as connected. `on_arrival` is called from another thread when take() has data.
+  /// @throws std::runtime_error with a sentence that names `option` if listening fails.
   StreamServer(const local::SocketAddress& where, std::string_view option, FirstBytes welcome,
                std::function<void()> on_arrival);
   ~StreamServer() override;

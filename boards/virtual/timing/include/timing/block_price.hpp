@@ -1,4 +1,4 @@
-// What a straight run of instructions costs where memory has no wait states.
+// Cost of a straight run of instructions with memory without wait states.
 #pragma once
 
 #include <cstdint>
@@ -10,65 +10,64 @@
 
 namespace inkwell::virtual_board {
 
-/// Which bus brings the instructions.
+/// Bus that fetches the instructions.
 enum class CodeMemory : std::uint8_t {
-  flash,  ///< by its own bus, 128 bits a line
-  sram,   ///< by the bus that data in SRAM shares
+  flash,  ///< separate bus, 128 bits per line
+  sram,   ///< bus shared with data in SRAM
 };
 
-/// A run that is entered at its first instruction and left after its last, priced once and used each time it runs.
+/// A run from its first to its last instruction. A run is priced once, and the price is used at each execution.
 struct BlockPrice {
-  /// A question to the flash, in cycles since the block began.
+  /// A flash access. The time of a request is relative to the start of the block.
   struct Request {
     std::uint32_t address;
     std::uint16_t after_cycles;
-    bool is_data;  ///< a word that is read relative to the program counter; else a line of instructions
+    bool is_data;  ///< a word read relative to the program counter; otherwise an instruction line
   };
   struct Divide {
     std::uint32_t address;
-    std::uint8_t dividend, divisor;  ///< numbers of the registers
+    std::uint8_t dividend, divisor;  ///< register numbers
     bool is_signed;
-    bool known_at_entry;  ///< nothing in the block writes the operands before
+    bool known_at_entry;  ///< the block does not write the operands before the divide
   };
-  /// A load that may read the flash, as tables there are read.
+  /// A load that may read a table in the flash.
   struct Read {
-    std::uint32_t instruction;  ///< its address
+    std::uint32_t instruction;  ///< address of the instruction
     std::uint16_t after_cycles;
-    std::uint8_t base, index, shift;  ///< numbers of the registers, Instruction::no_register for none
+    std::uint8_t base, index, shift;  ///< register numbers, or Instruction::no_register
     std::int32_t offset;
-    bool base_at_entry, index_at_entry;  ///< nothing in the block writes it before
-    std::uint32_t constant;              ///< the base, if the block itself loads it from a literal; else 0
+    bool base_at_entry, index_at_entry;  ///< the block does not write the register before the load
+    std::uint32_t constant;              ///< base that the block loads from a literal; otherwise 0
   };
   std::uint32_t address = 0;
   std::uint32_t bytes = 0;
   std::uint16_t instructions = 0;
-  std::uint16_t cycles = 0;              ///< all of it: the last branch not taken, each divide its shortest
-  std::uint16_t taken_cycles = 0;        ///< more if the last branch is taken
-  std::uint16_t refill_cycles = 0;       ///< more if a branch led here: the first instructions cross words
-  std::uint16_t float_busy_cycles = 0;   ///< how long a division of the FPU goes on after the block
-  std::uint16_t first_float_cycles = 0;  ///< after which the FPU is asked, if uses_float
+  std::uint16_t cycles = 0;              ///< with the last branch not taken and the shortest time of each divide
+  std::uint16_t taken_cycles = 0;        ///< additional cycles if the last branch is taken
+  std::uint16_t refill_cycles = 0;       ///< additional cycles after a branch to this block, from its word alignment
+  std::uint16_t float_busy_cycles = 0;   ///< time for which an FPU division continues after the block
+  std::uint16_t first_float_cycles = 0;  ///< start of the first FPU instruction, if uses_float
   bool uses_float = false;
-  bool has_divides = false, has_reads = false;  ///< asked at each run, so that they stand beside what each run needs
-  mutable bool reads_flash = false;             ///< one of the reads has been seen there
-  mutable std::uint32_t runs = 0;               ///< of a block with reads
-  std::vector<Request> requests;                ///< in the order of time
-  std::vector<std::uint16_t> starts;            ///< by half word: cycles from the block's start to that instruction's
+  bool has_divides = false, has_reads = false;  ///< placed here because every run reads them
+  mutable bool reads_flash = false;             ///< one of the reads has accessed the flash
+  mutable std::uint32_t runs = 0;               ///< number of runs, for blocks with reads
+  std::vector<Request> requests;                ///< ordered by time
+  std::vector<std::uint16_t> starts;  ///< index: half-word; cycles from the start of the block to that instruction
   std::vector<Divide> divides;
   std::vector<Read> reads;
 };
 
-/// Reads a word of memory without any effect; may be empty.
+/// Reads a word of memory without side effects; may be empty.
 using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Prices the instructions in `code` (whole half words, as they stand in memory) at `address`. `word` tells what
-/// literals hold.
+/// Returns the price of the instructions in `code` (whole half-words) at `address`. `word` reads the literals.
 BlockPrice price(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
                  const WordReader& word = {});
 
-/// Beyond its shortest, of a divide whose operands are not known.
+/// Additional cycles, above the shortest time, of a divide with unknown operands.
 unsigned divide_mean(const Costs& costs);
 
-/// Cycles of a divide (a guess: from the shortest to the longest by the quotient's bits, four a cycle).
+/// Cycles of a divide. This is a guess: the time increases by one cycle per four quotient bits.
 unsigned divide_cycles(std::uint32_t dividend, std::uint32_t divisor, bool is_signed, const Costs& costs);
 
 }  // namespace inkwell::virtual_board

@@ -1,5 +1,5 @@
-// What the Cortex-M4F and the STM32F405 charge in cycles of HCLK. The figures are in boards/virtual/timing/costs.toml,
-// of which the build makes <timing/cost_rows.hpp>.
+// Costs of the Cortex-M4F and the STM32F405 in cycles of HCLK. The build generates <timing/cost_rows.hpp> from the
+// values in boards/virtual/timing/costs.toml.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace inkwell::virtual_board {
 
-/// Which of its two figures every cost takes.
+/// Selects one of the two values of each cost.
 enum class Pricing : std::uint8_t { likely, conservative };
 
-/// Where a figure comes from.
+/// Source of a value.
 enum class Source : std::uint8_t {
-  reference_manual,  ///< ARM's technical reference manuals of the Cortex-M4 (DDI 0439) and M3 (DDI 0337)
-  compiler,          ///< the scheduling description of the Cortex-M4 in GCC
+  reference_manual,  ///< ARM technical reference manuals of the Cortex-M4 (DDI 0439) and M3 (DDI 0337)
+  compiler,          ///< scheduling description of the Cortex-M4 in GCC
   chip_manual,       ///< RM0090
   measured,          ///< published measurements on an STM32F407
-  guess,             ///< none: a board has to tell
+  guess,             ///< no source; needs a measurement on a board
 };
 
 enum class Cost : std::uint8_t {
@@ -43,14 +43,14 @@ inline constexpr CostInfo cost_table[] = {
 #undef X
 };
 
-// The cache is worth less, not more, when less enters it.
+// For this row the smaller value is the conservative one, because fewer lines enter the cache.
 static_assert([] {
   for (const CostInfo& row : cost_table)
     if (row.likely > row.conservative && row.cost != Cost::prefetched_line_is_cached) return false;
   return true;
 }());
 
-/// The figures of one pricing.
+/// The values of one pricing.
 class Costs {
  public:
   constexpr explicit Costs(Pricing pricing) : pricing_(pricing) {}

@@ -1,4 +1,4 @@
-// The cycles of a program as it runs, block by block.
+// Counts the cycles of a program during execution, block by block.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace inkwell::virtual_board {
 
-/// Where the two memories that hold instructions lie, in bytes.
+/// Addresses of the two memories for instructions, in bytes.
 struct CodeMap {
   std::uint32_t flash_base, flash_bytes, sram_base, sram_bytes;
 };
 
 class CycleCounter {
  public:
-  /// `word` reads memory without any effect.
+  /// `word` reads memory without side effects.
   CycleCounter(Pricing pricing, const CodeMap& map, WordReader word);
 
   const Costs& costs() const { return costs_; }
   FlashAccelerator& flash() { return flash_; }
   const FlashAccelerator& flash() const { return flash_; }
 
-  /// The price of the run of so many bytes at `address`, if it is known and nothing has changed there since; else null.
+  /// Price of the run of `bytes` at `address` if it is known and the code has not changed; otherwise null.
   const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
     if (forgets_) forget_prices();
     const Known* known = *place_of(address).known;
@@ -33,46 +33,46 @@ class CycleCounter {
         known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
     return fits ? &known->price : nullptr;
   }
-  /// The price of the run of `code` that stands at `address`. The reference holds while the block runs.
+  /// Price of the run of `code` at `address`. The reference is valid while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
-  /// The block begins at cycle `now`: what it waits for the refill after the last branch and for the FPU.
+  /// Cycles that the block waits at its start at cycle `now`, for the branch refill and the FPU.
   unsigned enter(const BlockPrice& block, std::uint64_t now);
-  /// What the whole block waits for the flash if it begins at cycle `now`; `register_value` reads a register as it
-  /// is then. Of the reads of data those count nothing whose base is not known yet; an index that is not known
-  /// yet is taken to be anywhere in a small table.
+  /// Cycles that the whole block waits for the flash if it starts at cycle `now`. `register_value` reads a register at
+  /// that time. Data reads with an unknown base are not counted. An unknown index is assumed to be anywhere in a small
+  /// table.
   template <class RegisterValue>
   unsigned wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value);
-  /// What one of its reads waits at cycle `now`, with the registers as they are then.
+  /// Wait cycles of a read at cycle `now` with the current registers.
   template <class RegisterValue>
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
-  /// What one of its requests waits at cycle `now`.
+  /// Wait cycles of a request at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
-  /// The emulator reads the instruction at `address` anew: it may have changed.
+  /// Call this when the emulator has read the instruction at `address` again, because it may have changed.
   void read_anew(std::uint32_t address);
-  /// Something else than a branch decides what runs next: exception entry and return, reset.
+  /// Call this when exception entry, exception return or reset has changed the next instruction.
   void redirect() { redirected_ = true; }
-  /// The next use of the FPU stacks the context of whom the exception has interrupted, or no longer does.
+  /// Sets whether the next FPU instruction must stack the context of the interrupted code.
   void stack_lazily(bool due) { lazy_stacking_due_ = due; }
   bool lazy_stacking_due() const { return lazy_stacking_due_; }
-  /// Instructions in the flash have changed; the block that runs still counts as it was.
+  /// Call this when instructions in the flash have changed. The running block keeps its price.
   void forget() {
     forgets_ = redirected_ = true;
     flash_.forget_lines();
   }
 
  private:
-  /// Of blocks hundreds run in each control period, so that what they need lies together.
+  /// Hundreds of blocks run in each control period, so the members that each run needs share cache lines.
   struct alignas(64) Known {
-    bool is_current = false;  ///< nobody has read the code anew since it was priced
+    bool is_current = false;  ///< the code has not been read again since the pricing
     BlockPrice price;
-    std::vector<std::uint8_t> code;  ///< what it was priced from
+    std::vector<std::uint8_t> code;  ///< code of the pricing
   };
   struct Place {
-    Known** known;  ///< null is none
+    Known** known;  ///< null means none
     CodeMemory memory;
   };
   Place place_of(std::uint32_t address) {
-    // The flash shows at 0 too.
+    // The flash is also mapped at 0.
     const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
     if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
     if (address - map_.sram_base < map_.sram_bytes)
@@ -85,13 +85,14 @@ class CycleCounter {
   bool in_flash(std::uint32_t address) const {
     return address < map_.flash_bytes || address - map_.flash_base < map_.flash_bytes;
   }
-  /// Whether a block reads the flash is asked at its first runs and now and then; asking costs more than running.
+  /// Checks for flash reads are slower than the run itself, so only the first runs and every 64th run are checked.
   static bool asks_for_reads(const BlockPrice& block) {
     if (!block.has_reads) return false;
     const std::uint32_t run = block.runs++;
     return block.reads_flash || run < runs_asked_at_first || run % runs_between_asking == 0;
   }
-  /// For an index that the block itself computes: anywhere in a table of 1 KiB, the same in each run of the program.
+  /// Index for an address that the block itself computes: anywhere in a table of 1 KiB, repeatable for each run of the
+  /// program.
   std::uint32_t any_index() {
     random_ = random_ * 1664525 + 1013904223;
     return random_ >> 22 & ~3u;
@@ -101,10 +102,10 @@ class CycleCounter {
   CodeMap map_;
   FlashAccelerator flash_;
   std::deque<Known> known_;
-  std::vector<Known*> known_in_flash_, known_in_sram_;  ///< by half word
+  std::vector<Known*> known_in_flash_, known_in_sram_;  ///< index: half-word
   std::unordered_map<std::uint32_t, Known*> known_elsewhere_;
   WordReader word_;
-  // Of the block that ran last.
+  // State after the previous block.
   std::uint32_t last_end_ = 0;
   unsigned last_taken_cycles_ = 0;
   bool redirected_ = true, forgets_ = false;

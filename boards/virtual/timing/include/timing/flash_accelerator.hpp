@@ -1,4 +1,4 @@
-// The ART accelerator between the core and the flash (RM0090, "Adaptive real-time memory accelerator").
+// ART accelerator between the core and the flash (RM0090, "Adaptive real-time memory accelerator").
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace inkwell::virtual_board {
 
-/// Lines of 128 bits that are kept, the one that was used longest ago is replaced. Which lines share a place is
-/// not published; taken as any.
+/// Cache of 128-bit lines with replacement of the least recently used line. The associativity is not documented; this
+/// model is fully associative.
 class LineCache {
  public:
-  /// Of `lines` lines `places` at a time (at most 254).
+  /// Cache of up to 254 `places` for a memory of `lines` lines.
   LineCache(std::size_t places, std::size_t lines);
-  /// Whether the line is there; then it counts as used now.
+  /// Returns true if the line is in the cache, and marks the line as most recently used.
   bool holds(std::uint32_t line) {
     const std::uint8_t place = place_of_[line];
     if (place == 0) return false;
@@ -26,15 +26,15 @@ class LineCache {
 
  private:
   static constexpr std::uint32_t nobody = ~0u;
-  /// A ring in the order of use; place 0 is its seam and holds nothing: the last used is its `newer`, the one to
-  /// be replaced its `older`.
+  /// Entry of a ring in order of use. Entry 0 is a sentinel without a line: its `newer` is the most recently used
+  /// entry, its `older` the next to be replaced.
   struct Place {
     std::uint32_t line = nobody;
     std::uint8_t older = 0, newer = 0;
   };
   void use(std::uint8_t place);
   std::vector<Place> places_;
-  std::vector<std::uint8_t> place_of_;  ///< by line; 0 is none
+  std::vector<std::uint8_t> place_of_;  ///< index: line; 0 means not in the cache
 };
 
 class FlashAccelerator {
@@ -42,28 +42,28 @@ class FlashAccelerator {
   static constexpr std::uint32_t line_bytes = 16;
   static constexpr std::size_t instruction_lines = 64, data_lines = 8;
 
-  /// `flash_bytes` is a multiple of line_bytes. Addresses are offsets in the flash.
+  /// `flash_bytes` must be a multiple of line_bytes. Addresses are offsets in the flash.
   FlashAccelerator(std::uint32_t flash_bytes, const Costs& costs);
 
-  /// FLASH_ACR: wait states, and what is switched on.
+  /// Applies FLASH_ACR: wait states, prefetch and caches.
   void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
   void forget_instructions() { instructions_.forget(); }  ///< ICRST
   void forget_data() { data_.forget(); }                  ///< DCRST
-  /// After erasing or programming: what stands in the flash's own buffers is old.
+  /// Call this after an erase or program operation, because the line buffers of the flash are outdated.
   void forget_lines() { current_ = ahead_ = nobody; }
-  /// Nothing ever waits.
+  /// True if no access waits.
   bool is_free() const { return wait_states_ == 0; }
   unsigned wait_states() const { return wait_states_; }
 
-  /// Cycles that the core waits at cycle `now` for the line of instructions at `offset`.
+  /// Cycles that the core waits at cycle `now` for the instruction line at `offset`.
   unsigned fetch(std::uint32_t offset, std::uint64_t now) {
     const std::uint32_t line = offset / line_bytes;
     if (line == current_) return 0;
     return fetch_other(line, now);
   }
-  /// Cycles that the core waits for data in the line at `offset`.
+  /// Cycles that the core waits at cycle `now` for data in the line at `offset`.
   unsigned read(std::uint32_t offset, std::uint64_t now);
-  /// Cycles that the core waits at cycle `now` for a line that no cache holds.
+  /// Cycles that the core waits at cycle `now` for an uncached line.
   unsigned miss(std::uint64_t now) const {
     const bool busy = miss_waits_ && ahead_ != nobody && ahead_at_ > now;
     return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;
@@ -78,9 +78,9 @@ class FlashAccelerator {
   unsigned wait_states_ = 0;
   bool prefetch_ = false, instruction_cache_ = false, data_cache_ = false;
   const bool prefetch_follows_hit_, keeps_prefetched_, miss_waits_;
-  std::uint32_t current_ = nobody;  ///< the line of instructions that was read last
-  std::uint32_t ahead_ = nobody;    ///< the line that is being prefetched, or has been
-  std::uint64_t ahead_at_ = 0;      ///< when it is there
+  std::uint32_t current_ = nobody;  ///< the most recent instruction line
+  std::uint32_t ahead_ = nobody;    ///< the prefetched line
+  std::uint64_t ahead_at_ = 0;      ///< time at which the prefetched line is complete
   std::uint32_t current_data_ = nobody;
   LineCache instructions_, data_;
 };

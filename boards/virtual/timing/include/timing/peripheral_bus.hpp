@@ -1,4 +1,4 @@
-// What the core waits for registers on the way to them.
+// Wait cycles of the core for register accesses.
 #pragma once
 
 #include <algorithm>
@@ -8,19 +8,19 @@
 
 namespace inkwell::virtual_board {
 
-/// The bridges to APB1 and APB2 take one access after another; a write leaves the core at once and keeps the
-/// bridge busy, a read keeps both waiting.
+/// The bridges to APB1 and APB2 handle one access at a time. A write releases the core immediately and occupies the
+/// bridge; a read occupies both.
 class PeripheralBus {
  public:
   explicit PeripheralBus(const Costs& costs) : costs_(costs) {}
 
-  /// Of HCLK, PCLK1 and PCLK2, whose ratios are powers of two; 0 for a clock that stands.
+  /// Sets HCLK, PCLK1 and PCLK2. The ratios of the clocks are powers of two; 0 is a stopped clock.
   void set_clocks(std::uint32_t hclk_Hz, std::uint32_t pclk1_Hz, std::uint32_t pclk2_Hz) {
-    // To the nearest: with a crystal that is off, frequencies are rounded.
+    // The ratio is rounded, because frequencies of a crystal with a deviation are rounded.
     const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : (hclk_Hz + bus_Hz / 2) / bus_Hz; };
     ratios_ = {ratio(pclk1_Hz), ratio(pclk2_Hz)};
   }
-  /// Cycles of HCLK that the access waits beyond one of RAM.
+  /// Additional HCLK cycles compared with a RAM access.
   unsigned access(std::uint32_t address, bool write, std::uint64_t now) {
     constexpr std::uint32_t apb2_base = 0x4001'0000, ahb1_base = 0x4002'0000, private_base = 0xE000'0000;
     if (address >= private_base) return costs_[Cost::private_bus];

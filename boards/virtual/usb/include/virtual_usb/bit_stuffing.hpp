@@ -1,5 +1,4 @@
-// How many bits a packet gets beside its own: after six ones in a row a transmitter puts a zero (USB 2.0,
-// section 7.1.9).
+// Number of stuffed bits in a packet: a transmitter inserts a zero after six consecutive ones (USB 2.0, section 7.1.9).
 #pragma once
 
 #include <array>
@@ -9,14 +8,14 @@
 
 namespace inkwell::virtual_board {
 
-/// What a byte does to a packet that has so many ones in a row before it.
+/// Effect of one byte on bit stuffing, for a given number of preceding ones.
 struct StuffedByte {
-  std::uint8_t stuffed, ones;  ///< zeros put into it, and ones in a row at its end
+  std::uint8_t stuffed, ones;  ///< inserted zeros, and consecutive ones at the end of the byte
 };
 
 inline constexpr unsigned ones_before_stuffing = 6;
 
-/// By the ones before it, and by its value.
+/// Indexed by the number of preceding ones and by the byte value.
 inline constexpr auto stuffed_bytes = [] {
   std::array<std::array<StuffedByte, 256>, ones_before_stuffing> table{};
   for (unsigned before = 0; before < ones_before_stuffing; ++before)
@@ -45,7 +44,8 @@ inline constexpr auto data_checksums = [] {
   return table;
 }();
 
-/// Of a data packet: identifier, payload and checksum. The last bit of the synchronisation is a one and counts.
+/// Stuffed bits of a data packet: identifier, payload and checksum. The last bit of the synchronization pattern is a
+/// one and is included.
 inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   constexpr std::uint8_t data0_identifier = 0xC3, data1_identifier = 0x4B;
   unsigned ones = 1, stuffed = 0, checksum = 0xFFFF;
@@ -65,7 +65,7 @@ inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   return stuffed;
 }
 
-/// At most, for a schedule that does not know what will come.
+/// Largest possible number of stuffed bits, for a schedule that does not depend on the data.
 constexpr std::uint64_t stuffed_bits_maximum(std::size_t payload_bytes) { return (payload_bytes * 8 + 24 + 5) / 6; }
 
 }  // namespace inkwell::virtual_board

@@ -1,6 +1,6 @@
-// ST's boot loader in the chip's system memory, as a host sees it on USB: DFU 1.1 with ST's extensions (AN3156,
-// AN2606). Its hands are instructions of the virtual chip (chip/loader_order.hpp), so that erasing and programming go
-// through the model of the flash, at its pace.
+// ST's boot loader in the chip's system memory, as a USB device: DFU 1.1 with ST's extensions (AN3156, AN2606). The
+// loader erases and programs through instructions of the virtual chip (chip/loader_order.hpp). Erasing and programming
+// therefore use the flash model and its timing.
 #pragma once
 
 #include <array>
@@ -24,24 +24,25 @@ struct SetupPacket {
   std::uint16_t value, index, length;
 };
 
-/// What DFU requests mean, without the bus they come over.
+/// DFU requests, independent of the bus.
 class BootLoaderDfu {
  public:
   static constexpr std::uint16_t transfer_bytes = 2048;
 
-  /// As after its start.
+  /// Restores the state after start-up.
   void start();
-  /// An order for its hands. It reads memory and registers by itself, at no cost of time.
+  /// Returns the next order for the virtual chip. Reads of memory and registers happen here and cost no board time.
   LoaderOrder next_order(DebugPort& memory);
-  /// It can not answer now: an order is being carried out.
+  /// An order is being carried out, so no request can be answered.
   bool is_busy() const { return asked_.has_value() || is_working_; }
   /// The next order starts the program.
   bool is_about_to_leave() const { return asked_ && asked_->kind == Operation::Kind::leave; }
-  /// A request without data, or whose data came. False: a stall.
+  /// Accepts a request without data, or with its complete data. False: a stall.
   bool take(const SetupPacket& request, std::span<const std::byte> data);
-  /// A request for data. Nothing: a stall. It is busy first if it must look something up: ask again then.
+  /// Answers a request for data. std::nullopt is a stall. If the answer requires a memory read, is_busy() is true
+  /// first; call again afterward.
   std::optional<std::vector<std::byte>> answer(const SetupPacket& request);
-  /// It has started the program, or reset the chip.
+  /// The loader has started the program or reset the chip.
   bool has_left() const { return has_left_; }
 
  private:
@@ -83,25 +84,25 @@ class BootLoaderDfu {
   State state_ = State::idle;
   Status status_ = Status::ok;
   std::uint32_t pointer_ = 0;
-  std::optional<Operation> waiting_;  ///< until the host asks for the status
-  std::optional<Operation> asked_;    ///< to begin with the next order
-  std::deque<Step> steps_;            ///< of the operation that is under way
-  Step current_{};                    ///< keeps its data until the next order
+  std::optional<Operation> waiting_;  ///< until the host reads the status
+  std::optional<Operation> asked_;    ///< starts with the next order
+  std::deque<Step> steps_;            ///< of the running operation
+  Step current_{};                    ///< stores its data until the next order
   bool is_working_ = false, has_left_ = false;
-  std::optional<std::vector<std::byte>> read_;  ///< what an upload asked for
+  std::optional<std::vector<std::byte>> read_;  ///< result of an upload
 };
 
-/// Its device on the bus: endpoint 0, descriptors, standard requests.
+/// The USB device of the boot loader: endpoint 0, descriptors and standard requests.
 class BootLoader final : public BusDevice {
  public:
-  /// The loader asks for its next order, so it runs; it connects to the bus if it did not before.
+  /// Returns the loader's next order. The first call connects the loader to the bus.
   LoaderOrder next_order(DebugPort& memory);
-  /// The chip was reset.
+  /// Call at a reset of the chip.
   void stop() { is_running_ = false; }
   bool is_running() const { return is_running_; }
 
   std::uint32_t attachment() const override { return is_running_ ? attachments_ : 0; }
-  void set_bus_power(bool) override {}  // ST's loader pulls D+ up whether the cable is there or not
+  void set_bus_power(bool) override {}  // ST's loader enables the pull-up on D+ with or without a cable
   void begin_reset() override;
   void end_reset() override { is_silent_ = false; }
   void start_of_frame(std::uint16_t) override {}
@@ -128,12 +129,12 @@ class BootLoader final : public BusDevice {
   std::uint8_t configuration_ = 0, alternate_ = 0;
 
   SetupPacket request_{};
-  std::vector<std::byte> data_;                    ///< that came
-  std::optional<std::vector<std::byte>> to_send_;  ///< once it is known
+  std::vector<std::byte> data_;                    ///< received
+  std::optional<std::vector<std::byte>> to_send_;  ///< empty until the answer is known
   std::size_t sent_ = 0, on_wire_ = 0;
   bool data1_ = false;
   bool is_refused_ = false, is_taken_ = false;
-  bool is_answering_ = false;  ///< a request for data, whose status has not come yet
+  bool is_answering_ = false;  ///< a request for data whose status stage has not arrived
 };
 
 }  // namespace inkwell::virtual_board

@@ -1,4 +1,4 @@
-// The wire between a host controller and one full-speed device: line states and single transactions.
+// The cable between a host controller and one full-speed device: line states and single transactions.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 
-/// Largest data packet of a full-speed device (isochronous; other types stop at 64).
+/// Largest data packet of a full-speed device (isochronous; 64 bytes for other types).
 inline constexpr std::size_t full_speed_packet_maximum = 1023;
 
-/// What the host sees come back in a transaction (USB 2.0, section 8.4.5).
+/// Result of a transaction for the host (USB 2.0, section 8.4.5).
 enum class Handshake : std::uint8_t {
-  ack,      ///< the data went over
-  nak,      ///< not now
+  ack,      ///< the data was transferred
+  nak,      ///< not ready
   stall,    ///< the endpoint is halted, or the request is not supported
-  nothing,  ///< no answer or a damaged one: the host counts an error and tries again
+  nothing,  ///< no answer or a damaged one: the host counts an error and retries
 };
 
 /// The device's answer to an IN token. `length` bytes of `data` are valid if `handshake` is `ack`.
@@ -30,14 +30,14 @@ struct InReply {
   std::size_t length = 0;
 };
 
-/// A device's side of the cable.
+/// The device end of the cable.
 class BusDevice {
  public:
   virtual ~BusDevice() = default;
 
-  /// 0 while the pull-up on D+ is off; otherwise a number that differs after each time it was off.
+  /// 0 while the pull-up on D+ is off; otherwise a number that changes each time the pull-up was off.
   virtual std::uint32_t attachment() const = 0;
-  /// The cable brings VBUS, or takes it away.
+  /// Applies or removes VBUS.
   virtual void set_bus_power(bool present) = 0;
 
   virtual void begin_reset() = 0;
@@ -45,14 +45,14 @@ class BusDevice {
   virtual void start_of_frame(std::uint16_t frame_number) = 0;
   /// The bus has been idle for 3 ms.
   virtual void suspend() = 0;
-  /// The host drives resume signalling; frames follow.
+  /// The host drives resume signaling; frames follow.
   virtual void resume() = 0;
 
   virtual Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) = 0;
   virtual Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) = 0;
   /// The packet is on the wire until `finish_in`.
   virtual InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) = 0;
-  /// The host acknowledges the packet of `in`. False if the device spoilt it meanwhile (FIFO flushed, reset).
+  /// The host acknowledges the packet of `in`. False if a FIFO flush or a reset has damaged the packet meanwhile.
   virtual bool finish_in(unsigned endpoint) = 0;
 };
 

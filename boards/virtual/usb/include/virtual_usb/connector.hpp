@@ -1,4 +1,4 @@
-// What hangs at the board's USB connector: the chip's core as the firmware uses it, or as the boot loader does.
+// The device at the board's USB connector: the chip's core, controlled by the firmware or by the boot loader.
 #pragma once
 
 #include <virtual_usb/boot_loader.hpp>
@@ -6,7 +6,7 @@
 
 namespace inkwell::virtual_board {
 
-/// The core's registers and its side of the cable. While the boot loader runs, it has the cable.
+/// Registers of the core and its end of the cable. While the boot loader runs, the cable belongs to the boot loader.
 class Connector final : public Peripheral, public BusDevice {
  public:
   explicit Connector(const ChipConnections& chip) : core_(chip) {}
@@ -28,7 +28,7 @@ class Connector final : public Peripheral, public BusDevice {
   // BusDevice
   std::uint32_t attachment() const override {
     const std::uint32_t number = now().attachment();
-    return number == 0 ? 0 : 2 * number + (loader_.is_running() ? 1 : 0);  // never that of the other
+    return number == 0 ? 0 : 2 * number + (loader_.is_running() ? 1 : 0);  // the numbers of both devices never coincide
   }
   void set_bus_power(bool present) override { core_.set_bus_power(present); }
   void begin_reset() override { now().begin_reset(); }

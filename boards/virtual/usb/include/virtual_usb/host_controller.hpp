@@ -1,9 +1,8 @@
 // A full-speed host controller with one device on its bus: frames, transactions, transfers.
 //
-// Each frame of 1 ms, by the host's own clock, has the order of USB 2.0, section 5: start of frame, interrupt endpoints
-// that are due, then control, then bulk in turn, one transaction after the other at the times they take on a
-// 12 Mbit/s bus, with the bits that are stuffed into their data. A transaction that no longer fits waits for the next
-// frame.
+// A frame lasts 1 ms of the host's clock. The order in a frame is that of USB 2.0, section 5: start of frame, due
+// interrupt endpoints, control, then bulk in rotation. Transactions are sequential and last as long as on a 12 Mbit/s
+// bus, including stuffed bits. A transaction that does not fit in the frame waits for the next frame.
 #pragma once
 
 #include <array>
@@ -23,39 +22,39 @@ namespace inkwell::virtual_board {
 
 class HostController {
  public:
-  /// Who uses the controller. Called on the simulation's thread.
+  /// The user of the controller. Called on the simulation's thread.
   class Client {
    public:
     virtual ~Client() = default;
-    /// Between transactions, after each completion: the moment to submit and to unlink.
+    /// Called between transactions, after each completion. Transfers may be submitted and unlinked here.
     virtual void between_transactions() = 0;
-    /// Every millisecond of the host, before the start of frame.
+    /// Called every millisecond of the host's clock, before the start of frame.
     virtual void frame() = 0;
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
 
-  /// The host's clock is `clock_ppm` parts in a million faster than board time.
+  /// The host's clock is `clock_ppm` parts per million faster than board time.
   HostController(Scheduler& scheduler, BusDevice& device, Client& client, double clock_ppm = 0.0);
   ~HostController();
   HostController(const HostController&) = delete;
   HostController& operator=(const HostController&) = delete;
 
-  /// Frames run while true; after 3 ms without them the device is told to suspend.
+  /// Starts or stops the frames. After 3 ms without frames the device suspends.
   void run_frames(bool run);
-  /// A host that hangs makes no transaction; its frames go on.
+  /// False simulates a hung host: it starts no transaction, but its frames continue.
   void let_ask(bool asks) { asks_ = asks; }
-  /// The address that tokens carry, and the packet size of endpoint 0.
+  /// Sets the address in tokens and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);
-  /// The endpoints of these interfaces become usable, all toggles start at DATA0.
+  /// Enables the endpoints of these interfaces; all toggles start at DATA0.
   void configure(const ConfigurationDescription* configuration);
   void select_alternate(const ConfigurationDescription& configuration, std::uint8_t interface, std::uint8_t alternate);
-  /// After CLEAR_FEATURE(ENDPOINT_HALT).
+  /// Call after CLEAR_FEATURE(ENDPOINT_HALT).
   void reset_toggle(std::uint8_t endpoint_address);
 
   void submit(Urb&& urb);
-  /// Takes a transfer back. None if it is not there (any more).
+  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t sequence);
-  /// Forgets all transfers without completing them.
+  /// Discards all transfers without completing them.
   void cancel_all();
 
  private:
@@ -75,7 +74,7 @@ class HostController {
   struct Transaction {
     unsigned pipe;
     Token token;
-    InReply reply;           ///< of an IN
+    InReply reply;           ///< of an IN transaction
     bool abandoned = false;  ///< its transfer was unlinked meanwhile
   };
   static constexpr unsigned pipe_count = 32;  ///< 0..15 OUT and control, 16..31 IN

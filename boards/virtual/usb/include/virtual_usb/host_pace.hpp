@@ -1,23 +1,24 @@
-// The rule by which board time keeps step with the program that uses the device.
+// The rule that synchronizes board time with the program that uses the device.
 //
-// A board on a cable streams to a host controller that asks in time, however busy the computer is. Here the host is
-// a program on the same computer, and board time that ran on while the program waits for its turn would lose data
-// that no real board loses. So board time waits for the host:
+// A real board streams to a host controller, which polls in time however busy the computer is. Here the host is a
+// program on the same computer. If board time passed while the program waits for the processor, data would be lost that
+// no real board loses. Board time therefore waits for the host:
 //
-//   - An IN endpoint is kept from the second request on: the host is then expected to ask again for each answer.
-//   - When a kept endpoint has no request left, board time stands still, in the middle of the frame, until the next.
-//   - Before a command of the control socket is carried out and before a `run` is answered, the host has to have
-//     asked again for every answer: then it knows all that happened, and what it does next is the same each time.
-//   - A host that has several requests under way at a time streams. It is waited for until it asks again, takes a
-//     request back or is gone: a program that the computer or a debugger stops, for however long, loses nothing.
-//     Commands of the control socket are answered meanwhile, but after `patience`.
-//   - One that asks one by one may have read all that it wanted, and one that waits for a control transfer may do so
-//     before it asks again. These are waited for no longer than `patience` of the clock on the wall.
-//   - So is every host on a board that keeps step with that clock, and where there are several: a program that hangs
-//     shall not hold up the others, nor the board, which takes its force away. A real bus waits for nobody.
-//   - It is not waited for at endpoints that it never kept, at which it took a request back or got an error, or after
-//     it was waited for too long; there it starts anew as at an import.
-//   - Control and OUT transfers are never waited for: a host that says nothing is silent, also for the firmware.
+//   - An IN endpoint is tracked (is_kept) from its second request on. The host is then expected to submit a new request
+//     after each answer.
+//   - When a tracked endpoint has no request left, board time stops in the middle of the frame until the next request.
+//   - Before a control socket command is executed, and before a `run` is answered, each answered request must be
+//     renewed. The host then knows all past events, and its next action is reproducible.
+//   - A host with several simultaneous requests streams. Board time waits for this host until it submits a request,
+//     unlinks a request or disconnects. A program stopped by the computer or by a debugger therefore loses no data.
+//     Commands of the control socket are answered meanwhile, but only after `patience`.
+//   - A host with single requests may have read all data that it needs. A host that waits for a control transfer may
+//     also pause its other requests. For both hosts the wait is limited to `patience` of wall-clock time.
+//   - The same limit applies to a board in real time and to several hosts. A hung program must not delay the other
+//     programs, nor the board, which then switches its force off. A real bus waits for no host.
+//   - Board time does not wait at an untracked endpoint, after an unlinked or failed request, or after an expired
+//     limit. The tracking of the endpoint then restarts as at an import.
+//   - Control and OUT transfers are never waited for: a silent host is also silent for the firmware.
 #pragma once
 
 #include <array>
@@ -35,35 +36,35 @@ class HostPace {
   void submitted(const Urb& urb);
   void completed(const Urb& urb, std::int32_t status);
   void unlinked(const Urb& urb);
-  /// The host took the transfer of this sequence back, which was answered already.
+  /// The host unlinked the transfer with this sequence number after the answer.
   void unlinked_too_late(std::uint32_t sequence);
-  /// The host is another one, or gone.
+  /// The host has changed or disconnected.
   void start_anew();
 
-  /// A kept endpoint has no request left.
+  /// A tracked endpoint has no request left.
   bool is_starved() const;
-  /// A kept endpoint has fewer requests than the host had there before.
+  /// A tracked endpoint has fewer requests than the host submitted there before.
   bool is_owed() const;
-  /// The host streams wherever it owes a request, and nothing hinders it to ask: it is waited for without a limit.
+  /// The host streams wherever a request is missing, and no control transfer blocks it. The wait has no limit.
   bool is_waited_for_without_limit() const;
-  /// The host was waited for long enough: endpoints at which it owes a request are no longer kept.
+  /// The wait for the host has expired: endpoints with a missing request are no longer tracked.
   void lose_patience();
-  /// A control transfer is under way: the host waits for its answer.
+  /// A control transfer is in progress: the host waits for its answer.
   bool is_asked() const { return control_transfers_ > 0; }
 
-  // ---- in lock step (docs/virtual-board.md) ----
+  // ---- lock step (docs/virtual-board.md) ----
 
-  /// The host waits for a report that it asked for, or for a control transfer if it has not asked for any report yet.
+  /// The host waits for a requested report, or for a control transfer if it has not requested any report yet.
   bool waits_for_board() const;
-  /// As is_starved() and is_owed(), of the endpoints where the host streams.
+  /// Like is_starved() and is_owed(), for the endpoints where the host streams.
   bool is_stream_starved() const;
   bool is_stream_owed() const;
 
  private:
   struct Endpoint {
-    unsigned requests = 0;  ///< under way
-    unsigned asked = 0;     ///< how often, since the host was last not waited for; counts to 2
-    unsigned most = 0;      ///< requests under way at a time, since then
+    unsigned requests = 0;  ///< in progress
+    unsigned asked = 0;     ///< number of requests since tracking restarted, at most 2
+    unsigned most = 0;      ///< largest number of simultaneous requests since then
     std::uint32_t newest_sequence = 0;
     bool is_kept() const { return asked >= 2; }
     bool streams() const { return is_kept() && most > 1; }

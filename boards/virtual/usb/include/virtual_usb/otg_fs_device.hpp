@@ -1,6 +1,6 @@
-// The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"): registers
-// towards the processor, transactions towards the bus. Host mode, DMA and isochronous endpoints are not
-// modelled and say so in the log, as does firmware that does what the manual forbids.
+// The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"). The model has registers
+// for the processor and transactions on the bus. Host mode, DMA and isochronous endpoints are not modeled. The log
+// reports their use, and also violations of the manual by the firmware.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
  public:
   static constexpr std::uint32_t base = 0x5000'0000;
   static constexpr std::uint32_t size = 0x4'0000;
-  static constexpr unsigned endpoint_count = 4;  ///< IN and OUT each, endpoint 0 included
+  static constexpr unsigned endpoint_count = 4;  ///< IN and OUT each, including endpoint 0
   static constexpr std::size_t packet_memory_words = 320;
 
   explicit OtgFsDevice(const ChipConnections& chip);
@@ -47,24 +47,24 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool finish_in(unsigned endpoint) override;
 
  private:
-  /// The side of an endpoint that sends to the host.
+  /// The IN side of an endpoint, which sends to the host.
   struct InEndpoint {
-    std::uint32_t control = 0;               ///< DIEPCTL without the bits that only act
-    std::uint32_t interrupts = 0;            ///< DIEPINT but TXFE, which is a level
+    std::uint32_t control = 0;               ///< DIEPCTL without its command bits
+    std::uint32_t interrupts = 0;            ///< DIEPINT except TXFE, which is a level
     std::uint32_t packets = 0;               ///< PKTCNT: packets still to be acknowledged
-    std::uint32_t bytes_to_load = 0;         ///< XFRSIZ: falls as packets are written to the FIFO
-    std::uint32_t bytes_to_send = 0;         ///< falls as packets are acknowledged
-    std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that firmware is writing; 0 between packets
+    std::uint32_t bytes_to_load = 0;         ///< XFRSIZ: decreases as packets are written to the FIFO
+    std::uint32_t bytes_to_send = 0;         ///< decreases as packets are acknowledged
+    std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that the firmware is writing; 0 between packets
     std::uint32_t packet_bytes_loading = 0;
     std::optional<std::uint32_t> bytes_on_wire;
-    Ticks wire_until = 0;  ///< the packet, and the time in which its handshake may come
+    Ticks wire_until = 0;  ///< end of the packet and of the time for its handshake
     unsigned packets_in_fifo = 0;
     bool data1 = false;
-    bool damaged = false;    ///< FIFO content has a bad CRC until it is flushed
+    bool damaged = false;    ///< the FIFO content has a bad CRC until the FIFO is flushed
     bool disabling = false;  ///< from EPDIS to EPDISD
     Scheduler::Id nak_event = 0, disable_event = 0;
   };
-  /// The side of an endpoint that receives from the host.
+  /// The OUT side of an endpoint, which receives from the host.
   struct OutEndpoint {
     std::uint32_t control = 0;
     std::uint32_t interrupts = 0;
@@ -72,7 +72,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     std::uint32_t bytes = 0;    ///< XFRSIZ
     bool data1 = false;
     bool disable_pending = false;  ///< EPDIS waits for the global OUT NAK
-    bool disabling = false;        ///< from there to EPDISD
+    bool disabling = false;        ///< from the global OUT NAK to EPDISD
     Scheduler::Id disable_event = 0;
   };
 
@@ -99,7 +99,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   Ticks free_of_packet(const InEndpoint& endpoint) const;
   std::uint32_t reset_control() const;
   void check_flush(std::uint32_t reset_control_written);
-  /// False if the store is lost.
+  /// Returns false if the store is lost.
   bool store_may_come(std::uint32_t offset, std::uint32_t value);
   void check_flushed_fifo(std::uint32_t offset, std::uint32_t value);
   void check_disabled_endpoints(std::uint32_t offset, std::uint32_t value);
@@ -140,13 +140,14 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
   bool clock_is_exact() const;
-  /// A bus reset that firmware has not acknowledged yet: it may still do what was right before.
+  /// True if the firmware has not acknowledged a bus reset yet. Until then, actions that were valid before the reset
+  /// are still allowed.
   bool reset_is_unseen() const;
   void check_connection();
   void check_bus_power();
   void check_core();
   void check_turnaround();
-  /// Notes the access; 0, as the register reads.
+  /// Logs the access and returns 0, the value of the register.
   std::uint32_t not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value);
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
 
@@ -157,7 +158,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   const ChipState& chip_;
   TriggerLines& triggers_;
 
-  // Registers, by the names of RM0090 in words.
+  // Registers, named after RM0090 in words.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
   std::uint32_t bus_configuration_ = 0;                        // GAHBCFG
   std::uint32_t usb_configuration_ = 0;                        // GUSBCFG
@@ -183,22 +184,23 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::array<WordFifo, endpoint_count> transmit_{};
 
   std::uint32_t receive_data_words_ = 0;      ///< data words at the head of the receive FIFO, after their status word
-  std::optional<unsigned> writing_endpoint_;  ///< the last access was a FIFO write of this endpoint
+  std::optional<unsigned> writing_endpoint_;  ///< set if the last access was a FIFO write of this endpoint
   bool layout_changed_ = true;
   bool global_in_nak_ = false;
   bool global_out_nak_asked_ = false;
   bool global_out_nak_effective_ = false;
 
-  unsigned address_ = 0;                ///< in use on the bus; follows DCFG.DAD after a status stage
+  unsigned address_ = 0;                ///< address on the bus; changes to DCFG.DAD after a status stage
   bool control_transfer_open_ = false;  ///< from a SETUP packet to its status stage
-  bool setup_stage_open_ = false;       ///< from a SETUP packet to the next token: setup done is not written yet
-  bool setup_done_unpopped_ = false;    ///< from a SETUP packet until firmware pops its setup-done word
-  bool setup_done_lost_ = false;        ///< CNAK came in between: the word will not be seen
-  bool setup_was_seen_ = false;         ///< firmware has found the receive FIFO filled since the last SETUP
-  Ticks receive_found_empty_at_ = 0;    ///< by firmware, the last time
+  bool setup_stage_open_ = false;       ///< from a SETUP packet to the next token: the setup-done word is not written
+                                        ///< yet
+  bool setup_done_unpopped_ = false;    ///< from a SETUP packet until the firmware pops its setup-done word
+  bool setup_done_lost_ = false;        ///< CNAK was written before the pop: the word is lost
+  bool setup_was_seen_ = false;         ///< the firmware has read a non-empty receive FIFO since the last SETUP
+  Ticks receive_found_empty_at_ = 0;    ///< last time at which the firmware found the FIFO empty
   unsigned setup_packets_allowed_ = 0;  ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
-  bool pulled_up_ = false, bus_is_silent_ = true;  ///< before the end of the first reset, and in each
+  bool pulled_up_ = false, bus_is_silent_ = true;  ///< silent until the first reset ends, and in each reset
   bool suspended_ = false;
   std::uint32_t attachments_ = 0;
   std::uint16_t frame_number_ = 0;
@@ -208,8 +210,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   Ticks receive_flush_until_ = 0;
   Ticks transmit_flush_until_ = 0;
   unsigned fifo_flushed_ = 0;           ///< TXFNUM of the flush
-  bool reset_since_selection_ = false;  ///< CSRST after PHYSEL
-  Ticks device_forced_at_ = 0;          ///< FDMOD rose
+  bool reset_since_selection_ = false;  ///< CSRST was written after PHYSEL
+  Ticks device_forced_at_ = 0;          ///< time at which FDMOD was set
   Scheduler::Id connection_check_ = 0;
   Scheduler::Id pull_up_check_ = 0;
 };

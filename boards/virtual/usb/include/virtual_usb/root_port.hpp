@@ -1,10 +1,10 @@
-// The port the cable is plugged into: connection, reset, enumeration, import, suspend.
+// The host port of the cable: connection, reset, enumeration, import, suspend.
 //
 //   detached -> debouncing -> resetting -> ... descriptors read ... -> suspended
 //   suspended -> (import) resetting, addressing -> in use -> (release) suspended
 //
-// USB/IP has no word for bus reset and address: whoever imports a device expects it freshly reset and
-// addressed, so both happen here at each import.
+// USB/IP has no messages for bus reset and address. An importer expects a freshly reset and addressed device, so both
+// happen here at each import.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace inkwell::virtual_board {
 
-/// What happens on a port. Called on the simulation's thread.
+/// Events on a port. Called on the simulation's thread.
 class PortObserver {
  public:
   virtual ~PortObserver() = default;
@@ -27,7 +27,7 @@ class PortObserver {
 
 class RootPort final : private HostController::Client {
  public:
-  /// Who uses the device on this port.
+  /// The user of the device on this port.
   class Client : public PortObserver {
    public:
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
@@ -42,12 +42,12 @@ class RootPort final : private HostController::Client {
   bool enumerated() const { return state_ >= State::suspended; }
   bool imported() const { return state_ > State::suspended; }
 
-  /// Resets and addresses the device for a new user. Only while `enumerated` and not `imported`.
+  /// Resets and addresses the device for a new user. Allowed only while `enumerated` and not `imported`.
   void import();
-  /// The user is gone: its transfers are forgotten and the bus falls silent.
+  /// The user has disconnected: its transfers are discarded and the bus suspends.
   void release();
   void submit(Urb&& urb);
-  /// Takes a transfer back. None if it is not there (any more).
+  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t sequence);
 
  private:
@@ -65,9 +65,9 @@ class RootPort final : private HostController::Client {
     reading_device,
     reading_configuration_length,
     reading_configuration,
-    // from here on enumerated
+    // enumerated from here on
     suspended,
-    // from here on imported
+    // imported from here on
     import_reset,
     import_recovery,
     import_addressing,
@@ -94,12 +94,12 @@ class RootPort final : private HostController::Client {
   bool plugged_ = false;
   std::uint32_t attachment_ = 0;
   State state_ = State::detached;
-  unsigned frames_left_ = 0;  ///< 0: the state has no end in time
+  unsigned frames_left_ = 0;  ///< 0: the state has no time limit
   bool bus_in_reset_ = false;
   DeviceDescription description_{};
   const ConfigurationDescription* configuration_ = nullptr;
   std::uint16_t control_packet_maximum_ = 8;
-  std::vector<Urb> held_;  ///< of the importer, until the device has its address
+  std::vector<Urb> held_;  ///< transfers of the importer, until the device has its address
   HostController controller_;
 };
 

@@ -1,4 +1,4 @@
-// A transfer that a driver asks of the host controller, as USB/IP (and Linux) describe it.
+// A transfer that a driver submits to the host controller, as described by USB/IP and Linux.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Results of a transfer: negated numbers of Linux' errno, which is what goes over USB/IP.
+/// Results of a transfer: negative Linux errno values, as in USB/IP.
 namespace transfer_status {
 inline constexpr std::int32_t success = 0, busy = -16, invalid = -22, stalled = -32, no_answer = -71, overflow = -75,
                               unlinked = -104, short_packet = -121;
@@ -20,18 +20,18 @@ inline constexpr std::uint32_t short_is_error = 0x0001, zero_packet = 0x0040;
 
 struct Urb {
   std::uint32_t sequence = 0;
-  bool internal = false;      ///< of the host controller itself, while it enumerates
+  bool internal = false;      ///< submitted by the host controller during enumeration
   std::uint8_t endpoint = 0;  ///< number, without the direction
   bool in = false;
   std::uint32_t flags = 0;
-  std::uint32_t length = 0;  ///< bytes to send, or room for bytes to receive
+  std::uint32_t length = 0;  ///< bytes to send, or space for received bytes
   std::array<std::byte, 8> setup{};
-  /// Of an isochronous transfer, which the host controller does not carry out: offset and length of each.
+  /// Packet of an isochronous transfer, which the host controller does not carry out: offset and length.
   struct Packet {
     std::uint32_t offset, length;
   };
   std::vector<Packet> packets;
-  std::vector<std::byte> data;  ///< OUT: `length` bytes; IN: what has been received so far
+  std::vector<std::byte> data;  ///< OUT: `length` bytes; IN: bytes received so far
 
   // Progress.
   enum class Stage : std::uint8_t { setup, data, status };

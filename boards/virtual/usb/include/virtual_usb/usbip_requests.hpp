@@ -1,4 +1,4 @@
-// What clients ask of the USB/IP server, found in the bytes that they send.
+// Parser for the requests of USB/IP clients.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@
 
 namespace inkwell::virtual_board {
 
-/// What the server calls the one device that it exports.
+/// Names and numbers of the one exported device.
 inline constexpr char exported_bus_id[] = "1-1";
 inline constexpr std::uint32_t exported_bus_number = 1, exported_device_number = 2;
-/// Longest transfer that is accepted, that of Linux' usbfs.
+/// Longest accepted transfer, the limit of Linux usbfs.
 inline constexpr std::uint32_t transfer_maximum = 16u << 20;
-/// Most packets of an isochronous transfer; Linux sends no more.
+/// Largest number of packets in an isochronous transfer, also the limit of Linux.
 inline constexpr std::uint32_t packets_maximum = 1024;
 
-/// The requests of one client. Each is taken once it is there whole. What makes no sense throws std::runtime_error with
-/// what is wrong with the client, "because ..."; nothing more can be found in its bytes then.
+/// The requests of one client. A request is returned once it is complete. An invalid request throws std::runtime_error,
+/// whose text follows "because ..."; the client's further bytes cannot be parsed then.
 class UsbIpRequests {
  public:
   struct ListDevices {};
@@ -31,16 +31,17 @@ class UsbIpRequests {
     std::string bus_id;
   };
   struct Unlink {
-    std::uint32_t sequence;  ///< of the request itself
+    std::uint32_t sequence;  ///< of the unlink request
     std::uint32_t unlinked_sequence;
   };
   using Operation = std::variant<ListDevices, Import>;
   using Transfer = std::variant<Urb, Unlink>;
 
   void feed(std::span<const std::byte> bytes);
-  /// Of a client that has imported nothing.
+  /// Next request of a client that has not imported the device.
   std::optional<Operation> take_operation();
-  /// Of one that has imported the device. An OUT transfer has all its data, an isochronous one all its packets.
+  /// Next request of a client that has imported the device. An OUT transfer has all its data, an isochronous transfer
+  /// all its packets.
   std::optional<Transfer> take_transfer();
 
  private:

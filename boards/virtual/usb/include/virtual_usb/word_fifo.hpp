@@ -12,7 +12,7 @@ constexpr std::uint32_t words_for(std::size_t bytes) { return static_cast<std::u
 
 class WordFifo {
  public:
-  /// No core of this family has more words of packet memory.
+  /// Largest packet memory in this family of cores.
   static constexpr std::size_t storage_words = 1024;
 
   std::size_t count() const { return count_; }
