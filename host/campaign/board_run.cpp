@@ -26,7 +26,7 @@ BoardRun::BoardRun(const device::VirtualBoardOptions& options) : board_(options)
 
 bool BoardRun::connect(double limit_s) {
   let_go_of_device();
-  if (is_locked_up()) return false;  // nobody would answer
+  if (is_locked_up()) return false;  // a locked-up processor does not answer
   for (double waited_s = 0;; waited_s += slice_s) {
     try {
       if (const auto endpoint = board_.find()) {
@@ -34,7 +34,7 @@ bool BoardRun::connect(double limit_s) {
         return true;
       }
     } catch (const device::Error&) {
-      let_go_of_device();  // it went while it was being opened
+      let_go_of_device();  // the device disappeared during the opening
     }
     if (waited_s >= limit_s) return false;
     pass(slice_s);
@@ -65,7 +65,7 @@ void BoardRun::let_go_of_device() {
 void BoardRun::drop_device() {
   if (device_) device_->abandon();
   let_go_of_device();
-  // Board time stands still meanwhile, so that it does not matter how soon the board's program hears of it.
+  // Board time is stopped meanwhile, so a late reaction of the board's program has no effect.
   constexpr int tries = 5000;
   for (int i = 0; i < tries && control_.status().all.at("usb").at("imported").get<bool>(); ++i)
     std::this_thread::sleep_for(1ms);

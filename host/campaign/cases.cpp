@@ -14,7 +14,8 @@ namespace {
 using protocol::InjectedFault;
 using protocol::InjectionPlace;
 
-/// What the device depends on of each wire but those of USB, console and probe: of three alike, the second.
+/// Whether the wire is tested. Of three equivalent wires only the second is tested. Wires of USB, console, debug probe
+/// and status LED are excluded.
 bool is_tried(std::string_view wire) {
   if (wire.find("[0]") != std::string_view::npos || wire.find("[2]") != std::string_view::npos) return false;
   for (const std::string_view other : {"usb_minus", "usb_plus", "console_", "debug_", "status_led"})
@@ -26,20 +27,20 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// What the firmware has handlers of, but of crashes: what is called behind the interrupts, the interrupt of the
-/// supply's detector, and that of the converters, which is the control's. (USB it asks in the main loop.)
+/// Exceptions with a handler in the firmware, except for crash handlers: PendSV, the supply detector, and the
+/// converters' control interrupt. USB is polled in the main loop.
 constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};
 
-/// Tried besides that of the table, or that of case_faults().
+/// Tested in addition to the amount in the table or in case_faults().
 constexpr struct {
   InjectedFault fault;
   double amount;
 } more_amounts[] = {{InjectedFault::shunt_gain, 2},
-                    {InjectedFault::logic_sag, 2.86},  // below 2.9 V, above the brown-out
+                    {InjectedFault::logic_sag, 2.86},  // below 2.9 V, above the brown-out level
                     {InjectedFault::analog_sag, 3.5},
-                    {InjectedFault::main_loop_stalled, 0.012}};  // missed, and over before the watchdog bites
+                    {InjectedFault::main_loop_stalled, 0.012}};  // detected, but shorter than the watchdog time-out
 
 std::vector<std::string> places(InjectedFault fault) {
   std::vector<std::string> places;
@@ -153,7 +154,7 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   const auto place = protocol::info(*fault.fault).place;
   if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // The list has wires of the second, [1]. Of two neighbours that touch it has the third's, too; the first is its next.
+  // Listed wires have the index [1], and touching neighbors also the index [2]. All indices are shifted cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];
     index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);
@@ -170,7 +171,8 @@ std::vector<Case> all_cases() {
     for (const CaseSituation situation : situations) {
       for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
       if (!is_of_three(fault)) continue;
-      // The first at the earliest, because its pulses are the self-test's first; none from before the power comes.
+      // Motor 1 uses the earliest instant, because its pulses come first in the self-test. The instant before power-on
+      // is not used.
       for (const unsigned other : {1u, 3u}) {
         const unsigned phase = other == 1 ? 3 : 2;
         cases.push_back({++number, at_another(fault, other), situation, phase});

@@ -1,4 +1,4 @@
-// Results by fault and situation.
+// Results grouped by fault and situation.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace inkwell::campaign {
 
-/// By fault as it is listed, and situation.
+/// Grouped by listed fault name and situation.
 using Groups = std::map<std::pair<std::string, std::string>, std::vector<Result>>;
 
 inline Groups group(std::span<const Result> results) {
@@ -26,7 +26,7 @@ inline const std::vector<Result>* find(const Groups& groups, const std::string& 
   return found == groups.end() ? nullptr : &found->second;
 }
 
-/// The case without a fault that began alike; null if it was not run.
+/// The fault-free case with the same situation and phase; null if it was not run.
 inline const Result* sound_of(const Groups& groups, CaseSituation situation, unsigned phase) {
   if (const auto* results = find(groups, "none", situation))
     for (const Result& result : *results)
@@ -34,9 +34,9 @@ inline const Result* sound_of(const Groups& groups, CaseSituation situation, uns
   return nullptr;
 }
 
-/// By the hand, and by no fault.
+/// Whether the hand flings the arm, without an injected fault.
 inline bool is_flung(const Result& result) { return result.fault == CaseFault{.deed = Deed::fast_hand}.name(); }
-/// What drove the bridges were the self-test's pulses, which are no force.
+/// Whether the bridges were driven only by self-test pulses, which do not count as force.
 inline bool is_testing(const Result& result) {
   return result.situation == name_of(CaseSituation::testing) || result.situation == name_of(CaseSituation::starting);
 }

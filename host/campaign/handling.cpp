@@ -15,7 +15,7 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::State;
 
-// A bridge that switches has a leg at the supply in each PWM period of 17 us.
+// A switching bridge drives a leg high in each PWM period of 17 us.
 constexpr double still_driving_s = 200e-6;
 
 }  // namespace
@@ -98,7 +98,8 @@ bool bridges_drive(const nlohmann::json& truth) {
 bool regains_force(BoardRun& board) {
   board.run(0.02);
   if (board.is(State::fault)) {
-    // As a user does, who asks again where the cause needs a while to go: a supply sinks in a tenth of a second.
+    // Repeats the command like a user, because some causes last longer. For example, the supply voltage falls within
+    // 0.1 s.
     const auto is_cleared = [](const auto& pose) { return pose.state != State::fault; };
     for (int times = 0; times < 5 && board.is(State::fault); ++times) {
       board.command(Command::clear_fault);

@@ -36,7 +36,7 @@ std::string row(const std::string& fault, const Summary& s) {
   std::string detected = s.detected_as.empty() ? "-" : s.detected_as;
   if (s.detected > 0 && s.detected < s.cases) detected += fmt::format(" ({} of {})", s.detected, s.cases);
   std::string recovery = s.recovery;
-  constexpr double notable_m = 0.002;  // the newest pose of a fast probe is a millisecond old
+  constexpr double notable_m = 0.002;  // the newest pose of a fast probe is one millisecond old
   if (s.position_error_m > notable_m) recovery += fmt::format("; position {:.0f} mm off", 1e3 * s.position_error_m);
   return fmt::format("| `{}` | {} | {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", fault, detected, off_text(s),
                      s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m, recovery);
@@ -58,8 +58,8 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
   return text;
 }
 
-/// At worst, of all cases with the force on. How much more energy than without a fault it was is told of the instants
-/// only at which a sound case was run.
+/// Worst values of all cases with the force on. The extra energy is listed only where a fault-free run exists for
+/// comparison.
 std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faults) {
   struct Worst {
     double value = 0.0;

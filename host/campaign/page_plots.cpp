@@ -12,12 +12,13 @@
 namespace inkwell::campaign {
 namespace {
 
-/// With the force on, which the self-test's pulses are not. What a hand feels that flings the arm is the arm.
+/// Whether the force was on, without self-test pulses. Cases of a flung arm are excluded, because the hand feels the
+/// arm's inertia there.
 bool was_driven(const Result& result) {
   return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
 }
 
-/// What the hand feels without a fault, at most; by situation.
+/// Largest forces on the hand without a fault, by situation.
 std::map<std::string, double> sound_forces_N(std::span<const Result> results) {
   std::map<std::string, double> forces_N;
   for (const Result& result : results)
@@ -26,7 +27,7 @@ std::map<std::string, double> sound_forces_N(std::span<const Result> results) {
   return forces_N;
 }
 
-/// Such that there are no more classes than fit beside each other.
+/// Class width for which all classes fit next to each other.
 double class_width_N(double reach_N) {
   constexpr double widths_N[] = {0.5, 1, 2, 5, 10, 20};
   constexpr double most = 10;
@@ -77,7 +78,7 @@ std::string off_plot(std::span<const Result> results) {
 }
 
 std::string force_plot(std::span<const Result> results) {
-  constexpr double as_without_N = 0.1;  // the noise of currents, and instants that differ
+  constexpr double as_without_N = 0.1;  // due to current noise and different instants
   const double limit_N = force_limit_N(results);
   double reach_N = limit_N;
   for (const Result& result : results)

@@ -1,4 +1,4 @@
-// The page's plots: how soon the bridges were off, and how hard it was for the hand.
+// Plots of the page: times until the bridges are off, and forces on the hand.
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace inkwell::campaign {
 
-/// In which tables and plots count.
+/// Time unit of tables and plots.
 inline constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 
-/// The limit that the cases ran with; 0 if none could be run.
+/// Force limit of the cases; 0 if no case could be run.
 double force_limit_N(std::span<const Result> results);
 
 std::string off_plot(std::span<const Result> results);

@@ -11,7 +11,7 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Why none of the campaign's cases can bring it about.
+/// Reason why no case of the campaign can cause the fault.
 std::string_view reason_untold(protocol::Fault fault) {
   switch (fault) {
     case protocol::Fault::not_finite:

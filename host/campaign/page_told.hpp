@@ -1,4 +1,4 @@
-// Parts of the page: what is told after another fault, of a fast hand, and what is never told.
+// Parts of the page: reports after another fault, reports for a fast hand, and faults that are never reported.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace inkwell::campaign {
 
-/// What became of the fault that was told before, and of the way to the boot loader.
+/// State of the earlier fault, and the transition to the boot loader.
 std::string after_another(std::span<const Result> results);
-/// What the hand felt that flung the arm, with the force and without.
+/// Force on the hand that flings the arm, with the force on and off.
 std::string fast_hand(std::span<const Result> results);
-/// The faults that are watched for, but were told in none of these cases.
+/// Monitored faults that were reported in none of these cases.
 std::string told_by_none(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

@@ -17,10 +17,10 @@
 namespace inkwell::campaign {
 namespace {
 
-/// What was noticed while the arm was used on, of the cases in which it was.
+/// Detections during continued use, of the cases with continued use.
 class InUse {
  public:
-  /// Beside the sound case that began alike, if it was run.
+  /// `sound`: the fault-free case with the same start, or null.
   void see(const Result& result, const Result* sound) {
     if (!result.error.empty()) return;
     if (!result.peak_force_in_use_N) {
@@ -53,7 +53,7 @@ class InUse {
   }
 
  private:
-  /// Only what was used to the end got as much time for it.
+  /// Compares only cases used until the end, because the others had less time.
   void compare(const Result& result, const Result* sound) {
     if (sound == nullptr || sound->noticed_in_use_s || !result.energy_in_use_J || !sound->energy_in_use_J) return;
     const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
@@ -74,8 +74,8 @@ InUse sound_in_use(const Groups& groups) {
   return sound;
 }
 
-/// The situation's name if a case that could be run is such there, with how many of its cases are, unless all, and at
-/// which of three, unless at each; else nothing.
+/// Name of the situation if a completed case satisfies `counts`, otherwise empty. If only some cases satisfy `counts`,
+/// their number follows. If not all equivalent parts are affected, the affected parts follow.
 std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
                            bool (*counts)(CaseSituation, const Result&)) {
   const auto* results = find(groups, fault.name(), situation);
@@ -103,7 +103,7 @@ void add(std::string& where, const std::string& situation) {
   where += situation;
 }
 
-/// The situations in which a case is such.
+/// The situations in which a case satisfies `counts`.
 std::string situations_with(const Groups& groups, const CaseFault& fault,
                             bool (*counts)(CaseSituation, const Result&)) {
   std::string where;
@@ -123,7 +123,7 @@ bool was_off_untold(CaseSituation situation, const Result& result) {
   return !is_active(situation) && !is_detected(result);
 }
 
-/// The faults that were told only when their causes had gone.
+/// The faults that were reported only after their causes were removed.
 std::string told_later(const Groups& groups, const CaseFault& fault) {
   std::set<std::string> names;
   for (const CaseSituation situation : situations)
@@ -187,7 +187,7 @@ std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>&
 }
 
 std::string unnoticed_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  // There are many, and few reasons.
+  // Grouped by reason, because many faults share few reasons.
   struct Row {
     std::string_view reason;
     std::string where;

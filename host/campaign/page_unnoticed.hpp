@@ -1,4 +1,4 @@
-// What the page says of faults that were not noticed.
+// Parts of the page about undetected faults.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace inkwell::campaign {
 
-/// With the force on: the bridges stayed on.
+/// Undetected faults with the force on, after which the bridges stayed on.
 std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults);
-/// With the force on: the bridges went off, and nobody was told.
+/// Undetected faults with the force on, after which the bridges switched off.
 std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>& faults);
 std::string unnoticed_without_force(const Groups& groups, const std::vector<CaseFault>& faults);
 

@@ -32,7 +32,7 @@ std::string line(int x1, int y1, int x2, int y2, std::string_view more) {
   return fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", x1, y1, x2, y2, more);
 }
 
-/// Where the bars stand. Classes of a number touch nearly; a last one that is none stands apart.
+/// Positions of the bars. Bars of numeric classes nearly touch. A last bar that is not a class is separate.
 class Layout {
  public:
   explicit Layout(const Histogram& histogram) : histogram_(histogram), gap_(histogram.edges.empty() ? 8 : 2) {}
@@ -43,7 +43,7 @@ class Layout {
   }
   int middle_of(std::size_t bar) const { return left_of(bar) + bar_width / 2; }
   int end() const { return left_of(histogram_.bars.size() - 1) + bar_width + gap_; }
-  /// Of the classes, without a bar that stands apart.
+  /// End of the classes, without a separate bar.
   int axis_end() const {
     return histogram_.last_apart ? left_of(histogram_.bars.size() - 2) + bar_width + gap_ : end();
   }
@@ -55,10 +55,10 @@ class Layout {
   int gap_;
 };
 
-/// As wide as those of a wide sans-serif font.
+/// Letter widths of a wide sans-serif font.
 constexpr std::size_t title_letter = 8, letter = 7;
 
-/// Above a bar; beside the limit's line where that would touch it.
+/// Number above a bar, or next to the limit line if they would overlap.
 std::string number_of(const Histogram& histogram, const Layout& layout, std::size_t bar, int y) {
   const std::string digits = std::to_string(histogram.bars[bar].count);
   const int half_width = static_cast<int>(letter * digits.size()) / 2 + 4;
@@ -71,7 +71,7 @@ std::string number_of(const Histogram& histogram, const Layout& layout, std::siz
 std::string bars_of(const Histogram& histogram, const Layout& layout) {
   unsigned highest = 1;
   for (const Bar& bar : histogram.bars) highest = std::max(highest, bar.count);
-  // What is there is seen, however little it is beside the highest.
+  // Every nonzero bar is visible, even next to a much higher one.
   const auto tall = [&](unsigned count) {
     return count == 0 ? 0 : std::max(1, static_cast<int>(static_cast<unsigned>(height) * count / highest));
   };
@@ -102,7 +102,7 @@ std::string axis_of(const Histogram& histogram, const Layout& layout) {
 
 constexpr int key_indent = 18, key_line = 18;
 
-/// So that no text is cut off beside few bars.
+/// Width of the texts, which must not be cut off next to few bars.
 int end_of_texts(const Histogram& histogram) {
   const std::size_t longest = std::max(histogram.strong_means.size(), histogram.quiet_means.size());
   return left + static_cast<int>(std::max(title_letter * histogram.title.size(), key_indent + letter * longest));
@@ -118,7 +118,7 @@ std::string limit_of(const Histogram& histogram, const Layout& layout) {
   const int reach = x + 6 + static_cast<int>(letter * histogram.limit->text.size());
   const bool has_room = reach <= end_of_drawing(histogram, layout);
   return line(x, above - 32, x, base, fmt::format("stroke=\"{}\" stroke-dasharray=\"5 3\"", limit_colour)) +
-         // Above the number on the highest bar.
+         // above the number on the highest bar
          text({x + (has_room ? 6 : -6), above - 23, has_room ? "start" : "end",
                fmt::format("fill=\"{}\"", limit_colour)},
               histogram.limit->text);

@@ -8,24 +8,24 @@
 namespace inkwell::campaign {
 
 struct Bar {
-  std::string label = {};  ///< below it; empty where edges are named instead
+  std::string label = {};  ///< below the bar; empty if the edges are labeled instead
   unsigned count = 0;
-  unsigned quiet = 0;  ///< so many of them in the quiet colour, at the foot
+  unsigned quiet = 0;  ///< part of the count in the muted color, at the bottom
 };
 
-/// A line across the bars that the eye shall measure them by.
+/// A reference line across the bars.
 struct Limit {
-  double bars;  ///< so many of them lie to its left
+  double bars;  ///< number of bars to the left of the line
   std::string text;
 };
 
 struct Histogram {
-  std::string title, axis;  ///< what is counted; what it is counted by, with its unit
+  std::string title, axis;  ///< counted items; axis quantity with its unit
   std::vector<Bar> bars;
-  std::vector<std::string> edges = {};  ///< one more than bars, if these are classes of a number
-  bool last_apart = false;              ///< the last bar is no class of the axis
+  std::vector<std::string> edges = {};  ///< one more than bars, for numeric classes
+  bool last_apart = false;              ///< the last bar is not a class of the axis
   std::optional<Limit> limit = {};
-  std::string strong_means, quiet_means;  ///< what a colour says; empty: it is not there
+  std::string strong_means, quiet_means;  ///< legend of each color; empty if the color is not used
 };
 
 std::string svg_of(const Histogram& histogram);

@@ -10,7 +10,7 @@ using protocol::InjectedFault;
 
 namespace {
 
-/// Why a wire may be broken unnoticed, by what it is for.
+/// Reason why a fault of a wire may stay undetected, by the function of the wire.
 std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("encoders"))
     return "A dead wire shows by a count that goes to and fro, or by a motor that turns, or presses otherwise again "
@@ -39,7 +39,7 @@ const std::string of_hung_main_loop = std::to_string(virtual_board::exception_pe
 const std::string of_voltage_detector =
     std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
 
-/// Of those that come with another fault only it does not go by how long they are late.
+/// For faults that only accompany another fault, lateness is not judged.
 std::string_view reason_of_exception(std::string_view exception, std::string_view of_control_interrupt) {
   if (exception == of_hung_main_loop)
     return "It is asked for as the main loop hangs only, to note its place; that would be a second fault.";
@@ -63,7 +63,8 @@ constexpr std::string_view pulses_were_over =
 constexpr std::string_view break_of_tim8 =
     "This pin is seen by the break input of TIM8 only, while the bridges are on; the self-test's pulses put them on.";
 
-/// The self-test's pulses show it, so that it is not noticed there only if it comes behind them.
+/// Whether the self-test's pulses detect the fault. A fault that the pulses detect can stay undetected only if it
+/// occurs after the pulses.
 bool is_tested_by_pulses(const CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -82,7 +83,7 @@ bool is_tested_by_pulses(const CaseFault& put_in) {
   }
 }
 
-/// The same while the bridges are off.
+/// Reason for a wire while the bridges are off.
 std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
   if (wire.starts_with("encoders"))
     return "The hand holds the joint still; a dead wire shows by a count that goes to and fro when it turns, once "

@@ -1,4 +1,4 @@
-// Why a fault, or a fast hand, may pass without a word, as far as its row of the table tells.
+// Reasons why a fault or a fast hand may stay undetected, for the rows of the tables.
 #pragma once
 
 #include <string_view>
@@ -7,11 +7,12 @@
 
 namespace inkwell::campaign {
 
-/// The force is on, and the bridges stayed on. None of the three is asked of the control.
+/// Reason for a case with the force on in which the bridges stayed on. No function of this file is called for the
+/// control case.
 std::string_view reason_with_force(const CaseFault& put_in);
-/// The force is off, in that situation.
+/// Reason for a situation with the force off.
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation);
-/// The force was on, in that situation, and the bridges went off.
+/// Reason for a situation with the force on in which the bridges switched off.
 std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation);
 
 }  // namespace inkwell::campaign

@@ -18,7 +18,7 @@
 #include <device/plain_json.hpp>
 #include <recording/write_text.hpp>
 
-/// A number, or null for none.
+/// A number, or null for std::nullopt.
 template <>
 struct nlohmann::adl_serializer<std::optional<double>> {
   static void to_json(json& out, const std::optional<double>& value) { out = value ? json(*value) : json(); }
@@ -41,7 +41,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
 
 namespace {
 
-/// The library turns any number into an unsigned one, which is undefined for one that does not fit.
+/// The library converts any number to unsigned, which is undefined for values out of range.
 void require_counts(const nlohmann::json& result) {
   for (const char* name : {"number", "phase", "restarts"}) {
     const auto& value = result.at(name);
@@ -77,7 +77,7 @@ Result parse_result(const std::string& text) {
     require_counts(result);
     return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {
-    const std::string_view reason = error.what();  // behind a number of the library's in brackets
+    const std::string_view reason = error.what();  // starts with an error number in brackets
     throw device::Error(
         fmt::format("This is no result of a case by this version: {}. Remove it, and run the case again.",
                     reason.substr(std::min(reason.size(), reason.find("] ") + 2))));
@@ -90,7 +90,7 @@ std::filesystem::path file_of(const std::filesystem::path& directory, unsigned n
 
 void save(const Result& result, const std::filesystem::path& directory) {
   const auto file = file_of(directory, result.number);
-  // Several programs may write into the folder, of several machines if it is shared.
+  // Several programs may write to the folder, also from several machines.
   auto unfinished = file;
   unfinished += fmt::format(".{}.part", ::getpid());
   recording::write_text(unfinished, text_of(result));

@@ -21,11 +21,11 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::State;
 
-constexpr double push_part_of_limit = 0.75;  // of the force limit
-constexpr double longest_case_s = 60;        // of board time
-constexpr double more_than_limit = 1.2;      // presses as far as so much of it would
+constexpr double push_part_of_limit = 0.75;  // fraction of the force limit
+constexpr double longest_case_s = 60;        // board time
+constexpr double more_than_limit = 1.2;      // force of the hand as a multiple of the force limit
 
-/// Told before another one comes.
+/// Fault reported before the injection.
 constexpr auto first_fault = protocol::Fault::host_silent;
 
 struct NotReached : device::Error {
@@ -45,14 +45,14 @@ bool is_before_power(const Case& the_case) {
   return the_case.situation == CaseSituation::starting && the_case.phase == 1;
 }
 
-/// As stiff, or as slow, as it can be.
+/// Sets a parameter to its maximum: the highest stiffness, or the longest time.
 void set_to_maximum(BoardRun& board, ParameterSet& parameters, Parameter parameter) {
   const float maximum = protocol::info(parameter).maximum;
   board.set({{parameter, maximum}});
   parameters[parameter] = maximum;
 }
 
-/// Until its first pulse has begun.
+/// Starts the self-test and waits for its first pulse.
 void begin_self_test(BoardRun& board) {
   constexpr double look_s = 0.0005, longest_s = 0.05;
   board.command(Command::self_test);
@@ -64,7 +64,7 @@ void begin_self_test(BoardRun& board) {
   expect(has_begun, "the self-test made no pulse.");
 }
 
-/// The arm is at the middle of the box, and the force is off.
+/// Requires the arm in the middle of the box with the force off.
 void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation situation) {
   if (is_pressed(situation)) set_to_maximum(board, parameters, Parameter::wall_stiffness_N_per_m);
   if (situation == CaseSituation::ramping) set_to_maximum(board, parameters, Parameter::force_ramp_s);
@@ -75,7 +75,7 @@ void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation si
   if (situation != CaseSituation::ramping) board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
 
-/// Where the situation has the name of a state, the board has to be in it.
+/// Whether the board is in the state of the situation, for situations named after a state.
 bool is_there(const BoardRun& board, CaseSituation situation) {
   switch (situation) {
     case CaseSituation::ramping: return board.is(State::ramping);
@@ -85,16 +85,17 @@ bool is_there(const BoardRun& board, CaseSituation situation) {
   }
 }
 
-/// The host falls silent with the force on: a fault without a cause in the board, so none that could be mistaken for
-/// another one's.
+/// Causes the earlier fault: the host becomes silent with the force on. This fault has no cause in the board, so it
+/// cannot be confused with another one.
 void bring_a_first_fault(BoardRun& board) {
-  constexpr double silent_s = 0.1, brakes_s = 0.05;  // the arm was at rest
+  constexpr double silent_s = 0.1, brakes_s = 0.05;  // brakes_s is short because the arm was at rest
   board.run(silent_s, false);
   expect(board.is(State::fault) && board.pose()->fault == first_fault, "the board did not miss its host.");
   board.run(brakes_s);
 }
 
-/// As long as the board writes its parameters, of which none are stored yet, it is on its way to the loader.
+/// Starts the update. The board is in transition to the loader while it writes its parameters, none of which are stored
+/// yet.
 void begin_update(BoardRun& board) {
   constexpr double until_told_s = 0.002;
   board.command(Command::store_parameters);
@@ -103,7 +104,7 @@ void begin_update(BoardRun& board) {
   expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
 }
 
-/// The hand has it from before the first instruction on. When the power comes the watchdog bites once.
+/// The hand holds the stylus from before the first instruction. After power-on the watchdog expires once.
 void begin_start(BoardRun& board, const Case& the_case) {
   take_by_hand(board, board.true_position_m(), 0.05);
   if (is_before_power(the_case)) return;
@@ -112,10 +113,10 @@ void begin_start(BoardRun& board, const Case& the_case) {
   expect(board.resets() == 1, "the board did not start.");
 }
 
-/// Gives the parameters that the board has then.
+/// Brings the board into the situation and returns its parameters.
 ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   const CaseSituation situation = the_case.situation;
-  // Before the first instruction the stylus is on its way out: nobody tells the board where it is.
+  // The stylus leaves the inkwell before the first instruction, so the board has no reference.
   if (situation == CaseSituation::unreferenced) {
     Vector3 away_m = board.true_position_m();
     away_m[2] -= 0.04;
@@ -127,7 +128,8 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   }
   expect(board.connect(1.0), "the device did not enumerate.");
   ParameterSet parameters = board.device().parameters();
-  // Only a fault of the host shall be one: after it comes, this host says nothing in any case.
+  // The long host time-out prevents a time-out fault, because this host is silent after each injection. Faults of the
+  // host and the situation `fault` use the default time-out.
   if (!is_about_the_host(the_case.fault) && situation != CaseSituation::fault)
     board.set({{Parameter::host_timeout_s, 2.0f}});
   if (situation == CaseSituation::unreferenced) {
@@ -174,16 +176,16 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
 
 double longest_phase_of(CaseSituation situation) {
   switch (situation) {
-    // A motor's pulses take 4 ms: the first's have begun, those of the second and third are still to come.
+    // The pulses of a motor last 4 ms: motor 1 has started, motors 2 and 3 follow.
     case CaseSituation::testing: return 0.004;
-    case CaseSituation::update: return 0.05;  // the board writes for longer than that
+    case CaseSituation::update: return 0.05;  // the board writes its parameters for a longer time
     case CaseSituation::ramping: return 1.0;
-    case CaseSituation::starting: return 0.43;  // one of its two is while the motors are tested
+    case CaseSituation::starting: return 0.43;  // one of the two phases is during the motor test
     default: return 0.1;
   }
 }
 
-/// The instant of a phase: the same for each fault, so that the control tells what would have been without.
+/// Instant of a phase. The instant is the same for each fault, so that the control case is comparable.
 double phase_s(const Case& the_case) {
   if (is_before_power(the_case)) return 0;
   const double longest_phase_s = longest_phase_of(the_case.situation);
@@ -201,7 +203,7 @@ void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& paramete
   if (what.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
 }
 
-/// A board that starts lets its watchdog bite, and one that leaves for its boot loader resets itself.
+/// The watchdog of a starting board expires once, and a board resets itself when it enters its boot loader.
 unsigned resets_meant(const BoardRun& board, const Case& the_case) {
   const bool has_left = the_case.situation == CaseSituation::update && board.is_in_boot_loader();
   return is_before_power(the_case) || has_left ? 1 : 0;
@@ -222,7 +224,7 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   const double driven_until_s = after.at("bridges_driven_until_s");
   const bool drive = bridges_drive(after);
   if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
-  // A start makes pulses that are meant, and they are over by then.
+  // The pulses at start-up are intended and have finished by this time.
   const bool may_pulse = the_case.situation == CaseSituation::starting;
   result.bridges_went_on = !result.bridges_were_on && (may_pulse ? drive : driven_until_s > result.injected_at_s);
   result.peak_force_N = reading.peak_force_N;
@@ -234,25 +236,25 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   result.missed_boot_loader = the_case.situation == CaseSituation::update && !board.is_in_boot_loader();
 }
 
-/// One that was told before is none.
+/// An earlier fault does not count.
 void note_fault(const BoardRun& board, const Result& result, std::string& name) {
   if (!name.empty() || !board.is(State::fault)) return;
   const std::string_view told = protocol::info(board.pose()->fault).name;
   if (told != result.told_before) name = told;
 }
 
-/// None if the board does not say.
+/// Returns FirstFault::none if the board does not answer.
 FirstFault what_became_of_first(BoardRun& board, bool restarted) {
   if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::told;
   try {
-    // Without a restart it would have to be told still.
+    // Without a restart the fault would still be reported.
     return restarted && board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
   } catch (const device::Error&) {
     return FirstFault::none;
   }
 }
 
-/// What the board tells once the first fault is cleared, with the cause of the second still there.
+/// Records the report after the first fault is cleared, while the cause of the second fault is still present.
 void clear_first_fault(BoardRun& board, Result& result) {
   const auto driven_until_s = [&] { return board.control().truth().at("bridges_driven_until_s").get<double>(); };
   const double before_s = driven_until_s();
@@ -262,7 +264,7 @@ void clear_first_fault(BoardRun& board, Result& result) {
   result.bridges_went_on |= driven_until_s() > before_s;
 }
 
-/// True if that went without an error: a device that goes away meanwhile does not work either.
+/// Returns true if no error occurred. A device that disconnects meanwhile counts as an error.
 bool tries_to_work(BoardRun& board) {
   try {
     if (!board.connected() && !board.connect(0.5)) return false;
@@ -273,12 +275,12 @@ bool tries_to_work(BoardRun& board) {
   }
 }
 
-/// What the board tells of it; false if it cannot.
+/// Records the board's reports; false if the board cannot report.
 bool notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
   note_fault(board, result, result.detected_as);
   if (!is_about_the_host(the_case.fault) && board.is_in_boot_loader()) board.start_from_boot_loader();
-  // A board that has started anew tells why, if its USB lives.
+  // A restarted board with working USB reports the cause.
   if ((result.restarts > 0 || !board.connected()) && !is_about_the_host(the_case.fault) &&
       board.connect_after_restart())
     note_fault(board, result, result.detected_as);
@@ -290,7 +292,7 @@ bool notice(BoardRun& board, const Case& the_case, Result& result) {
   return true;
 }
 
-/// Waits for what a board shows that was asked for its boot loader; the loader has to start the firmware.
+/// Waits for the state of a board after the boot loader request. The loader must then start the firmware.
 void leave_boot_loader(BoardRun& board, Result& result) {
   constexpr double look_s = 0.005, longest_s = 0.5;
   for (double waited_s = 0; waited_s < longest_s; waited_s += look_s) {
@@ -305,7 +307,8 @@ void leave_boot_loader(BoardRun& board, Result& result) {
   }
 }
 
-/// What was noticed before the cause was gone counts; a device that could not tell does so afterwards.
+/// Clears the fault and restores the force. Detections before this point count; a device that could not report earlier
+/// reports now.
 void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& result) {
   board.control().heal_all();
   if (the_case.situation == CaseSituation::update) leave_boot_loader(board, result);
@@ -341,8 +344,8 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.real_time = false;
   options.paused = true;
   options.seconds = longest_case_s;
-  options.brown_out_level = 3;  // as on a board that was flashed
-  // A place that the seed chooses is another one each time; all else begins alike for each fault.
+  options.brown_out_level = 3;  // setting of a flashed board
+  // A position chosen from the seed differs in each case. All other conditions are the same for each fault.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
   options.seed = chooses ? the_case.number : the_case.phase;

@@ -29,13 +29,13 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   if (board.connected() && board.force_is_on()) control.hand_path(path);
   use_for(path.back().after_s);
   const bool restarted = board.resets() > resets_before;
-  if (!board.connected() && !restarted) return;  // a device that cannot be used
+  if (!board.connected() && !restarted) return;  // the device cannot be used
   if (!restarted && board.force_is_on()) {
     read_meter();
     return;
   }
   result.noticed_in_use_s = used_s;
-  board.run(observed_s, false);  // what the hand feels then counts as well
+  board.run(observed_s, false);  // includes the force on the hand during this time
   read_meter();
   if (restarted && !board.connected()) board.connect_after_restart();
   result.noticed_in_use_as = board.is(protocol::State::fault) ? protocol::info(board.pose()->fault).name

@@ -1,4 +1,4 @@
-// What becomes of a fault that was not noticed while the arm was left as it was: the hand goes on to use the arm.
+// Continued use of the arm after an undetected fault.
 #pragma once
 
 #include <campaign/board_run.hpp>
@@ -6,8 +6,8 @@
 
 namespace inkwell::campaign {
 
-/// Goes on as before for a while, presses the arm into the walls in front of it and to its side, then swings it, until
-/// the force goes off. Fills in what the result says about use: nothing, if the device goes away without a restart.
+/// Continues the situation for a while, presses the arm into the forward and the side wall, then swings it. Stops when
+/// the force switches off. Fills in the members about use, unless the device disconnects without a restart.
 void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result);
 
 }  // namespace inkwell::campaign

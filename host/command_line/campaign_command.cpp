@@ -47,7 +47,7 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
   return 0;
 }
 
-/// `option` is the one that names another.
+/// Creates a folder. `option`: the option with which the user can choose another one.
 void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
@@ -56,13 +56,13 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
                                     folder.string(), code.message(), option));
 }
 
-/// Before hours of cases, not after them.
+/// Checks the folder before hours of cases instead of after them.
 void make_folder_of_page(const CampaignOptions& command) {
   const std::filesystem::path folder = std::filesystem::path(command.page).parent_path();
   if (!folder.empty()) make_folder(folder, "--page");
 }
 
-/// Each case on a board of its own; as many at once as there are jobs. The exit code: 1 if one could not be run.
+/// Runs each case on a separate board, with `jobs` boards in parallel. Returns exit code 1 if a case could not be run.
 int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
   make_folder(command.folder, "--out");
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
@@ -78,7 +78,7 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
         const std::string off = result.off_after_s
                                     ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
                                     : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
-        // By the place it is found out why a case went as it did.
+        // The location helps to explain the result.
         const std::string place = result.place.empty() ? "" : " at " + result.place;
         const std::string told = campaign::told(result);
         fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
@@ -86,7 +86,7 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
                                                       result.peak_force_N, result.recovery)
                                         : result.error);
         std::fflush(stdout);
-      } catch (const std::exception& error) {  // of a thread it would end the program
+      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
         const std::lock_guard lock(telling);
         trouble = error.what();
         next = cases.size();
@@ -123,7 +123,7 @@ int merge_results(const CampaignOptions& command) {
 int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
   make_folder(command.folder, "--out");
   make_folder_of_page(command);
-  campaign::load_all(command.folder);  // what cannot be read is told before hours of cases, not after them
+  campaign::load_all(command.folder);  // reports unreadable files before hours of cases instead of after them
   std::vector<Case> missing;
   for (const Case& c : campaign::all_cases())
     if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);

@@ -1,4 +1,4 @@
-// The commands of the `inkwell` program. Each adds itself to the program's options and, if it was chosen, runs.
+// The commands of the `inkwell` program. Each command registers its options and an action.
 #pragma once
 
 // To add a command:
@@ -16,16 +16,16 @@
 
 namespace inkwell::command_line {
 
-/// What is to be done once the options are read; returns the exit code.
+/// The action of the chosen command; returns the exit code.
 using Action = std::function<int()>;
-/// Opens the window, on a recording unless its name is empty; returns the exit code.
+/// Opens the window, with a recording unless its name is empty. Returns the exit code.
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
-/// Where a command adds itself, and what it may use when it runs.
+/// The program to which a command adds itself, and the objects that the command may use.
 struct Place {
   CLI::App& program;
   const DeviceOptions& device;
-  Action& action;  ///< to be set when the command is chosen
+  Action& action;  ///< set when the command is chosen
   OpenWindow open_window;
 };
 
@@ -57,11 +57,11 @@ struct Place {
 INKWELL_COMMANDS(X)
 #undef X
 
-/// Without a command the window opens. Returns what opens it for a command, with the same options.
+/// Without a command the program opens the window. Returns a function with which a command opens it.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
-/// Throws UsageError if the command that was chosen opens no window and an option of the window was given: nobody would
-/// look at it, a mistake in it neither.
+/// Throws UsageError if a window option was given with a command that opens no window. Such an option would be ignored,
+/// including any mistake in it.
 void refuse_window_options_in_vain(const CLI::App& program);
 
 }  // namespace inkwell::command_line

@@ -1,4 +1,4 @@
-// The options that say which device is meant, and the way to it.
+// Options that select a device, and the connection to it.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +15,34 @@
 
 namespace inkwell::command_line {
 
-/// A mistake in what was typed; the program ends with exit code 2.
+/// A mistake in the command line; the exit code is 2.
 class UsageError : public device::Error {
  public:
   using Error::Error;
 };
 
-/// How a virtual board's time passes, unless --real-time was given.
+/// How board time of a virtual board passes without --real-time.
 enum class BoardPace : std::uint8_t {
   as_it_can,
-  real_time,  ///< with the clock on the wall
+  real_time,  ///< synchronized with wall time
   lock_step,  ///< only while the command, in one thread, waits for a pose or a request
-  as_asked,   ///< stands still from its first instruction on, but while OpenArm::control lets it pass
+  as_asked,   ///< stopped from the first instruction on, except when OpenArm::control lets it pass
 };
 
 struct DeviceOptions {
   bool is_virtual = false;
-  std::string board;  ///< empty: the one that the ELF is for
+  std::string board;  ///< empty: the board of the ELF
   std::filesystem::path elf;
   std::filesystem::path arm;
   std::filesystem::path flash;
-  std::string mode;  ///< empty: the command's own choice
+  std::string mode;  ///< empty: the default of the command
   std::uint64_t seed = 1;
   bool real_time = false;
   std::string usbip;  ///< HOST:PORT or unix:PATH
   std::string serial_number;
   bool take_over = false;
   bool json = false;
-  bool is_strict = false;  ///< a virtual board ends when the firmware does what silicon would not bear
+  bool is_strict = false;  ///< a virtual board exits when the firmware violates a rule of the chip
 
   void add_to(CLI::App& app);
   /// Throws UsageError.
@@ -50,20 +50,20 @@ struct DeviceOptions {
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the device that the options name, and takes it over if they say so. With --arm, a virtual board's firmware
-/// gets that arm's parameters.
+/// Opens the selected device, and takes it over if this was requested. With --arm, a virtual board gets the parameters
+/// of that arm description.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 
-/// What was typed, and the device if it had to be asked.
+/// A parsed value, and the device if parsing needed it.
 template <class Value>
 struct Typed {
   Value value;
   std::optional<device::OpenArm> connection;
 };
 
-/// Reads what was typed by `read()`. A mistake in it is wrong usage, found before any device is touched; only a name
-/// that no table has may be one of the device's own force law, so that the device is asked.
+/// Parses with `read()`. A mistake is reported before any device is opened. Only an unknown name requires the device,
+/// because it may belong to the device's force law.
 template <class Read>
 Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
                                              BoardPace pace = BoardPace::as_it_can) {
@@ -81,7 +81,7 @@ Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read 
   }
 }
 
-/// Name of the arm that --arm describes; empty without it, because a board does not know which arm it is built into.
+/// Name of the arm in the --arm description. Empty without --arm, because a board does not know its arm.
 std::string arm_name(const DeviceOptions& options);
 
 }  // namespace inkwell::command_line

@@ -31,16 +31,15 @@ std::string place_of(const Endpoint& endpoint) {
 
 struct Listed {
   std::string serial_number, product, place;
-  std::string board;  ///< empty: its firmware names none, or it could not be asked
+  std::string board;  ///< empty: not reported by the firmware, or the device did not answer
 };
 
-/// One that cannot be asked is in the list all the same: it is there. Firmware with another version of the protocol
-/// answers this question too.
+/// Devices that do not answer are also listed. Firmware with another protocol version answers this request too.
 Listed ask(const Endpoint& endpoint) {
   Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};
   try {
     const auto information = device::Device(device::open_transport(endpoint)).information();
-    listed.serial_number = information.serial_number;  // which a list of USB/IP does not hold
+    listed.serial_number = information.serial_number;  // USB/IP device lists do not contain it
     listed.board = information.board_name;
   } catch (const device::Error& error) {
     fmt::print(stderr, "inkwell: The board of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());

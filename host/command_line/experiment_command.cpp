@@ -42,7 +42,7 @@ void print(const nlohmann::ordered_json& summary, const std::string& directory) 
 }
 
 int run_wall(DeviceOptions options, const WallCommandOptions& command) {
-  options.is_strict = true;  // what silicon would not do is no result
+  options.is_strict = true;  // a result with a violated chip rule would be invalid
   ProgressBar progress;
   experiment::WallOptions wall{.output_directory = command.output, .arm = arm_name(options)};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);

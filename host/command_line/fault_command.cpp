@@ -37,7 +37,7 @@ bool has_crash(const BlackBoxReport& box) { return box.crash.exception != 0; }
 
 using Image = std::optional<crash::FirmwareImage>;
 
-/// The ELF that the user has given, if it is the one that crashed.
+/// The ELF that the user has given. Throws an error if it is not the image that crashed.
 Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
   if (options.elf.empty()) return std::nullopt;
   crash::FirmwareImage image(options.elf);
@@ -124,7 +124,7 @@ int show_fault(const DeviceOptions& device_options, const FaultOptions& options)
   return 0;
 }
 
-/// The board takes a tenth of a second of its time to fill it.
+/// Waits until the black box is complete, which takes 0.1 s of board time.
 BlackBoxReport complete_black_box(device::Device& device) {
   constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
   const std::int64_t begin_periods = next_pose(device).time_periods;

@@ -116,7 +116,7 @@ int flash(const DeviceOptions& options, FlashOptions given) {
   if (!given.board.empty()) {
     given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
   } else if (given.image.empty()) {
-    // Unasked it would be a guess, and another board's pins drive other things.
+    // A default image would be a guess, and the pins of another board drive other parts.
     if (given.by_probe && std::size(board::known_boards) > 1)
       throw UsageError(
           fmt::format("A debug probe cannot identify the board. Name the image, or choose the board with --board: {}.",

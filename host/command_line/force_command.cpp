@@ -41,7 +41,7 @@ int switch_off(const DeviceOptions& options) {
   return 0;
 }
 
-/// The board switches the force off when nobody gives signs of life, so this goes on until it is told to end.
+/// Keeps the force on until an interrupt or the given time. The board switches the force off without a sign of life.
 int keep_on(const DeviceOptions& options, double seconds) {
   const auto connection = connect(options, BoardPace::real_time);
   device::Device& device = *connection.device;

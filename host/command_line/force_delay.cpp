@@ -24,22 +24,22 @@ using protocol::Signal;
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double periods_per_ms = rate_Hz / 1000;
 constexpr std::int64_t periods_in(double seconds) { return static_cast<std::int64_t>(seconds * rate_Hz); }
-/// From the first force of a recording, or of a vibration, until it counts.
+/// Time after the first force of a recording or a vibration that is not evaluated.
 constexpr std::int64_t settling_periods = periods_in(0.02);
 constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
-/// Until the last samples of a vibration have come, which has to be complete.
+/// Waiting time for the last samples of a vibration, which must be complete.
 constexpr std::int64_t sample_delay_periods = periods_in(0.01);
 
 /// A program that answers each pose with a force along x, and reads the scope between two poses.
 class Program {
  public:
-  /// The force for an instant, which is a control period.
+  /// The force as a function of the control period.
   using Law = std::function<double(std::int64_t period)>;
   using Read = std::function<void(const ScopeSamples&)>;
 
   explicit Program(device::Device& device) : device_(device) {}
 
-  /// For so many control periods.
+  /// Answers poses for this number of control periods.
   void run(std::int64_t periods, const Law& law, const Read& read) {
     Pose pose = next();
     for (const std::int64_t begin = pose.time_periods; pose.time_periods - begin < periods; pose = next()) {
@@ -52,7 +52,7 @@ class Program {
     answer(pose, law(pose.time_periods));
   }
 
-  /// What the board sends meanwhile is not answered.
+  /// Poses that arrive during the selection are not answered.
   void select(const std::vector<Signal>& signals) {
     device_.select_signals(signals);
     sequence_.reset();
@@ -62,7 +62,7 @@ class Program {
   std::int64_t poses_missed() const { return poses_missed_; }
 
  private:
-  /// The newest one: those that came during a request are too old to be answered.
+  /// The newest pose: poses that arrived during a request are too old to answer.
   Pose next() {
     Pose pose = next_pose(device_);
     while (const auto newer = device_.read_pose(0ms)) pose = *newer;
@@ -70,7 +70,7 @@ class Program {
   }
 
   void answer(const Pose& pose, double force_N) {
-    if (!device_.wait_until_written(0ms)) return;  // a command takes the frame
+    if (!device_.wait_until_written(0ms)) return;  // a command occupies this bus frame
     device_.send_force({.force_N = {static_cast<float>(force_N), 0, 0},
                         .mode = protocol::ForceMode::instead_of_walls,
                         .pose_sequence = static_cast<std::uint32_t>(pose.sequence)});
@@ -81,7 +81,7 @@ class Program {
   std::int64_t poses_missed_ = 0;
 };
 
-/// The force rises linearly, so that its value identifies the instant for which it was computed.
+/// The force rises linearly, so that its value identifies the control period for which it was computed.
 ForceDelay::Recording record_ramp(Program& program) {
   program.select({Signal::program_force_x_N});
   const std::int64_t begin = program.now();
@@ -104,12 +104,12 @@ ForceDelay::Recording record_ramp(Program& program) {
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 
-/// A sine that began in period 0, and the component of a signal at its frequency.
+/// A sine that starts in period 0, and the component of a signal at its frequency.
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}
   double operator()(std::int64_t period) const { return delay_force_N * std::sin(angle(period)); }
-  /// `value` times the complex unit that turns with the sine.
+  /// `value` times the complex phasor of the sine.
   std::complex<double> part(std::int64_t period, double value) const {
     return value * std::complex<double>(std::sin(angle(period)), std::cos(angle(period)));
   }

@@ -7,7 +7,7 @@
 
 namespace inkwell::command_line {
 
-/// Of a signal, compared with the one that it follows.
+/// Gain and delay of a signal relative to its reference.
 struct Transmission {
   double gain = 0;
   double delay_ms = 0;
@@ -15,8 +15,9 @@ struct Transmission {
 
 struct Response {
   double frequency_Hz = 0;
-  Transmission program_force;  ///< interpolated by the board, compared with what the program computes for the instant
-  Transmission current;        ///< measured in motor 1, compared with its reference
+  Transmission program_force;  ///< interpolated force on the board, relative to the force that the program computes for
+                               ///< the same time
+  Transmission current;        ///< current measured in motor 1, relative to its reference
 };
 
 struct ForceDelay {
@@ -25,13 +26,13 @@ struct ForceDelay {
   };
   std::vector<Recording> recordings;
   std::vector<Response> responses;
-  std::int64_t poses_missed = 0;  ///< by the program, outside of the requests of a recording
+  std::int64_t poses_missed = 0;  ///< missed by the program, except during requests
 };
 
-/// Amplitude of the vibrations, and bound of all forces.
+/// Amplitude of the vibrations, and limit of all forces.
 inline constexpr float delay_force_N = 0.5f;
 
-/// The force must be on, and a hand must hold the stylus. Answers each pose with a force along x. Throws
+/// Requires that the force is on and a hand holds the stylus. Answers each pose with a force along x. Throws
 /// device::Error if the force goes off.
 ForceDelay measure_force_delay(device::Device& device, int recordings, const std::vector<double>& frequencies_Hz);
 

@@ -18,10 +18,10 @@ using device::Pose;
 using protocol::Command;
 using protocol::State;
 
-/// Of board time: a device that does not know yet where it is forgets that it was asked.
+/// Board time. A device that is not referenced yet drops the request, so it is repeated.
 constexpr std::int64_t ask_again_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
-/// Sends the command again and again until the state is the one that is wanted, or a fault, or time is over.
+/// Repeats the command until the desired state, a fault, or the time limit.
 template <class Wanted>
 Pose ask(device::Device& device, Command command, Wanted wanted) {
   device.carry_out(command);
@@ -39,7 +39,7 @@ Pose ask(device::Device& device, Command command, Wanted wanted) {
   return pose;
 }
 
-/// A program that was there before this one may have gone with the force on.
+/// Clears the fault of a previous program that exited with the force on.
 void clear_what_a_host_left(device::Device& device) {
   Pose pose = next_pose(device);
   if (pose.state != State::fault || !device::is_left_by_a_host(pose.fault)) return;
@@ -51,7 +51,7 @@ void clear_what_a_host_left(device::Device& device) {
   });
 }
 
-/// With a space before it; nothing if all that it needs is to be switched on.
+/// The reason with a leading space; empty if the force only has to be switched on.
 std::string what_keeps_it_off(const Pose& pose) {
   if (pose.state == State::ready) return {};
   return " " + (pose.state == State::fault ? device::fault_line(pose.fault) : std::string(info(pose.state).meaning));
@@ -78,7 +78,7 @@ ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
 ForceSwitch::~ForceSwitch() {
   try {
     if (may_be_on_) switch_off();
-  } catch (const device::Error&) {  // the device is gone or silent, and switches it off by itself
+  } catch (const device::Error&) {  // the device is gone or silent; the board switches the force off automatically
   }
 }
 

@@ -1,4 +1,4 @@
-// The force, switched by a command.
+// Switches the force for a command.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force off, whoever switched it on, and returns the pose that tells so.
+/// Switches the force off, whichever program switched it on. Returns the first pose that shows this.
 device::Pose switch_force_off(device::Device& device);
 
-/// The force is on from its construction to its end, whatever ends it. Its owner gives signs of life between.
+/// The force is on during the lifetime of this object. The owner must send signs of life.
 class ForceSwitch {
  public:
   /// Waits until the force is on. Throws device::Error with the reason if it does not come on.
@@ -21,9 +21,9 @@ class ForceSwitch {
   ForceSwitch(const ForceSwitch&) = delete;
   ForceSwitch& operator=(const ForceSwitch&) = delete;
 
-  /// As switch_force_off(), but without effect once another program drives the arm. Throws device::Error.
+  /// Like switch_force_off(), but without effect after another program has taken over the arm. Throws device::Error.
   device::Pose switch_off();
-  /// Why the force is not this program's any more at this pose; none while it is.
+  /// Reason why this program has lost the force, based on this pose; none if it has not.
   std::optional<std::string> loss(const device::Pose& pose) const;
 
  private:
@@ -31,7 +31,7 @@ class ForceSwitch {
   bool may_be_on_ = true;
 };
 
-/// Whether the force is on, and what keeps it off: a sentence with the remedy.
+/// A sentence that states whether the force is on, and otherwise the cause and the remedy.
 std::string force_sentence(const device::Pose& pose);
 
 }  // namespace inkwell::command_line

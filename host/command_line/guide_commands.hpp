@@ -1,4 +1,4 @@
-// Guides as subcommands of the command that they are grouped under.
+// Adds guides as subcommands of the command for their group.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace inkwell::command_line {
 
-/// What the user chose and agreed to, filled in while the options are read.
+/// Choices and consent of the user, filled in while the options are parsed.
 struct GuideOptions {
   guides::Choices choices;
   Consent consent;
@@ -19,7 +19,7 @@ struct GuideOptions {
 
 std::vector<const guides::Offer*> guides_of(std::string_view group);
 
-/// Adds a subcommand for each guide of a group. `add_options` adds what may be chosen for one of them.
+/// Adds a subcommand for each guide of a group. `add_options` adds the options of one guide.
 void add_guides(
     CLI::App& command, const Place& place, std::string_view group,
     const std::function<void(CLI::App& guide, const guides::Offer& offer, GuideOptions& options)>& add_options = {});

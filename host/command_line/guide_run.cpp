@@ -25,7 +25,7 @@ using guides::Phase;
 
 constexpr auto silence_limit = 5s;
 
-/// A line that the user typed, if there is one; none while he has not. Throws UsageError when no one can type.
+/// A line that the user typed, or none if there is no complete line. Throws UsageError if standard input is closed.
 std::optional<std::string> typed_line() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return std::nullopt;
@@ -39,7 +39,7 @@ std::optional<std::string> typed_line() {
   }
 }
 
-/// Where a guide stands, on standard error, so that --json stays clean.
+/// Shows the state of a guide on standard error, so that the --json output stays valid.
 class Display {
  public:
   void show(const Guide& guide, bool asks) {
@@ -88,7 +88,7 @@ class Display {
 
 class GuideRun {
  public:
-  /// Ctrl+C cancels the guide, which leaves the motors off, instead of ending the program in the middle.
+  /// Ctrl+C cancels the guide, which leaves the motors off, instead of stopping the program.
   GuideRun(GuidedDevice& device, Guide& guide, const Consent& options, bool json, const InterruptGuard& interrupt)
       : device_(device),
         guide_(guide),
@@ -132,14 +132,14 @@ class GuideRun {
     std::this_thread::sleep_for(1ms);
   }
 
-  /// --yes agrees to what the device will do; that the user's own part is done only he can say, or button 1.
+  /// --yes agrees to the actions of the device. Only the user or button 1 can confirm that the user's own part is done.
   bool agrees() {
     if (guide_.phase() == Phase::asks && consent_.yes) return true;
     if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
     return typed_line().has_value();
   }
 
-  /// Until the device holds what the guide put back or applied.
+  /// Waits until the device has the parameters that the guide restored or applied.
   void settle() {
     auto limit = transaction_limit();
     while (!guide_.at_rest() && !limit.is_over(device_.session().newest_pose()) &&
@@ -178,11 +178,11 @@ class GuideRun {
   Clock::time_point heard_at_ = Clock::now();
 };
 
-/// Whether what was changed shall outlive the device's power. Without an answer it is told how.
+/// Whether the changes must be stored. If the user cannot be asked, prints how to store them.
 bool wants_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {
-    if (!options.is_virtual)  // which ends before a further command could reach it
+    if (!options.is_virtual)  // a virtual board exits before another command could reach it
       fmt::print(stderr,
                  "The changes are lost when the board loses power. Run `inkwell parameters store` to store them.\n");
     return false;

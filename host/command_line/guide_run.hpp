@@ -1,4 +1,4 @@
-// Guides on a terminal: the text of each step, a prompt before anything moves, the numbers as they are measured.
+// Runs guides on a terminal: text of each step, a prompt before motion, and live measured values.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,6 @@
 
 namespace inkwell::command_line {
 
-/// What the user agrees to beforehand.
 struct Consent {
   bool yes = false;
   bool apply = false;
@@ -18,9 +17,9 @@ struct Consent {
   void add_to(CLI::App& command);
 };
 
-/// One after another on the device that the options name, up to the first that fails; then what they changed is stored
-/// on the board, if the user wants that. Returns the exit code. Throws
-/// device::Error with the failure's sentence, and UsageError where consent is needed and no one can give it.
+/// Runs guides one after another on the selected device, until one fails. Then stores their changes on the board if the
+/// user agrees. Returns the exit code. Throws device::Error with the failure, and UsageError if consent is required and
+/// standard input is closed.
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
                const guides::Choices& choices);
 

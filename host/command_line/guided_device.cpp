@@ -26,7 +26,7 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
     user_.emplace(board_->control(), arm);
     session_ = std::make_unique<device::Session>([this] { return board_->find(); });
   } else {
-    const auto endpoint = device::find_arm(options.address());  // complains at once if there is none
+    const auto endpoint = device::find_arm(options.address());  // fails immediately if there is no arm
     session_ = std::make_unique<device::Session>([endpoint] { return endpoint; });
   }
   session_->on_scope([this](const device::ScopeSamples& samples) {
@@ -39,7 +39,7 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
 
 void GuidedDevice::wait_for_device() {
   const auto begin = Clock::now();
-  // Of board time if there is one to ask: on a busy computer a virtual board takes long to start.
+  // The limit is in board time if possible: on a busy computer a virtual board needs long to start.
   std::optional<device::ControlClient> control;
   if (board_) control.emplace(board_->control());
   const auto waited_s = [&]() -> double {

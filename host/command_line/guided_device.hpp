@@ -1,4 +1,4 @@
-// The device that guides run on, kept by a session, with its scope's frames on their way to the guide.
+// The device of a guide: a session and the received scope frames.
 #pragma once
 
 #include <memory>
@@ -14,20 +14,20 @@
 
 namespace inkwell::command_line {
 
-/// The time that the device has to answer a change of parameters.
+/// Time limit for a parameter change.
 inline device::BoardTimeout transaction_limit() { return {5.0, std::chrono::seconds(5)}; }
 
 class GuidedDevice {
  public:
-  /// Connects to the device that the options name; with --arm it holds that arm's parameters. With --virtual a
-  /// simulated hand does the user's part. Throws device::Error if there is no device.
+  /// Connects to the selected device. With --arm, sets the parameters of that arm description. With --virtual, a
+  /// simulated hand performs the user's part. Throws device::Error if there is no device.
   explicit GuidedDevice(const DeviceOptions& options);
 
   device::Session& session() { return *session_; }
-  /// Those that came since the last call.
+  /// The frames received since the last call.
   std::vector<device::ScopeSamples> take_frames();
   void carry_out(const guides::UserTask& task);
-  /// Has the board store its parameters. Throws device::Error with its sentence if it does not.
+  /// Stores the parameters on the board. Throws device::Error with the reason if the board does not store them.
   void store_parameters();
 
  private:
@@ -38,7 +38,7 @@ class GuidedDevice {
   std::optional<guides::SimulatedUser> user_;
   std::mutex mutex_;
   std::vector<device::ScopeSamples> frames_;
-  std::unique_ptr<device::Session> session_;  ///< last: its threads use what is above
+  std::unique_ptr<device::Session> session_;  ///< last: its threads use the other members
 };
 
 }  // namespace inkwell::command_line

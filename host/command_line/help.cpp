@@ -21,8 +21,8 @@ class HelpStyle final : public CLI::Formatter {
   HelpStyle() { column_width_ = name_width; }
 
  private:
-  /// "NAME=default", without the library's remarks about validators and about what needs or excludes what: the
-  /// descriptions say it.
+  /// Prints "NAME=default", without CLI11's text about validators and dependent options, which the descriptions
+  /// contain.
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_type_size() == 0) return {};
     std::string text;
@@ -39,7 +39,7 @@ class HelpStyle final : public CLI::Formatter {
 
   std::string make_description(const CLI::App* app) const override { return app->get_description() + "\n\n"; }
 
-  /// In a list of commands the first line is enough.
+  /// A list of commands shows only the first line of each description.
   std::string make_subcommand(const CLI::App* command) const override {
     const std::string description = command->get_description();
     return fmt::format("  {:<{}}{}\n", command->get_name(), name_width - 2,
@@ -111,12 +111,12 @@ CLI::Validator not_empty() {
 
 namespace {
 
-/// A command below a command, or below the program.
+/// A command of the program, or a subcommand.
 struct Below {
   std::string_view name;
 };
 
-/// The innermost command that was given, and the program itself if none was.
+/// The innermost command on the command line, or the program itself.
 struct Innermost {
   const CLI::App* command;
   std::string words;  ///< "inkwell parameters"

@@ -1,4 +1,4 @@
-// How `--help` looks: what a newcomer needs, in the words of the options and commands themselves.
+// Formats the output of `--help`.
 #pragma once
 
 #include <optional>
@@ -8,24 +8,24 @@
 
 namespace inkwell::command_line {
 
-/// For the program and the commands that are added to it afterwards.
+/// Applies to the program and to all commands that are added afterwards.
 void set_help_style(CLI::App& program);
 
-/// What stands below a command's options: examples, one a line, and what all commands have in common.
+/// Adds the text after a command's options: one example per line, and the hints that all commands share.
 void add_examples(CLI::App& command, const std::string& examples);
 
-/// Checks of a number that name the range as a person would.
+/// Number checks whose messages state the range in words.
 CLI::Validator zero_or_more();
 CLI::Validator more_than_zero();
 CLI::Validator number_within(double low, double high);
 CLI::Validator whole_number_within(int low, int high);
 
-/// An empty text where a device or a file is named is a variable of a script that was not set: it must not become the
-/// device that is there without the option.
+/// Rejects an empty device or file name. It probably comes from an unset script variable, and must not select the
+/// default device.
 CLI::Validator not_empty();
 
-/// Says which commands there are, and which was probably meant, if a word stands where only a command may, or if the
-/// command that was given needs one of its own and has none.
+/// An error sentence if an unknown command was given or a required subcommand is missing. It lists the commands and
+/// suggests the most similar one.
 std::optional<std::string> wrong_command(const CLI::App& program);
 
 }  // namespace inkwell::command_line

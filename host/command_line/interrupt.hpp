@@ -1,11 +1,12 @@
-// Ctrl-C as a wish that long work can grant in its own time.
+// Handles Ctrl-C as a request to stop.
 #pragma once
 
 #include <csignal>
 
 namespace inkwell::command_line {
 
-/// While it lives, SIGINT and SIGTERM are noted instead of ending the program. A second one ends it after all.
+/// During its lifetime, SIGINT and SIGTERM are recorded instead of terminating the program. A second signal terminates
+/// it.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -11,9 +11,9 @@ namespace inkwell::command_line {
 
 MarkKeys::MarkKeys(int descriptor) : descriptor_(descriptor) {
   termios terminal;
-  if (tcgetattr(descriptor_, &terminal) != 0) return;  // not a terminal
+  if (tcgetattr(descriptor_, &terminal) != 0) return;
   terminal_before_ = terminal;
-  // Each key at once and unseen; Ctrl-C still interrupts.
+  // Delivers each key immediately and without echo; Ctrl-C still interrupts.
   terminal.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   tcsetattr(descriptor_, TCSANOW, &terminal);
 }

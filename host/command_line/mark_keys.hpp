@@ -8,17 +8,17 @@
 
 namespace inkwell::command_line {
 
-/// On a terminal each press of the space bar or the return key is a mark, numbered. From a pipe each line is one,
-/// with the line as its text.
+/// On a terminal each press of the space bar or the return key is a numbered mark. On a pipe each line is a mark, with
+/// the line as its text.
 class MarkKeys {
  public:
   explicit MarkKeys(int descriptor);
-  /// Gives the terminal back as it was.
+  /// Restores the terminal settings.
   ~MarkKeys();
   MarkKeys(const MarkKeys&) = delete;
   MarkKeys& operator=(const MarkKeys&) = delete;
 
-  /// The text of the next mark, if there is one; does not wait.
+  /// The text of the next mark, or none. Does not wait.
   std::optional<std::string> next();
 
  private:

@@ -22,7 +22,7 @@ struct DelayOptions {
   bool is_held = false;  ///< the user holds the stylus of a real arm
 };
 
-/// Bounds what is measured, unless it is set to its largest value meanwhile.
+/// Sets the limit of the force change to its maximum during a measurement, because it would affect the result.
 class FastForce {
  public:
   explicit FastForce(device::Device& device) : device_(device), stored_(device.parameters()[parameter]) {
@@ -31,7 +31,7 @@ class FastForce {
   ~FastForce() {
     try {
       set(stored_);
-    } catch (const device::Error&) {  // the device is gone, and forgets it
+    } catch (const device::Error&) {  // the device is gone, and so is the changed value
     }
   }
   FastForce(const FastForce&) = delete;
@@ -45,7 +45,7 @@ class FastForce {
   const float stored_;
 };
 
-/// A simulated hand holds the stylus in the middle of the box.
+/// Makes a simulated hand hold the stylus in the middle of the box.
 void hold(device::OpenArm& arm) {
   constexpr device::Vector3 middle_m{0, 0, -0.03};
   auto pose = next_pose(*arm.device);

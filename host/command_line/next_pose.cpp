@@ -4,7 +4,7 @@
 
 namespace inkwell::command_line {
 
-// By waits that were in vain, not by the clock: time for which the computer stopped this program is none.
+// The limit counts waits instead of clock time, so that a suspended program does not time out.
 device::Pose next_pose(device::Device& device) {
   constexpr int waits = 10;
   constexpr std::chrono::milliseconds wait{200};

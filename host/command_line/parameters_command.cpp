@@ -127,7 +127,8 @@ int restore_defaults(const DeviceOptions& options, bool store) {
   return 0;
 }
 
-/// A file may hold parameters of the device's own force law, so that the device is asked before a name is unknown.
+/// Loads a file and reports unknown names. A name may belong to the force law of the
+/// device, so the device is opened before a name counts as unknown.
 Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, const std::string& file) {
   std::optional<device::OpenArm> connection;
   auto loaded = device::load_parameters(file);
@@ -144,7 +145,7 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
   return {std::move(loaded), std::move(connection)};
 }
 
-/// What is in the way may be the only copy of a calibration.
+/// Refuses to replace an existing file, which may be the only copy of a calibration.
 void check_is_free(const std::string& file) {
   std::error_code code;
   if (std::filesystem::is_directory(file, code))

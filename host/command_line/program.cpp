@@ -49,7 +49,7 @@ int run(int argument_count, char** arguments) {
       "parameters and signals end in their unit.\n"
       "Exit code: 0 success, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
   program.require_subcommand(0, 1);
-  program.fallthrough();  // the device's options may stand behind the command as well
+  program.fallthrough();  // device options may also follow the command
 
   DeviceOptions options;
   Action action;
@@ -61,7 +61,7 @@ int run(int argument_count, char** arguments) {
 
   try {
     program.parse(argument_count, arguments);
-    // Behind "--" there are words only, and no command: the window would open in its place.
+    // Words after "--" are not commands, so the window would open instead.
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
           "\"--\" is not allowed before the command. Omit it, or put it after the command of `inkwell run`.");
@@ -75,7 +75,7 @@ int run(int argument_count, char** arguments) {
     return complain(UsageError(sentence ? *sentence : sentence_of(program, error)), wrong_usage);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) return complain(UsageError(sentence_of(program, error)), wrong_usage);
-    program.exit(error);  // the help, or the version
+    program.exit(error);  // prints the help or the version
     return success;
   }
   try {

@@ -1,4 +1,4 @@
-// Progress on standard error, so that what --json writes on standard output stays clean.
+// Shows progress on standard error, so that the --json output on standard output stays valid.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,12 @@
 
 namespace inkwell::command_line {
 
-/// A bar on a terminal. Elsewhere a line for each new step, a step being what stands before the first colon.
+/// A bar on a terminal. Otherwise one line per new step; the text before the first colon identifies a step.
 class ProgressBar {
  public:
-  /// `done` from 0 to 1; without it there is no bar, because nobody knows when it ends.
+  /// `done` from 0 to 1. Without it no bar is shown, because the duration is unknown.
   void operator()(std::string_view step, std::optional<double> done);
-  /// Leaves the bar as it is and goes on below it.
+  /// Leaves the bar on the screen and starts a new line.
   void end();
 
  private:

@@ -1,4 +1,4 @@
-// A recording that a command was given.
+// Reads the recording that is an argument of a command.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace inkwell::command_line {
 
-/// Says on standard error what was not understood of it. Throws device::Error if it cannot be read.
+/// Reports unknown parts of the recording on standard error. Throws device::Error if the file cannot be read.
 recording::Recording read_recording(const std::string& file);
 
 }  // namespace inkwell::command_line

@@ -32,7 +32,7 @@ using nlohmann::ordered_json;
 using recording::RecorderStatus;
 
 constexpr auto read_timeout = 20ms;
-/// Counted by reads that waited in vain, not by the clock: time for which the computer stopped this program is none.
+/// Counts waiting reads instead of clock time, so that a suspended program does not time out.
 constexpr auto silence_limit = 2s;
 
 struct RecordOptions {
@@ -44,8 +44,8 @@ struct RecordOptions {
   bool force = false;
 };
 
-/// Reads the scope in a thread of its own, so that a slow terminal costs no samples, and ends by itself after a
-/// given number of control periods.
+/// Reads the scope in a separate thread, so that a slow terminal loses no samples. Stops after a given number of
+/// control periods.
 class RecordingThread {
  public:
   RecordingThread(device::Device& device, recording::Recorder& recorder, RecordedSpan& span)
@@ -59,7 +59,7 @@ class RecordingThread {
   RecordingThread(const RecordingThread&) = delete;
   RecordingThread& operator=(const RecordingThread&) = delete;
 
-  /// Whether all samples have come. Throws device::Error if no more will.
+  /// Whether all samples have arrived. Throws device::Error if no more will arrive.
   bool is_done() const {
     if (has_failed_) throw device::Error(failure_);
     return is_done_;
@@ -71,7 +71,7 @@ class RecordingThread {
       for (int silent_reads = 0; !stopping_ && !is_done_;) {
         auto samples = device_.read_scope(read_timeout);
         silent_reads = samples ? 0 : silent_reads + 1;
-        // Twice what the poses have: a board that is silent altogether is told as one.
+        // Twice the limit for poses, so that a completely silent board is reported as silent.
         if (silent_reads * read_timeout > 2 * silence_limit)
           throw device::Error("The board sends poses but no samples. Start the recording again.");
         if (samples) take(*samples);
@@ -91,7 +91,7 @@ class RecordingThread {
   recording::Recorder& recorder_;
   RecordedSpan& span_;
   std::atomic<bool> stopping_ = false, is_done_ = false;
-  std::string failure_;  ///< written before has_failed_, and never again
+  std::string failure_;  ///< written once, before has_failed_
   std::atomic<bool> has_failed_ = false;
   std::thread thread_;
 };
@@ -102,7 +102,7 @@ std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   return recording::parse_signals(options.signals);
 }
 
-/// 0 is without end, so that a time shorter than a period takes one.
+/// 0 means no limit, so a time shorter than a period counts as one period.
 std::uint64_t periods_of(const RecordOptions& options) {
   if (options.seconds == 0) return 0;
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(options.seconds * protocol::servo_rate_Hz + 0.5));
@@ -115,7 +115,7 @@ std::string progress_text(const RecorderStatus& status) {
   return text;
 }
 
-/// Returns why the force went off, if it was to be on and did.
+/// Returns the reason if the force was requested and went off.
 std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options,
                                RecordedSpan& span, std::optional<ForceSwitch>& force) {
   const InterruptGuard interrupt;
@@ -152,7 +152,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
     next_shown = now + 100ms;
     show(recorder.status());
   }
-  if (force) force->switch_off();  // at once: without signs of life it would be a fault
+  if (force) force->switch_off();  // immediately, because a missing sign of life would raise a fault
   show(recorder.status());
   progress.end();
   return force_went_off;
@@ -182,7 +182,7 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
                                                arm_name(device_options), connection.endpoint.is_virtual);
   std::optional<ForceSwitch> force;
   if (options.force) force.emplace(device);
-  device.select_signals(signals);  // first: a scope that another program has must leave no file
+  device.select_signals(signals);  // first, so that a busy scope does not leave an empty file
   recording::Recorder recorder(options.file, information);
   RecordedSpan span(periods_of(options));
   std::string failure;

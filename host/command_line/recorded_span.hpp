@@ -1,4 +1,4 @@
-// Which of the samples that come belong to a recording of a given length.
+// Selects the samples that belong to a recording of a given length.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@ namespace inkwell::command_line {
 
 class RecordedSpan {
  public:
-  /// 0 is without end.
+  /// 0 means no limit.
   explicit RecordedSpan(std::uint64_t periods) : periods_(periods) {}
 
-  /// Cuts off what lies behind the end. Samples of a time that began anew, as a restarted board's, stay: they are
-  /// nearer to no end, and the recorder says what they are.
+  /// Removes samples after the end. Samples whose time has restarted, as after a board restart, are retained: they do
+  /// not count towards the length, and the recorder reports the restart.
   void cut(device::ScopeSamples& samples);
-  /// Samples up to the end have come, or such as lie behind it.
+  /// True once samples up to or after the end have arrived.
   bool is_over() const { return is_over_; }
-  /// How many periods a recording that is over lacks, if it holds so many samples and counts so many as lost between
-  /// them: those are missing at its end.
+  /// Number of periods that are missing at the end of a finished recording with these numbers of stored and lost
+  /// samples.
   std::uint64_t missing_at_end(std::uint64_t samples, std::uint64_t lost) const;
 
  private:
   std::uint64_t periods_;
-  std::uint64_t passed_ = 0;                   ///< from the first sample to the end of the newest
-  std::optional<std::int64_t> end_of_newest_;  ///< in the board's own time
+  std::uint64_t passed_ = 0;                   ///< from the first sample to the end of the newest samples
+  std::optional<std::int64_t> end_of_newest_;  ///< in board time
   bool is_over_ = false;
 };
 

@@ -1,4 +1,4 @@
-// A program that was made for another arm's libraries, started with ours under their names.
+// Starts a program that was made for the libraries of another arm, with the drop-in libraries in their place.
 #include "commands.hpp"
 
 #include <spawn.h>
@@ -23,12 +23,12 @@
 namespace inkwell::command_line {
 namespace {
 
-constexpr int killed_by = 128;  // as shells tell it
+constexpr int killed_by = 128;  // as shells report a signal
 constexpr int passed_on[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
 
 volatile std::sig_atomic_t program_process = 0, early_signal = 0;
 
-/// A terminal sends its keys' signals to the program as well; what others send is meant for it.
+/// Passes on signals of other processes. Signals of the terminal reach the program directly.
 void pass_on(int signal, siginfo_t* information, void*) {
   if (information->si_code == SI_KERNEL) return;
   if (program_process == 0)
@@ -59,7 +59,7 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   auto connection = connect(options, BoardPace::real_time);
   const auto address = device::address_of(connection.endpoint);
   say_which_device(connection.endpoint, address);
-  connection.device.reset();  // it is the program's from now on
+  connection.device.reset();  // from now on the program uses the arm
 
   const std::string others = environment("LD_LIBRARY_PATH");
   setenv("LD_LIBRARY_PATH", (libraries.string() + (others.empty() ? "" : ":" + others)).c_str(), 1);
@@ -100,7 +100,7 @@ void add_run_command(const Place& place) {
   command->fallthrough(false);
   own->add_to(*command);
   command->prefix_command();
-  // Behind "--" CLI11 hands what is left to the program's own parser.
+  // After "--" CLI11 passes the remaining words to the parser of the main program.
   command->preparse_callback([&parser = place.program](std::size_t) { parser.prefix_command(); });
   add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
   command->callback([place, own, command] {

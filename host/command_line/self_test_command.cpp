@@ -24,7 +24,7 @@ void for_each_item(const SelfTestReport& report, Action action) {
     action(info(static_cast<SelfTestItem>(i)), report.entries[i]);
 }
 
-/// Nothing has failed, and nothing is left that a test on command looks at.
+/// True if no item has failed and no test was aborted.
 bool is_well(const SelfTestReport& report) {
   bool is_well = true;
   for_each_item(report, [&](const auto&, const auto& entry) {

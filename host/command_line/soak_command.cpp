@@ -28,19 +28,19 @@ constexpr double default_board_time_s = 60;
 
 struct SoakOptions {
   soak::Choices choices;
-  /// Of all sittings. If it is not given, default_board_time_s, or a whole sitting of `choices` where one is named.
+  /// Total of all sittings. Default: default_board_time_s, or a complete sitting of `choices` if one is selected.
   std::optional<double> board_time_s;
   unsigned jobs = 1;
-  std::optional<unsigned> sitting;  ///< this one alone
+  std::optional<unsigned> sitting;  ///< runs only this sitting
   std::string file;
 };
 
 struct Plan {
   soak::Choices choices;
-  std::vector<unsigned> numbers;  ///< of the sittings
+  std::vector<unsigned> numbers;  ///< numbers of the sittings
 };
 
-/// All sittings are as long as each other, so that their sum is the time that was asked for, whatever the jobs are.
+/// All sittings have the same length. Their sum is the requested time, independent of the number of jobs.
 Plan plan_of(const SoakOptions& command) {
   if (command.sitting && !command.board_time_s) return {command.choices, {*command.sitting}};
   const double board_time_s = command.board_time_s.value_or(default_board_time_s);
@@ -57,7 +57,7 @@ Plan plan_of(const SoakOptions& command) {
   return plan;
 }
 
-/// Before an hour of work, not after it. What is there stays as it is until the result takes its place.
+/// Checks the file before an hour of work instead of after it. The existing content stays until the result replaces it.
 void check_writable(const std::string& file) {
   std::error_code ignored;
   const bool was_there = std::filesystem::exists(file, ignored);
@@ -66,13 +66,13 @@ void check_writable(const std::string& file) {
   if (!was_there) std::filesystem::remove(file, ignored);
 }
 
-/// What is known of the sittings, and why there are no more.
+/// The completed sittings, and the reason if some are missing.
 struct Outcome {
   soak::Soak soak;
   std::string trouble;
 };
 
-/// Each on a board of its own; as many at once as there are jobs. Ctrl-C ends those that are under way.
+/// Runs each sitting on a separate board, with `jobs` boards in parallel. Ctrl-C stops running sittings.
 Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   const auto [choices, numbers] = plan_of(command);
@@ -91,7 +91,7 @@ Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   const auto work = [&] {
     for (std::size_t i; !is_stopped() && (i = next++) < numbers.size();) try {
         sittings[i] = soak::run_sitting(numbers[i], choices, board, tell, is_stopped);
-      } catch (const std::exception& error) {  // of a thread it would end the program
+      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
         const std::lock_guard lock(telling);
         outcome.trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
         next = numbers.size();
@@ -124,7 +124,7 @@ void add_soak_command(const Place& place) {
       "soak",
       "Tests virtual boards with random use, faults, unplugged cables and parameter changes\n"
       "Ctrl-C stops the soak and prints the results so far. Exit code 1: the soak found a problem.");
-  // tools/soak has options of its own; those of its user come behind them and count.
+  // tools/soak sets default options; options of its user follow them and take precedence.
   command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
   command->add_option("--seconds", options->board_time_s, "Total board time, divided equally among the boards")

@@ -1,12 +1,12 @@
-// Commands below `inkwell parameters` for what the board keeps of them over its power.
+// Subcommands of `inkwell parameters` for the stored parameters.
 #pragma once
 
 #include "commands.hpp"
 
 namespace inkwell::command_line {
 
-/// A virtual board that was started for one command ends with it. Says so, and what would have kept the values, if
-/// nothing does.
+/// A virtual board that was started for one command exits with it. Reports this, and the option that retains the
+/// values, if they would be lost.
 void tell_what_ends(const DeviceOptions& options, bool is_stored);
 
 void add_store_commands(CLI::App& parameters, const Place& place);

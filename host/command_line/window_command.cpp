@@ -18,11 +18,11 @@
 namespace inkwell::command_line {
 namespace {
 
-/// Begins with "Window": completion does not offer these behind a command.
+/// The name begins with "Window", because completion does not offer this group after a command.
 constexpr char window_group[] = "Window (without a command, and of replay)";
 constexpr std::string_view command_with_window = "replay";
 
-/// In the form in which help, manual page and completion take choices. Layouts of the user's own may be given too.
+/// The choices in the form for help, manual page and completion. User-defined layouts are also accepted.
 std::string layout_choices() {
   std::vector<std::string_view> names;
   for (const window::ScopeLayout& layout : window::built_in_layouts()) names.push_back(layout.name);
@@ -49,7 +49,7 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
   window_options.virtual_board_control = control_socket(control);
   window_options.list_devices = [&options] { return device::find_arms(options.address()); };
   const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
-    // The mouse is the hand, so board time must be the user's time.
+    // The mouse is the hand, so board time must follow real time.
     board = std::make_unique<device::VirtualBoard>(
         options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     of_window.serial_number.clear();

@@ -24,8 +24,8 @@ struct Intro {
 struct Field {
   std::string_view type, name;
   std::size_t offset, bytes;
-  std::size_t count;         ///< of an array; 0 for what is none
-  unsigned first_bit, bits;  ///< 0 bits for whole bytes
+  std::size_t count;         ///< array length; 0 if the field is not an array
+  unsigned first_bit, bits;  ///< 0 bits for a field of whole bytes
   std::string_view value, meaning;
 };
 struct Struct {
@@ -53,14 +53,15 @@ struct Constant {
 
 }  // namespace inkwell::protocol::layouts
 
-#include <wire_layouts.hpp>  // made of the protocol's headers, from what stands above
+#include <wire_layouts.hpp>  // generated from the protocol headers; uses the structures above
 
 namespace inkwell::command_line {
 namespace {
 
 namespace layouts = protocol::layouts;
 
-/// Each field lies behind the one before it, or where that does in a union or a byte of bits, and the last ends it.
+/// True if the fields have no gaps. A field of a union or a bit field may start at the same offset as the previous
+/// field.
 constexpr bool is_whole(const layouts::Struct& row) {
   std::size_t begin = 0, end = 0;
   for (const auto& field : row.fields) {

@@ -1,4 +1,4 @@
-// What goes over the wire, field by field, as the protocol's headers have it.
+// The layout of all wire structures, field by field, from the protocol headers.
 #pragma once
 
 #include <string_view>
@@ -7,9 +7,9 @@
 
 namespace inkwell::command_line {
 
-/// Prints it as Markdown.
+/// Prints the layout as Markdown.
 void print_wire();
-/// How a signal is written into a scope frame, as print_wire() calls it.
+/// The encoding of a signal in a scope frame, as print_wire() names it.
 std::string_view name_of(protocol::SignalWire wire);
 
 }  // namespace inkwell::command_line

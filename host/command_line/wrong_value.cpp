@@ -12,7 +12,7 @@
 namespace inkwell::command_line {
 namespace {
 
-/// An option or argument that was given, and the command that it belongs to.
+/// An option or argument on the command line, and its command.
 struct Given {
   const CLI::Option* option;
   std::string command;
@@ -34,7 +34,8 @@ std::string name_of(const CLI::Option& option) {
   return name;
 }
 
-/// What cannot be converted is meant as a number in this program; one that is refused all the same has to be whole.
+/// The message for a value that cannot be converted: all converted values are numbers. A number that was refused must
+/// be a non-negative integer.
 std::string of_conversion(const Given& given) {
   const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
   const auto& values = given.option->results();
@@ -42,7 +43,7 @@ std::string of_conversion(const Given& given) {
   if (given.option->get_items_expected_max() == 0)
     return fmt::format("{} accepts no value, but got {}. Omit the value; {}", name, CLI::detail::join(values, " "),
                        help);
-  // Of several values CLI11 does not say which it means.
+  // CLI11 does not report which of several values is wrong.
   const auto no_number = std::ranges::find_if_not(values, is_number);
   if (no_number != values.end())
     return fmt::format("{} is not a number for {}. Give a number such as 12; {}", *no_number, name, help);
@@ -50,7 +51,7 @@ std::string of_conversion(const Given& given) {
                      CLI::detail::join(values, " "), name, help);
 }
 
-/// "--seconds: 1 required SECONDS missing"
+/// Handles CLI11 texts such as "--seconds: 1 required SECONDS missing".
 std::optional<std::string> of_missing_value(const CLI::App& program, std::string_view raw) {
   if (!raw.ends_with(" missing") || raw.find(" required ") == std::string_view::npos) return std::nullopt;
   const std::string name(raw.substr(0, raw.find(':')));
@@ -72,7 +73,7 @@ std::string sentence_of(const CLI::App& program, const CLI::ParseError& error) {
     if (given) return of_conversion(*given);
   }
   if (const auto sentence = of_missing_value(program, raw)) return *sentence;
-  if (raw.ends_with('.')) return raw;  // a check of ours has said what to give
+  if (raw.ends_with('.')) return raw;  // a validator of this program has already written the sentence
   return fmt::format("{}\nRun with --help for more information.", raw);
 }
 

@@ -1,4 +1,4 @@
-// What CLI11 says of a value in raw words, as a sentence.
+// Converts CLI11's messages about values to sentences.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace inkwell::command_line {
 
-/// Names the value, the option or argument that it was for, and what to give instead.
+/// The sentence names the value, its option or argument, and the expected value.
 std::string sentence_of(const CLI::App& program, const CLI::ParseError& error);
 
 }  // namespace inkwell::command_line

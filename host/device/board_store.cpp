@@ -9,7 +9,7 @@ using protocol::Command;
 using protocol::StoreReport;
 using protocol::StoreResult;
 
-/// Of board time. A set of parameters is written in a part of it.
+/// Limit in board time. Storing one parameter set takes a fraction of it.
 constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
 
 constexpr std::string_view was_not_stored = "The parameters were not stored.";
@@ -23,7 +23,7 @@ std::int64_t board_periods(Device& device) {
   return frame->time_periods;
 }
 
-/// The count tells the result of this command from that of the one before.
+/// The command counter distinguishes the result of this command from the previous result.
 StoreReport carry_out(Device& device, Command command, std::string_view failure) {
   const std::uint32_t commands_before = device.store_report().commands;
   device.carry_out(command);

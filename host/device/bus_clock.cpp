@@ -8,7 +8,7 @@ double BusClock::periods_between(const Moment& from, const Moment& to) {
 
 void BusClock::note(const BusFrame& frame) {
   const Moment moment{frame.sequence, frame.time_periods, frame.time_cycles / cycles_per_period_};
-  // Both counts fall only when the board starts again.
+  // The sequence decreases only when the board restarts.
   if (newest_ && moment.sequence < newest_->sequence) oldest_.reset();
   newest_ = moment;
   if (!oldest_) oldest_ = moment;

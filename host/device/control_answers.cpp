@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What `read` gives; a value of another kind than it wants is an Error with this sentence.
+/// Returns the value of `read`. A value of the wrong JSON type is an Error with this sentence.
 template <class Read>
 auto read_or_fail(const char* sentence, Read read) {
   try {
@@ -24,7 +24,7 @@ auto read_or_fail(const char* sentence, Read read) {
 
 constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build it again.";
 
-/// The library turns any number into an unsigned one, which is undefined for one that does not fit.
+/// nlohmann::json converts any number to an unsigned one. For a number out of range that conversion is undefined.
 template <class Whole>
 Whole whole_number(const json& value, const char* sentence) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Whole>::max())

@@ -1,4 +1,4 @@
-// What a virtual board answers on its control socket, made sense of: a line each.
+// Parses the answers on the control socket of a virtual board, one line each.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 
 namespace inkwell::device {
 
-/// The answer to a command. Throws CommandRefused if the board refuses it, Error if the line is no board's.
+/// Returns the answer to a command. Throws CommandRefused if the board refuses the command, Error if the line is not an
+/// answer of a board.
 nlohmann::json parse_answer(std::string_view line, std::string_view command);
 
-// What is in an answer. What it leaves out is nothing, but for a trace and for the faults that are in. All throw Error
-// if it holds something else than it should.
+// Read the content of an answer. A missing value is zero or empty; a trace and the list of injected faults are
+// required. All throw Error if a value has the wrong type.
 BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);
 PutInFault put_in_fault_of(const nlohmann::json& answer, const protocol::InjectionRequest& asked);

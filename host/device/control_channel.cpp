@@ -21,11 +21,11 @@ constexpr std::uint8_t boot_loader_interface = 0, set_interface = 11;
 /// DFU 1.1, sections 3 and 6.1.2.
 constexpr std::uint8_t detach_request = 0, get_status_request = 3, status_vendor_error = 0x0B;
 constexpr std::uint16_t status_length = 6;
-constexpr unsigned timeout_ms = 20'000;  // a sector's erase takes a few seconds at most
+constexpr unsigned timeout_ms = 20'000;  // a sector erase takes a few seconds at most
 constexpr char in_use[] = "Another program updates this board's firmware. Wait for it, or close it.";
 constexpr char refused[] = "The board refused a request for its firmware update.";
 
-/// What both ways have in common: requests as setup packets.
+/// The part that USB and USB/IP share: requests as setup packets.
 class Channel : public ControlChannel {
  public:
   explicit Channel(std::uint8_t interface_number) : interface_(interface_number) {}
@@ -71,7 +71,7 @@ class UsbChannel final : public Channel {
     return data;
   }
   void write_control(const Setup& setup, std::span<const std::byte> data) override {
-    std::vector<std::byte> copy(data.begin(), data.end());  // libusb takes no constant
+    std::vector<std::byte> copy(data.begin(), data.end());  // libusb requires a non-const pointer
     transfer(setup, copy.data());
   }
   std::size_t transfer(const Setup& setup, std::byte* data) {
@@ -143,7 +143,7 @@ std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint) {
 
 namespace {
 
-/// True if the firmware stays because of the force. A firmware that left, or that leaves now, may answer nothing.
+/// True if the firmware refuses to detach because the force is on. A firmware that is detaching may not answer.
 bool has_refused(ControlChannel& channel) {
   try {
     const auto status = channel.read({get_status_request}, status_length);
@@ -155,7 +155,7 @@ bool has_refused(ControlChannel& channel) {
 
 void detach(ControlChannel& channel) {
   constexpr std::uint16_t within_ms = 1000;
-  channel.write({detach_request, within_ms}, {});  // a firmware of protocol 15 refuses this by a stall
+  channel.write({detach_request, within_ms}, {});  // firmware of protocol 15 refuses this with a stall
   if (has_refused(channel)) throw Stalled(refused);
 }
 

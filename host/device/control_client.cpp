@@ -20,7 +20,7 @@ constexpr std::size_t line_maximum = 128u << 20;
 
 struct ControlClient::Implementation {
   Socket socket;
-  std::string received;  ///< what came after the last line
+  std::string received;  ///< bytes after the last line
 
   std::string read_line() {
     std::array<std::byte, 65536> chunk;

@@ -33,18 +33,18 @@ using protocol::Command;
 using protocol::ReportId;
 
 constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
-/// For a request that the board refuses only for the moment.
+/// For a request that the board refuses only temporarily.
 BoardTimeout busy_limit() { return {2.0, 2s}; }
 constexpr auto claim_poll_interval = 5ms;
-/// Until the board has carried out a command, and until a force that falls is off.
+/// Limits for the execution of a command and for a fading force.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
-/// The self-test's counter is not widened: only its differences are used.
+/// The counter in the self-test report is not widened: only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
-/// A claim that is not renewed has ended by then.
+/// A claim that is not renewed expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
-/// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
+/// The claims of this process. A program that opens an arm twice learns from them which of its objects drives the arm.
 /// Objects with the same seed, on different virtual boards, have the same claim.
 class OwnClaims {
  public:
@@ -69,7 +69,7 @@ class OwnClaims {
 
 std::atomic<OwnClaims*> claims_of_process = nullptr;
 
-/// Never destroyed: programs close their arms in their last destructors. A forked child begins with none.
+/// Never destroyed, because programs close their arms in their last destructors. A forked child starts without claims.
 OwnClaims& own_claims() {
   static const bool is_made = [] {
     claims_of_process = new OwnClaims;
@@ -80,7 +80,7 @@ OwnClaims& own_claims() {
   return *claims_of_process;
 }
 
-/// False if no process of this computer has the number. It may be a process of another computer, or of a container.
+/// False if no process on this computer has this number. The driver may also run on another computer or in a container.
 bool may_exist(std::uint32_t process_id) { return kill(static_cast<pid_t>(process_id), 0) == 0 || errno != ESRCH; }
 
 int next_object() {
@@ -136,20 +136,20 @@ struct Device::Implementation {
   std::atomic<bool> drives = false;
   std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
   std::atomic<std::uint32_t> newest_sequence = 0;
-  std::mutex feature_mutex;  ///< a transaction and the report on it belong together
-  std::mutex output_mutex;   ///< guards the next four
+  std::mutex feature_mutex;  ///< keeps a transaction and its report together
+  std::mutex output_mutex;   ///< guards the next four members
   std::uint32_t ticket;
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   std::int64_t last_output_period = 0;
-  std::atomic<std::int64_t> newest_period = 0;  ///< of the poses
+  std::atomic<std::int64_t> newest_period = 0;  ///< from the poses
   WideCounter time_periods, sequence;
   std::uint16_t transaction_ticket;  ///< guarded by feature_mutex
-  mutable std::mutex scope_mutex;    ///< the selection comes from one thread, the frames are read by another
+  mutable std::mutex scope_mutex;    ///< one thread selects signals, another reads the frames
   ScopeDecoder decoder;
-  mutable std::mutex link_mutex;  ///< guards the next one; taken last
+  mutable std::mutex link_mutex;  ///< guards `link`; locked last
   std::shared_ptr<Transport> link;
-  SleepInhibitor sleep_inhibitor;  ///< wanted while this object drives a real arm whose force is on
+  SleepInhibitor sleep_inhibitor;  ///< active while this object drives a real arm whose force is on
 
   explicit Implementation(std::unique_ptr<Transport> transport)
       : Implementation(OwnNumbers(transport->endpoint().seed), std::move(transport)) {}
@@ -159,7 +159,7 @@ struct Device::Implementation {
         transaction_ticket(numbers.transaction_ticket),
         link(std::move(transport)) {}
 
-  /// The link as it is now. A call that uses it keeps it alive.
+  /// The current link. The returned pointer keeps the link alive during a call.
   std::shared_ptr<Transport> transport() const {
     const std::lock_guard lock(link_mutex);
     return link;
@@ -168,7 +168,7 @@ struct Device::Implementation {
   ForceLaw read_force_law() {
     protocol::ForceLawReport header{};
     get(header, "force law");
-    // The device pads what it sends to the length that is asked for, so no more than it uses is asked for.
+    // The device pads its report to the requested length, so only the required length is requested.
     std::vector<std::byte> report(std::clamp<std::size_t>(header.size, 1, protocol::force_law_report_maximum));
     report[0] = static_cast<std::byte>(ReportId::force_law);
     report.resize(std::min(report.size(), transport()->get_feature(report)));
@@ -181,7 +181,8 @@ struct Device::Implementation {
     if (length < sizeof report) throw too_short(what, length, sizeof report);
   }
 
-  /// From `first_row` on, with the feature_mutex held. Another program may ask for other rows between the two requests.
+  /// Reads the rows from `first_row` on. Requires feature_mutex. Another program may select other rows between the two
+  /// requests.
   protocol::BlackBoxRowsReport rows_from(std::size_t first_row) {
     constexpr int tries = 100;
     const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
@@ -197,11 +198,11 @@ struct Device::Implementation {
     throw InUse("Another program reads the black box all the time. Close it and try again.");
   }
 
-  /// Gives the command its token and sends it. `before` is done once the token is known.
+  /// Assigns the command its token and sends it. `before` runs once the token is known.
   template <class Before>
   std::uint8_t send(protocol::CommandReport& command, Before before) {
     const std::lock_guard lock(output_mutex);
-    token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0 stands for "no command yet"
+    token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0 means that no command was sent yet
     command.report_id = ReportId::command;
     command.version = protocol::protocol_version;
     command.token = token;
@@ -214,17 +215,17 @@ struct Device::Implementation {
     return send(command, [] {});
   }
 
-  /// Any output report is a sign of life. Called with output_mutex held.
+  /// Every output report is a sign of life. Requires output_mutex.
   template <class Report>
   void write(const Report& report) {
     transport()->write_report(std::as_bytes(std::span(&report, 1)));
     last_output_period = newest_period;
   }
 
-  /// For what this object sends: its claim while it drives, else none.
+  /// The claim in the reports of this object: its own claim while it drives the arm, otherwise 0.
   std::uint32_t claim() const { return drives ? own_claim : 0; }
 
-  /// Asks for the board time, with the feature_mutex held.
+  /// Reads the board time. Requires feature_mutex.
   std::int64_t now_periods() {
     protocol::DriverReport report{};
     get(report, "driver");
@@ -284,8 +285,8 @@ struct Device::Implementation {
     return driver_report();
   }
 
-  /// A program that was killed leaves its claim behind. True once that has ended; false if it is renewed, or if its
-  /// program may be there.
+  /// Waits until the claim of a killed program has expired. Returns false if the claim is renewed, or if the program
+  /// may still exist.
   bool outlives(const protocol::DriverReport& driven) {
     if (may_exist(driven.process_id)) return false;
     auto limit = claim_limit();
@@ -318,7 +319,7 @@ struct Device::Implementation {
     own_claims().remove(protocol::digest_of(own_claim), object);
   }
 
-  /// Waits for an input report. A device that went away needs no inhibitor.
+  /// Waits for an input report. A disconnected device needs no inhibitor.
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) {
     try {
       return transport()->read_report(report, timeout);
@@ -328,12 +329,12 @@ struct Device::Implementation {
     }
   }
 
-  /// By a pose: the driver's parity differs, or did when the pose was sent.
+  /// Checks the claim when the driver parity of a pose differs. The parity may have changed since the pose was sent.
   void check_claim(const protocol::PoseReport& pose) {
     if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
-    // A thread that has the mutex may wait in lock step for the next pose, which the caller has to read.
+    // In lock step the mutex owner may wait for the next pose, which the caller has to read.
     const std::unique_lock lock(feature_mutex, std::try_to_lock);
-    if (!lock) return;  // the next pose has the parity, too
+    if (!lock) return;  // the next pose also shows the parity
     const auto report = driver_report(lock);
     if (is_own(report))
       driver_changes = report.changes;
@@ -351,10 +352,10 @@ struct Device::Implementation {
     return report;
   }
 
-  /// The output_mutex is held.
+  /// Requires output_mutex.
   std::uint32_t next_ticket() { return ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1; }
 
-  /// None if the board has not received the request yet, or if results of newer requests have replaced this one.
+  /// None if the board has not received the request yet, or if newer results have replaced its result.
   static std::optional<protocol::RequestResult> result_in(const protocol::RequestResultsReport& report,
                                                           std::uint32_t of_ticket) {
     const auto* entry = std::ranges::find(report.entries, of_ticket, &protocol::RequestResultEntry::ticket);
@@ -366,7 +367,7 @@ struct Device::Implementation {
     return Error(fmt::format("The board refused {}. {} {}", what, row.meaning, row.remedy));
   }
 
-  /// Sends the command and reads the results until its own is final.
+  /// Sends the command and reads the results until the result of this command is final.
   protocol::RequestResult result_of(protocol::CommandReport& command) {
     send(command, [&] { command.ticket = next_ticket(); });
     std::optional<std::uint32_t> begin_periods;
@@ -380,7 +381,7 @@ struct Device::Implementation {
     }
   }
 
-  /// Sends the command again as long as the board is busy.
+  /// Repeats the command while the board is busy.
   void carry_out(protocol::CommandReport& command) {
     using enum protocol::RequestResult;
     auto limit = busy_limit();
@@ -402,7 +403,7 @@ struct Device::Implementation {
       transport()->set_feature(
           std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
     }
-    // The board has the shapes: where the result is not there any more, they are sent again.
+    // The board has the shapes. If their result has been replaced, they are sent again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
   }
 
@@ -413,7 +414,7 @@ struct Device::Implementation {
     return report;
   }
 
-  /// The parameters that are held, or those that are stored.
+  /// Reads the current or the stored parameters.
   protocol::ParameterSet read_parameters(ReportId id) {
     const std::lock_guard lock(feature_mutex);
     protocol::ParametersReport report{};
@@ -431,7 +432,7 @@ struct Device::Implementation {
     return set;
   }
 
-  /// A transaction that gives every parameter a value and so has no entries.
+  /// A transaction that sets every parameter and therefore has no entries.
   AcceptedTransaction transact(protocol::ParameterOperation operation) {
     protocol::ParametersReport report{};
     report.report_id = ReportId::parameters;
@@ -440,8 +441,8 @@ struct Device::Implementation {
     return transact(report);
   }
 
-  /// The device judges a transaction before it acknowledges its data, so the report read next speaks of this one.
-  /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
+  /// The device processes a transaction before it acknowledges the data, so the next report belongs to this
+  /// transaction. Reading a report first would delay a slider change by one bus frame.
   AcceptedTransaction transact(protocol::ParametersReport& report) {
     report.claim = claim();
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
@@ -452,7 +453,7 @@ struct Device::Implementation {
       transport()->set_feature(bytes);
       const auto result = transaction_report();
       if (result.ticket != report.ticket) {
-        // Another program's transaction came between. Whether this one was accepted is not known, so it is sent again.
+        // A transaction of another program came between. The result of this one is unknown, so it is sent again.
         if (limit.is_over(now_periods())) throw InUse("Other programs change parameters all the time. Close them.");
         continue;
       }
@@ -490,7 +491,7 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     "arm or recording, or use a program of its own for each of them.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
-  // Without a frame no program has read anything since the board started.
+  // Without a bus frame no program has read samples since the board started.
   if (const auto frame = device->frame())
     device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(frame->time_periods));
   return device;
@@ -502,7 +503,7 @@ Device::Device(std::unique_ptr<Transport> transport)
 Device::~Device() {
   try {
     release();
-  } catch (const Error&) {  // the device is gone, and the claim with it
+  } catch (const Error&) {  // the device is gone, and so is the claim
   }
 }
 
@@ -581,16 +582,16 @@ void Device::take_link_of(Device& opened) {
   if (self.force_law && other.force_law && *self.force_law->report != *other.force_law->report)
     throw Error(fmt::format("The board came back with the force law {} instead of {}. Open the arm again.",
                             other.force_law->name, self.force_law->name));
-  std::shared_ptr<Transport> before;  // ends after the locks: that may take a while
+  std::shared_ptr<Transport> before;  // destroyed after the locks are released, because closing may take long
   const std::scoped_lock lock(self.feature_mutex, self.output_mutex, self.scope_mutex);
   self.decoder = other.decoder;
-  self.lose_claim();  // the board has forgotten it
+  self.lose_claim();  // the restarted board has no claim of this object
   opened.continue_time(self.newest_period);
   self.time_periods = other.time_periods;
   self.sequence = other.sequence;
   self.newest_period = self.time_periods.newest();
   self.newest_sequence = other.newest_sequence.load();
-  self.last_output_period = self.newest_period - heartbeat_periods;  // the board has not heard anything yet
+  self.last_output_period = self.newest_period - heartbeat_periods;  // the board has not received an output report yet
   const std::lock_guard link_lock(self.link_mutex);
   before = std::exchange(self.link, std::move(other.link));
 }
@@ -648,7 +649,7 @@ void Device::keep_alive() {
   auto& self = *implementation_;
   {
     const std::lock_guard lock(self.output_mutex);
-    // While board time does not pass, heartbeats would pile up before the next command.
+    // While board time is stopped, heartbeats would queue up ahead of the next command.
     if (self.newest_period - self.last_output_period < heartbeat_periods) return;
   }
   send(Command::heartbeat);
@@ -780,7 +781,7 @@ protocol::SelfTestReport Device::self_test() {
     return !condition();
   };
   const auto it_runs = [&] { return report.is_running != 0; };
-  wait_while(it_runs);  // the one after the start
+  wait_while(it_runs);  // the self-test after the start
   const std::uint32_t begun_before = report.tests_begun;
   carry_out(Command::self_test);
   if (!wait_while([&] { return report.tests_begun == begun_before; }))

@@ -47,8 +47,7 @@ FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test
     if (std::ranges::find(remedies, item.remedy) == remedies.end()) remedies.push_back(item.remedy);
   }
   if (fault != protocol::Fault::self_test_failed || items.empty()) return text;
-  text.cause =
-      fmt::format("The self-test failed for items that the force needs: {}.", fmt::join(items, ", "));
+  text.cause = fmt::format("The self-test failed for items that the force needs: {}.", fmt::join(items, ", "));
   text.remedy = fmt::format("{} Then clear the fault, which tests again.", fmt::join(remedies, " "));
   return text;
 }

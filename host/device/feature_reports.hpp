@@ -1,4 +1,4 @@
-// Feature reports as a device sends them, judged before they are believed.
+// Reads feature reports and validates them.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ std::span<std::byte> writable_bytes(Report& report) {
   return std::as_writable_bytes(std::span(&report, 1));
 }
 
-/// The sentence for a report that has `length` bytes.
+/// The error for a report of `length` bytes.
 Incompatible too_short(const char* what, std::size_t length, std::size_t wanted);
 
-/// Of a device of another version only what has the same place there; the rest is 0. Throws Incompatible if not even
-/// that came.
+/// Reads the information report. From a device of another protocol version, only the members with the same position are
+/// read; the rest is 0. Throws Incompatible if even these are missing.
 protocol::InformationReport read_information(Transport& transport);
 
 }  // namespace inkwell::device

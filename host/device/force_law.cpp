@@ -17,7 +17,7 @@ Error damaged() {
   return Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
 }
 
-/// Takes a report apart from its begin on.
+/// Reads the rows of a report from its beginning.
 class RowReader {
  public:
   explicit RowReader(std::span<std::byte> left) : left_(left) {}
@@ -27,7 +27,7 @@ class RowReader {
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
   }
-  /// With a zero behind its end. What is not printable is replaced in the report itself.
+  /// Returns a zero-terminated text. Unprintable characters are replaced in the report itself.
   std::string_view text() {
     auto* begin = reinterpret_cast<char*>(left_.data());
     const std::size_t length = strnlen(begin, left_.size());
@@ -35,7 +35,7 @@ class RowReader {
     std::ranges::copy(protocol::plain_text({begin, length}), begin);
     return {begin, length};
   }
-  /// The firmware does not compile with any other name. It is a key of files, and a column of scripts for figures.
+  /// The firmware build allows only these characters. The name is a key in files and a column name in plot scripts.
   std::string_view name() {
     const auto name = text();
     const auto is_allowed = [](char c) {
@@ -62,7 +62,7 @@ class RowReader {
   std::span<std::byte> left_;
 };
 
-/// What other threads may read at any time, and so stays until the program ends.
+/// Never destroyed, because other threads may read these rows at any time.
 struct Joined {
   ForceLaw law;
   std::span<const protocol::ParameterInfo> parameters;
@@ -71,10 +71,10 @@ struct Joined {
 
 std::mutex joined_mutex;
 const process::HeldAtFork joined_at_fork(joined_mutex);
-std::list<Joined> joined;                                        // the last one is in the tables
-std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // of the law that is in the tables
+std::list<Joined> joined;                                        // the last entry is in the tables
+std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // users of the law that is in the tables
 
-/// Puts the rows of a law into the tables, or takes those that are there away.
+/// Puts the rows of a law into the tables, or removes the added rows.
 void show(const Joined* law) {
   protocol::added_rows<protocol::ParameterInfo>.store(law ? &law->parameters : nullptr, std::memory_order_release);
   protocol::added_rows<protocol::SignalInfo>.store(law ? &law->signals : nullptr, std::memory_order_release);
@@ -122,7 +122,7 @@ bool join_tables(const ForceLaw& law) {
   }
   if (joined.empty() || *joined.back().law.report != *law.report) {
     if (!users.empty()) return false;
-    // Read once more, so that the texts in the tables are nobody else's.
+    // Parsed again, so that the tables use a separate copy of the texts.
     auto& fresh = joined.emplace_back(Joined{parse_force_law(*law.report), {}, {}});
     fresh.parameters = fresh.law.parameters;
     fresh.signals = fresh.law.signals;

@@ -6,8 +6,8 @@
 
 namespace inkwell::device {
 
-// Of the table of Levenshtein's algorithm only the cells whose places differ by no more than `most`: all others are
-// beyond it, and once a row is, so is the rest.
+// Only table cells whose indices differ by at most `most` are computed: all others exceed it. Once every cell of a row
+// exceeds it, the distance does too.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
   const std::size_t beyond = most + 1;
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return beyond;
@@ -29,7 +29,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t mo
 }
 
 bool is_near(std::string_view name, std::string_view typed) {
-  constexpr std::size_t telling = 3;  // a letter or two are in many names
+  constexpr std::size_t telling = 3;  // many names contain the same one or two letters
   if (typed.size() < telling) return false;
   const auto is_within = [&](std::string_view other, std::size_t edits) {
     return edit_distance(typed, other, edits) <= edits;

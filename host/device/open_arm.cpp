@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double show_limit_s = 2.0;  // of board time; the firmware shows itself after 0.1
+constexpr double show_limit_s = 2.0;  // board time; the firmware connects to USB after 0.1 s
 constexpr double step_s = 0.01;
 constexpr auto look_again = 5ms;
 

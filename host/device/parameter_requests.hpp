@@ -1,4 +1,4 @@
-// What a session was asked to make of the device's parameters and has not sent yet.
+// The parameter changes that a session has queued and not sent yet.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace inkwell::device {
 
-/// First the defaults of all parameters, if they are asked for, then single ones.
+/// The defaults of all parameters if requested, then individual values.
 struct ParameterRequests {
   bool restore_defaults = false;
-  std::vector<ParameterChange> changes;  ///< each parameter once, as a transaction names it
+  std::vector<ParameterChange> changes;  ///< each parameter once, as a transaction requires
 
-  /// A later value of the same parameter takes the place of the earlier one.
+  /// A later value of a parameter replaces the earlier one.
   void add(const std::vector<ParameterChange>& later);
-  /// What could not be sent comes before this, which was asked for since.
+  /// Puts unsent requests ahead of these newer ones.
   void put_before(ParameterRequests unsent);
-  /// What the device will hold once it got this.
+  /// The parameter values of the device after these requests.
   protocol::ParameterSet applied_to(const protocol::ParameterSet& held) const;
 };
 

@@ -6,7 +6,7 @@
 namespace inkwell::device {
 namespace {
 
-/// Right across the wrap of the period counter.
+/// Valid across the wrap of the period counter.
 bool is_before(std::uint32_t period, std::uint32_t other) { return period - other > 0x8000'0000u; }
 
 using protocol::SignalWire;
@@ -51,7 +51,7 @@ void read_full(Reader& reader, ScopeSamples& samples) {
     for (auto signal : samples.signals) samples.values.push_back(reader.take_signal(info(signal).wire));
 }
 
-/// False if a mask is impossible: bits of signals that were not selected, or a first sample that is not whole.
+/// False if a mask is invalid: it has bits of signals that were not selected, or the first sample is incomplete.
 bool read_changes(Reader& reader, ScopeSamples& samples) {
   const std::size_t signal_count = samples.signals.size();
   const std::uint32_t every_signal = static_cast<std::uint32_t>((std::uint64_t{1} << signal_count) - 1);
@@ -90,7 +90,7 @@ std::optional<ScopeSamples> ScopeDecoder::refuse_all_but_a_rest() {
 
 std::uint64_t ScopeDecoder::lost_before(const protocol::ScopeFrameHeader& header) const {
   if (!next_period_) return header.sequence;
-  return header.first_period - *next_period_;  // unsigned: right across the wrap of the period counter
+  return header.first_period - *next_period_;  // unsigned: valid across the wrap of the period counter
 }
 
 std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> frame) {
@@ -107,8 +107,8 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
       header.sample_count == 0 || signals_.empty())
     return refuse();
 
-  // Time does not run backwards: this frame or the one before it lied. Neither can be told apart, so this one is
-  // refused and the next is measured against it.
+  // Periods must not decrease, so either this frame or the previous one is wrong. This frame is refused, and the next
+  // one is compared with it.
   const bool runs_backwards = next_period_ && is_before(header.first_period, *next_period_);
   if (runs_backwards) {
     next_period_ = header.first_period + header.sample_count;

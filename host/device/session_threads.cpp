@@ -16,13 +16,13 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-/// Another program may have changed the parameters. A second of the device's time: while that stands still, nothing
-/// shall pile up before a change that the user makes.
+/// Another program may have changed the parameters. The interval is one second of board time: while that is stopped, no
+/// requests may queue up ahead of a change by the user.
 constexpr std::int64_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
 
-/// Between two of a guide's test pulses the arm stays claimed.
+/// The arm stays claimed between two test pulses of a guide.
 constexpr std::int64_t idle_claim_periods = 2 * protocol::servo_rate_Hz;
 
 bool may_move_arm(protocol::Command command) {
@@ -49,7 +49,7 @@ Session::Implementation::~Implementation() {
   scope_thread.join();
 }
 
-// ---- the report thread: connects, reads poses, sends what was asked for --------------------------------
+// ---- report thread: connects, reads poses, sends the queued requests ----------------------------------------------
 
 void Session::Implementation::report_loop() {
   ask_for_precedence();
@@ -98,7 +98,7 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
                                    information.serial_number, information.firmware_version),
                        std::nullopt));
   requests.select = !signals.empty();
-  // A command for the device that went away must not reach the one that came; parameter changes may.
+  // Commands for the lost device must not reach another device; parameter changes may.
   requests.commands.clear();
   requests.take_over = false;
   requests.store.reset();
@@ -152,17 +152,17 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       refresh_driver(*served);
       refreshed_at_periods = newest_periods;
       const std::lock_guard lock(mutex);
-      if (scope_denied) requests.select = true;  // the other program may be done
+      if (scope_denied) requests.select = true;  // the other program may have released the scope
     }
   }
-  send_requests(*served);  // what was asked for last, such as to put parameters back
+  send_requests(*served);  // the last requests, such as a parameter restore
   if (served->drives() && Clock::now() - last_pose < silence_limit) let_force_fall(*served);
 }
 
 void Session::Implementation::let_force_fall(Device& of) {
   try {
     of.disable_force();
-  } catch (const InUse&) {  // another program has taken the arm over
+  } catch (const InUse&) {  // another program has taken over the arm
   }
 }
 
@@ -204,7 +204,7 @@ namespace {
 std::optional<protocol::SelfTestReport> self_test_of(Device& device) {
   try {
     return device.read_self_test();
-  } catch (const Stalled&) {  // then the fault's own words have to do
+  } catch (const Stalled&) {  // then the generic fault text is used
     return std::nullopt;
   }
 }
@@ -240,7 +240,7 @@ std::int64_t Session::Implementation::noticed_at_periods(Device& by, const Pose&
     if (box.fault == pose.fault && box.is_restart == 0 && fault_periods <= pose.time_periods &&
         (!before_periods || fault_periods > *before_periods))
       return fault_periods;
-  } catch (const Stalled&) {  // then the pose tells it as well as one can
+  } catch (const Stalled&) {  // then the pose provides the time
   }
   return pose.time_periods;
 }
@@ -264,7 +264,7 @@ void Session::Implementation::send_requests(Device& to) {
     restore_defaults = false;
     if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
   } catch (const Stalled&) {
-    // Sent again, it would be refused again; what stands behind it was not sent yet.
+    // A repeated request would be refused again. The requests after it were not sent yet.
     if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
     put_back(std::move(taken.parameters));
     throw;
@@ -345,7 +345,7 @@ void Session::Implementation::carry_out(Device& by, StoreTask task) {
   const std::lock_guard lock(mutex);
   state.store = store;
   state.store_problem = problem;
-  state.is_storing = requests.store.has_value();  // asked for meanwhile
+  state.is_storing = requests.store.has_value();  // a newer request may be pending
   if (parameter_set == held) return;
   if (parameter_set) events.add(events_of_change(*parameter_set, held, std::nullopt));
   parameter_set = held;
@@ -356,7 +356,7 @@ void Session::Implementation::select(Device& to, const std::vector<protocol::Sig
   std::optional<std::string> denial;
   try {
     to.select_signals(selection);
-  } catch (const InUse& error) {  // all but the scope goes on
+  } catch (const InUse& error) {  // only the scope is unavailable
     denial = error.what();
   }
   const std::lock_guard lock(mutex);
@@ -381,7 +381,7 @@ void Session::Implementation::refresh_information(Device& from) {
 }
 
 void Session::Implementation::refresh_store(Device& from) {
-  auto store = *state.store;  // which this thread alone changes
+  auto store = *state.store;  // only this thread changes `state.store`
   const auto report = from.store_report();
   if (report.commands == store.report.commands && report.records_written == store.report.records_written)
     store.report = report;
@@ -422,7 +422,7 @@ void Session::Implementation::ask(StoreTask task) {
   state.store_problem.reset();
 }
 
-// ---- the scope thread ----------------------------------------------------------------------------------
+// ---- scope thread ---------------------------------------------------------------------------------------------------
 
 void Session::Implementation::scope_loop() {
   while (!stopping) {
@@ -449,7 +449,7 @@ void Session::Implementation::scope_loop() {
       }
     } catch (const Error&) {
       const std::lock_guard lock(mutex);
-      if (device == reading) lost = true;  // the report thread reconnects, unless it has done so already
+      if (device == reading) lost = true;  // the report thread reconnects, unless it already has
     }
   }
 }

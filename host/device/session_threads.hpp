@@ -1,4 +1,4 @@
-// The two threads of a session and what they share.
+// The two threads of a session and their shared state.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ struct QueuedCommand {
 
 enum class StoreTask : std::uint8_t { store, forget };
 
-/// What the caller asked for and the report thread has not sent yet.
+/// Requests of the caller that the report thread has not sent yet.
 struct Requests {
   std::vector<QueuedCommand> commands;
   ParameterRequests parameters;
@@ -32,31 +32,31 @@ struct Session::Implementation {
   explicit Implementation(std::function<std::optional<Endpoint>()> find_device);
   ~Implementation();
 
-  // ---- the report thread: connects, reads poses, sends what was asked for --------------------------------
+  // ---- report thread: connects, reads poses, sends the queued requests ----------------------------------------------
 
   void report_loop();
   std::shared_ptr<Device> connect(const Endpoint& endpoint);
   void serve(const std::shared_ptr<Device>& served);
   void take_pose(const Pose& pose, std::optional<std::int64_t>& sequence);
   void note_events(const std::optional<Pose>& before, const Pose& pose);
-  /// Together for as long as a rate is counted, so that a bad cable does not fill the log. Call with the lock held.
+  /// Logs the losses of one rate window as one event, so that a bad cable does not fill the log. Requires the mutex.
   void note_losses(std::int64_t at_periods);
-  /// `before_periods`: of the pose before this one, if there was one.
+  /// `before_periods`: time of the previous pose, if any.
   void follow_fault(Device& from, const Pose& pose, std::optional<std::int64_t> before_periods);
-  /// The black box knows the very period, unless it still keeps an older fault.
+  /// Uses the black box, which has the exact period unless it still contains an older fault.
   static std::int64_t noticed_at_periods(Device& by, const Pose& pose, std::optional<std::int64_t> before_periods);
   void send_requests(Device& to);
-  /// What the board refuses is shown to the user, and no reason to give the connection up.
+  /// A refusal by the board is shown to the user and does not close the connection.
   void carry_out(Device& by, const QueuedCommand& queued);
   void take_over(Device& from);
   void show_problem(const InUse& error);
-  /// A session that drives the arm and leaves switches the force off; otherwise the board would raise a fault.
+  /// Fades the force out when a session that drives the arm closes. Otherwise the board would raise a fault.
   void let_force_fall(Device& of);
-  /// Releases the arm some time after this session has needed it.
+  /// Releases the arm after this session has not needed it for some time.
   void release_idle(Device& of, const Pose& pose);
-  /// For the next connection. What was asked for since comes after it.
+  /// Queues unsent requests for the next connection, ahead of newer ones.
   void put_back(ParameterRequests unsent);
-  /// What the board refuses is told to the user, and no reason to give the connection up.
+  /// A refusal by the board is shown to the user and does not close the connection.
   void carry_out(Device& by, StoreTask task);
   void select(Device& to, const std::vector<protocol::Signal>& selection);
   template <class Transaction>
@@ -81,18 +81,19 @@ struct Session::Implementation {
     ++revision;
   }
   void refresh_parameters(Device& from);
-  /// Counters and the motors' heat change; the rest of it stays.
+  /// Only counters and motor heat are updated.
   void refresh_information(Device& from);
   void refresh_driver(Device& from);
-  /// The stored values change with the count of records only.
+  /// The stored values change only together with the record count.
   void refresh_store(Device& from);
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
   void set_connection(Connection connection, const std::string& message, const std::string& board_name = {});
   void forget_device();
-  /// With the mutex held. Without a device it would be carried out on whichever comes.
+  /// Requires the mutex. Without a device the request is dropped, because it might reach another device later.
   void ask(StoreTask task);
 
-  // ---- the scope thread ----------------------------------------------------------------------------------
+  // ---- scope thread
+  // ---------------------------------------------------------------------------------------------------
 
   void scope_loop();
 
@@ -106,9 +107,9 @@ struct Session::Implementation {
   std::optional<Pose> newest;
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
-  std::int64_t claimed_at_periods = 0;    ///< when this session last needed the arm
-  std::string served_serial_number;       ///< of the device that is connected, or was last
-  std::int64_t served_until_periods = 0;  ///< its newest pose
+  std::int64_t claimed_at_periods = 0;    ///< time at which this session last needed the arm
+  std::string served_serial_number;       ///< of the current or last device
+  std::int64_t served_until_periods = 0;  ///< time of its newest pose
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;
@@ -116,9 +117,9 @@ struct Session::Implementation {
   std::uint64_t told_poses_lost = 0, told_samples_lost = 0;
   Requests requests;
   std::vector<protocol::Signal> signals;
-  bool scope_denied = false;  ///< another program has it
+  bool scope_denied = false;  ///< another program uses the scope
   std::function<void(const ScopeSamples&)> receive_scope;
-  std::thread report_thread, scope_thread;  ///< last: they use all of the above
+  std::thread report_thread, scope_thread;  ///< last: the threads use all other members
 };
 
 }  // namespace inkwell::device

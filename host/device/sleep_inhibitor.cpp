@@ -19,15 +19,15 @@
 namespace inkwell::device {
 namespace {
 
-/// systemd-inhibit holds the inhibitor while `cat` reads from the pipe: until the pipe's other end closes.
+/// systemd-inhibit holds the inhibitor while `cat` reads from the pipe, until the other end of the pipe is closed.
 constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--what=sleep:idle",
                                                        "--who=Inkwell",   "--why=The force of the haptic arm is on",
                                                        "--mode=block",    "cat"};
 
 class SpawnAttributes {
  public:
-  /// The child has a session of its own: Ctrl-C does not end it, and it can ask for no password on the terminal. The
-  /// program's signal handling does not apply to it.
+  /// The child runs in a separate session: Ctrl-C does not stop it, and it cannot ask for a password on the terminal.
+  /// It does not inherit the program's signal handling.
   SpawnAttributes() {
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;
@@ -57,7 +57,7 @@ pid_t spawn(int input) {
   const SpawnAttributes attributes;
   std::array<char*, inhibitor_command.size() + 1> arguments{};
   for (std::size_t i = 0; i < inhibitor_command.size(); ++i)
-    arguments[i] = const_cast<char*>(inhibitor_command[i]);  // as exec() declares it
+    arguments[i] = const_cast<char*>(inhibitor_command[i]);  // exec() requires non-const pointers
   pid_t child = 0;
   const int code =
       posix_spawnp(&child, inhibitor_command[0], actions.get(), attributes.get(), arguments.data(), environ);
@@ -75,9 +75,9 @@ class RunningInhibitor {
     child_ = spawn(from_here.number());
   }
   ~RunningInhibitor() {
-    // The program may have collected all its children; then the number may be another process's by now.
+    // The program may have reaped all its children. The number may then belong to another process.
     if (child_ != 0 && waitpid(child_, nullptr, WNOHANG) == 0) {
-      kill(child_, SIGKILL);  // it may wait for logind
+      kill(child_, SIGKILL);  // the child may wait for logind
       while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
       }
     }
@@ -87,15 +87,15 @@ class RunningInhibitor {
 
  private:
   local::Descriptor to_child_;
-  process::OwnDescriptor own_;  ///< else a forked child would keep the inhibitor
+  process::OwnDescriptor own_;  ///< otherwise a forked child would keep the inhibitor active
   pid_t child_ = 0;
 };
 
-/// The thread that prepares the inhibitor may be a real-time thread, and this one inherits its precedence.
+/// This thread inherits the priority of its creator, which may be a real-time thread.
 void become_ordinary_thread() {
   sigset_t all;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, nullptr);  // signals are the program's own business
+  pthread_sigmask(SIG_SETMASK, &all, nullptr);  // other threads of the program handle signals
   const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
   const sched_param ordinary{};
   if (policy == SCHED_FIFO || policy == SCHED_RR) sched_setscheduler(0, SCHED_OTHER, &ordinary);
@@ -107,7 +107,7 @@ void become_ordinary_thread() {
 
 SleepInhibitor::~SleepInhibitor() {
   if (!origin_.is_here()) {
-    static_cast<void>(thread_.release());  // no such thread runs in the child
+    static_cast<void>(thread_.release());  // the thread does not exist in the child
     return;
   }
   if (!thread_) return;
@@ -120,7 +120,7 @@ void SleepInhibitor::prepare() {
   std::call_once(is_prepared_, [this] {
     try {
       thread_ = std::make_unique<std::thread>([this] { serve(); });
-    } catch (const std::system_error&) {  // no thread, no inhibitor
+    } catch (const std::system_error&) {  // without the thread there is no inhibitor
     }
   });
 }

@@ -1,5 +1,5 @@
-// Keeps the computer from sleeping while a hand feels a force: a suspended computer sends no sign of life, and the
-// board would raise a fault.
+// Prevents computer sleep while the force is on: a suspended computer sends no sign of life, and the board would raise
+// a fault.
 #pragma once
 
 #include <atomic>
@@ -11,20 +11,20 @@
 
 namespace inkwell::device {
 
-/// One inhibitor of logind, held by the program systemd-inhibit. Without that program, and if logind refuses the
-/// request, the computer may sleep. The inhibitor ends with the process, however the process ends.
+/// One logind inhibitor, held by the program systemd-inhibit. If that program is missing or logind refuses, the
+/// computer may sleep. The inhibitor is released whenever the process exits.
 class SleepInhibitor {
  public:
   SleepInhibitor() = default;
-  /// Releases the inhibitor. A forked child leaves its parent's inhibitor alone.
+  /// Releases the inhibitor. In a forked child it does not release the parent's inhibitor.
   ~SleepInhibitor();
   SleepInhibitor(const SleepInhibitor&) = delete;
   SleepInhibitor& operator=(const SleepInhibitor&) = delete;
 
-  /// Starts the thread that follow() needs. The first call only; any thread may call.
+  /// Starts the thread that follow() needs. Only the first call has an effect. Any thread may call this.
   void prepare();
-  /// Acquires or releases the inhibitor soon. Never waits; any thread may call. No effect before prepare() and in a
-  /// forked child.
+  /// Acquires or releases the inhibitor asynchronously. Any thread may call this. It has no effect until prepare() was
+  /// called, or in a forked child.
   void follow(bool is_wanted) { request(is_wanted ? Request::hold : Request::release); }
 
  private:

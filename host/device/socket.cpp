@@ -19,7 +19,7 @@ namespace inkwell::device {
 
 namespace {
 
-/// A signal ends the waiting for a connection, but not the connecting.
+/// A signal interrupts connect(), but the connection attempt continues.
 bool has_connected(int descriptor, const addrinfo& address) {
   if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
   if (errno != EINTR) return false;
@@ -33,7 +33,7 @@ bool has_connected(int descriptor, const addrinfo& address) {
   return reason == 0;
 }
 
-/// Not open, and errno, if nothing answers.
+/// On failure the descriptor is not open and errno is set.
 local::Descriptor connect_to_port(const SocketAddress& server) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -46,7 +46,7 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
   for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
     local::Descriptor descriptor(socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol));
     if (descriptor.is_open() && has_connected(descriptor.number(), *address)) {
-      const int yes = 1;  // requests are small and waited for: sending them at once matters more than packing them
+      const int yes = 1;  // requests are small and each is awaited, so low latency matters more than packing
       setsockopt(descriptor.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
       return descriptor;
     }
@@ -68,7 +68,7 @@ Socket::Socket(const SocketAddress& server)
 
 void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) {
   const auto microseconds = std::chrono::microseconds(limit.value_or(std::chrono::milliseconds(0))).count();
-  const timeval wait{microseconds / 1'000'000, microseconds % 1'000'000};  // 0 is no limit
+  const timeval wait{microseconds / 1'000'000, microseconds % 1'000'000};  // 0 means no limit
   setsockopt(descriptor_.number(), SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
 }
 

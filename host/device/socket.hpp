@@ -1,4 +1,4 @@
-// A connection of a client, over TCP or a Unix socket, closed with the object.
+// A client connection over TCP or a Unix socket. The destructor closes it.
 #pragma once
 
 #include <chrono>
@@ -16,23 +16,23 @@ namespace inkwell::device {
 
 class Socket {
  public:
-  /// Throws Error if nobody answers.
+  /// Throws Error if no server answers.
   explicit Socket(const SocketAddress& server);
 
-  /// How long a receive waits for more bytes before it throws Error; without a limit it waits for ever, as at first.
+  /// Limits the wait for received bytes; exceeding it throws Error. The default is no limit.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
 
-  /// These throw Disconnected when the other end is gone.
+  /// These throw Disconnected when the peer has closed the connection.
   void send(std::span<const std::byte> bytes);
   void receive(std::span<std::byte> bytes);  ///< fills `bytes`
   std::size_t receive_some(std::span<std::byte> bytes);
 
-  /// Ends a receive that waits in another thread.
+  /// Interrupts a receive() that waits in another thread.
   void shut_down();
 
  private:
   local::Descriptor descriptor_;
-  process::OwnDescriptor own_;  ///< a child that shuts the socket down would end the parent's connection
+  process::OwnDescriptor own_;  ///< otherwise a forked child could shut down the parent's connection
   std::string peer_;
 };
 

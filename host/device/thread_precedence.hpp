@@ -1,4 +1,4 @@
-// The threads that keep a device's sign of life must run in time however busy the computer is.
+// Raises the priority of the threads that send the sign of life, because they must run in time on a busy computer.
 #pragma once
 
 #include <sys/resource.h>
@@ -6,7 +6,7 @@
 
 namespace inkwell::device {
 
-/// Asks that the calling thread goes before others. Without the permission for it, it stays as it is.
+/// Raises the priority of the calling thread. Without permission the priority does not change.
 inline void ask_for_precedence() {
   constexpr int precedence = -10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), precedence);

@@ -1,4 +1,4 @@
-// Finished transfers on their way from the thread that receives to the one that reads.
+// Queue of finished transfers between the receiving thread and the reading thread.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ class TransferQueue {
     changed_.notify_one();
   }
 
-  /// What already came is still read after this; then `pop` throws Disconnected with `reason`.
+  /// Queued transfers can still be read. After them `pop` throws Disconnected with `reason`.
   void close(std::string reason) {
     const std::lock_guard lock(mutex_);
     if (!closed_) closed_ = std::move(reason);

@@ -1,4 +1,4 @@
-// The two kinds of transport; open_transport chooses.
+// The two kinds of transport. open_transport() selects one.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace inkwell::device {
 
 inline constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 
-/// Transfers of the scope under way: 128 KiB are more than 100 ms of a full-speed bus.
+/// Pending scope transfers: 128 KiB are more than 100 ms on a full-speed bus.
 inline constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
-/// Frames of the scope that nobody has read yet: 4 MiB.
+/// Unread scope frames: 4 MiB.
 inline constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
 
 inline constexpr char scope_in_use[] =
@@ -23,7 +23,7 @@ inline constexpr char scope_in_use[] =
 std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint);
 std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint);
 
-/// The sentence for a user who may not open the device, with the udev line that changes it.
+/// The message for a user who may not open the device, with the required udev rule.
 std::string permission_message(const std::string& path);
 
 }  // namespace inkwell::device

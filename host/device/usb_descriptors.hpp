@@ -1,4 +1,4 @@
-// Reads the device's configuration descriptor (USB 2.0, chapter 9; HID 1.11, section 6.2.1).
+// Parses the configuration descriptor of the device (USB 2.0, chapter 9; HID 1.11, section 6.2.1).
 #pragma once
 
 #include <cstddef>
@@ -8,23 +8,23 @@
 
 namespace inkwell::device {
 
-/// Where the two interfaces of the device are.
+/// Numbers of the HID and scope interfaces and their endpoints.
 struct UsbLayout {
   std::uint8_t configuration = 0;
   std::uint8_t hid_interface = 0;
-  std::uint8_t hid_in_endpoint = 0;  ///< with the direction bit
+  std::uint8_t hid_in_endpoint = 0;  ///< including the direction bit
   std::uint8_t hid_out_endpoint = 0;
   std::uint8_t scope_interface = 0;
-  std::uint8_t scope_in_endpoint = 0;  ///< with the direction bit
+  std::uint8_t scope_in_endpoint = 0;  ///< including the direction bit
 };
 
 /// Throws Error if the descriptor is damaged, or lacks the HID or the scope interface.
 UsbLayout parse_configuration(std::span<const std::byte> descriptor);
 
-/// The text of a string descriptor; characters beyond ASCII become '?'.
+/// The text of a string descriptor. Characters outside ASCII become '?'.
 std::string parse_string(std::span<const std::byte> descriptor);
 
-/// The index of the string that names an alternate setting; 0 if there is none. Damage ends the reading.
+/// The string index of the name of an alternate setting; 0 if there is none. Parsing stops at a damaged descriptor.
 std::uint8_t name_of_alternate(std::span<const std::byte> configuration, std::uint8_t interface,
                                std::uint8_t alternate);
 
@@ -47,7 +47,7 @@ constexpr Setup get_descriptor(DescriptorType type, std::uint8_t index, std::uin
 }
 constexpr Setup set_configuration(std::uint8_t configuration) { return {0x00, 9, configuration, 0, 0}; }
 
-/// HID 1.11, section 7.2; 3 in the high byte of wValue is a feature report.
+/// HID 1.11, section 7.2; 3 in the high byte of wValue selects a feature report.
 constexpr Setup get_feature_report(std::uint8_t interface, std::uint8_t id, std::uint16_t length) {
   return {0xA1, 0x01, static_cast<std::uint16_t>(0x0300 | id), interface, length};
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr char no_libusb[] = "libusb does not start. Check that /dev/bus/usb exists.";
 constexpr char open_elsewhere[] = "The device is open in another program. Close that program.";
 
-/// Opens each device with these identifiers and hands it over with its serial number; the one that is taken stays open.
-/// Returns why the last of the others could not be opened, 0 if there is no such one.
+/// Opens each device with these identifiers and passes its serial number and handle to `take`. If `take` returns false,
+/// the handle is closed. Returns the error code of the last device that could not be opened, or 0.
 template <class Take>
 int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t product_id, Take take) {
   libusb_device** list = nullptr;
@@ -35,7 +35,7 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
     std::array<unsigned char, 128> serial{};
     const int length =
         libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-    // As hidapi's is made plain, so that the two can be compared.
+    // The serial number of hidapi is cleaned the same way, so that both can be compared.
     const std::string found = protocol::plain_text(
         {reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0))});
     if (!take(found, handle)) libusb_close(handle);
@@ -44,7 +44,7 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
   return reason;
 }
 
-/// True for a device that is there but cannot be opened. After other reasons the device has gone.
+/// True if the error code shows that the device is connected but cannot be opened. For other codes the device is gone.
 bool shows_closed_device(int reason) {
   return reason == LIBUSB_ERROR_ACCESS || reason == LIBUSB_ERROR_NOT_SUPPORTED || reason == LIBUSB_ERROR_NOT_FOUND;
 }

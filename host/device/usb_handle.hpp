@@ -1,4 +1,4 @@
-// An open device of libusb, found by what it says of itself.
+// An open libusb device, found by its identifiers and serial number.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,17 @@ struct libusb_device_handle;
 
 namespace inkwell::device {
 
-/// Context and handle; what was claimed is released with it.
+/// Context and handle. The destructor releases all claimed interfaces.
 class UsbHandle {
  public:
-  /// Throws NoPermission, InUse, Disconnected if no such device is there, or Error.
+  /// Throws NoPermission, InUse, Disconnected if no such device is connected, or Error.
   UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const std::string& serial_number);
   ~UsbHandle();
   UsbHandle(const UsbHandle&) = delete;
   UsbHandle& operator=(const UsbHandle&) = delete;
 
-  /// Throws InUse with this sentence if another program has it, NoPermission without a driver, or Disconnected.
+  /// Throws InUse with the sentence `in_use` if another program has claimed the interface, NoPermission without a
+  /// driver, or Disconnected.
   void claim(int interface_number, const char* in_use);
   libusb_context* context() const { return context_; }
   libusb_device_handle* get() const { return handle_; }
@@ -31,10 +32,10 @@ class UsbHandle {
   libusb_context* context_ = nullptr;
   libusb_device_handle* handle_ = nullptr;
   std::vector<int> claimed_;
-  std::vector<process::OwnDescriptor> own_;  ///< else a child would keep what was claimed
+  std::vector<process::OwnDescriptor> own_;  ///< otherwise a forked child would keep the interfaces claimed
 };
 
-/// Serial numbers of those that are there. Throws NoPermission or InUse if one of them cannot be opened.
+/// Serial numbers of the connected devices. Throws NoPermission or InUse if one of them cannot be opened.
 std::vector<std::string> usb_serial_numbers(std::uint16_t vendor_id, std::uint16_t product_id);
 
 }  // namespace inkwell::device

@@ -25,7 +25,7 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// Of the interface for poses and commands; that of the controller has another.
+/// Usage page of the interface for poses and commands; the game controller interface has another one.
 constexpr unsigned short vendor_usage_page = 0xFF00;
 
 /// Largest feature report that the device declares.
@@ -37,7 +37,7 @@ std::string narrow(const wchar_t* text) {
   return protocol::plain_text(result);
 }
 
-/// The bulk interface through libusb. The kernel keeps the HID interface, which hidapi uses.
+/// Reads the bulk interface through libusb. The kernel driver keeps the HID interface for hidapi.
 class BulkReader {
  public:
   BulkReader(const std::string& serial_number, TransferQueue& queue)
@@ -108,7 +108,7 @@ class BulkReader {
     if (transfer.status == LIBUSB_TRANSFER_COMPLETED && transfer.actual_length > 0) {
       const auto* begin = reinterpret_cast<const std::byte*>(transfer.buffer);
       queue_.push({begin, begin + transfer.actual_length});
-      if (queue_.size() > bulk_kept) queue_.drop_oldest();  // the sequence of the frames shows it
+      if (queue_.size() > bulk_kept) queue_.drop_oldest();  // the frame sequence shows the loss
     }
     const bool goes_on = transfer.status == LIBUSB_TRANSFER_COMPLETED && !stopping_;
     if (goes_on && libusb_submit_transfer(&transfer) == 0) return;
@@ -125,7 +125,7 @@ class BulkReader {
   std::thread thread_;
 };
 
-/// hidapi's functions that belong to no handle share one error text.
+/// hidapi functions without a handle argument share one error text.
 std::mutex hidapi_mutex;
 const process::HeldAtFork hidapi_at_fork(hidapi_mutex);
 
@@ -143,7 +143,7 @@ bool is_listed(const std::string& path) {
   return false;
 }
 
-/// One of the handles of a device. Each thread's calls have a handle of their own, as the error text belongs to it.
+/// One of several handles of a device. hidapi stores the error text per handle, so each thread needs a separate handle.
 class HidHandle {
  public:
   explicit HidHandle(const std::string& path) : device_(open(path), &hid_close) {}
@@ -184,7 +184,7 @@ class UsbTransport : public Transport {
     const auto result = inputs_.call([&](hid_device* device) {
       return hid_read_timeout(device, data(report), report.size(), static_cast<int>(timeout.count()));
     });
-    if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // reading is never refused
+    if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // a device does not refuse reads
     return static_cast<std::size_t>(result.length);
   }
   void write_report(std::span<const std::byte> report) override {
@@ -220,7 +220,7 @@ class UsbTransport : public Transport {
     return reinterpret_cast<const unsigned char*>(bytes.data());
   }
 
-  /// Windows requires a buffer for the largest feature report; other systems accept it.
+  /// Windows requires a buffer of the largest feature report size; other systems accept it.
   HidHandle::Result request_feature(std::uint8_t id, std::span<std::byte> buffer) {
     buffer[0] = std::byte{id};
     return features_.call(
@@ -235,8 +235,8 @@ class UsbTransport : public Transport {
     throw Disconnected(with_detail(unplugged, result.detail));
   }
 
-  /// hidapi reports a refusal and an unplugged device alike. A device that refuses one request answers another one, and
-  /// a device that went away leaves the system's list soon.
+  /// hidapi does not distinguish a refusal from an unplugged device. A device that refuses one request answers another
+  /// one, and an unplugged device soon disappears from the system's list.
   bool is_present() {
     constexpr int looks = 10;
     std::array<std::byte, feature_report_maximum> buffer;
@@ -253,7 +253,7 @@ class UsbTransport : public Transport {
   Endpoint endpoint_;
   HidHandle inputs_, outputs_, features_;
   TransferQueue bulk_;
-  std::unique_ptr<BulkReader> scope_;  ///< while it is claimed
+  std::unique_ptr<BulkReader> scope_;  ///< set while the scope is claimed
 };
 
 }  // namespace
@@ -266,7 +266,7 @@ std::vector<Endpoint> find_usb_devices() {
   std::vector<Endpoint> endpoints;
   const auto list = list_devices();
   for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
-    // The identifiers are shared by private tests of other people, so the product's name decides.
+    // Private projects share these test identifiers, so the product name decides.
     const std::string product = narrow(device->product_string);
     if (product != identity::product || device->usage_page != vendor_usage_page) continue;
     endpoints.push_back({Endpoint::Kind::usb, narrow(device->serial_number), product, device->path, "", 0});

@@ -1,4 +1,4 @@
-// What a USB/IP server answers, made sense of, wherever its bytes come from.
+// Parses the answers of a USB/IP server, independent of their source.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace inkwell::device {
 
-/// Fills the bytes with what the server sent next; throws Error if that does not come.
+/// Fills the span with the next bytes from the server. Throws Error if they do not arrive.
 using ReceiveBytes = std::function<void(std::span<std::byte>)>;
 
 template <class Message>
@@ -26,24 +26,25 @@ Message receive_message(const ReceiveBytes& receive) {
 }
 
 struct UsbipDevice {
-  std::string path;  ///< of the device on the server
+  std::string path;  ///< device path on the server
   std::string bus_id;
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
 };
 
-/// A server that lists more is refused, so that it cannot make this program receive for ever.
+/// A longer list is refused, so that a server cannot make this program receive indefinitely.
 inline constexpr std::uint32_t listed_devices_maximum = 256;
-/// The answer to a request for the list. Throws Error if it is of something else than a USB/IP server.
+/// Receives the device list. Throws Error if the server is not a USB/IP server.
 std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive);
 
-/// The answer to an import: what transfers call the device, or none if it cannot be had. Throws Error as above.
+/// Receives the answer to an import request: the device id for transfers, or none if the device is unavailable. Throws
+/// the same errors.
 std::optional<std::uint32_t> receive_import(const ReceiveBytes& receive);
 
 struct UsbipCompletion {
   std::int32_t status = 0;      ///< 0 or a negative errno
-  std::uint32_t length = 0;     ///< bytes that were transferred
-  std::vector<std::byte> data;  ///< of an IN transfer
+  std::uint32_t length = 0;     ///< transferred bytes
+  std::vector<std::byte> data;  ///< for an IN transfer
 };
 using OnUsbipCompletion = std::function<void(UsbipCompletion)>;
 
@@ -53,28 +54,28 @@ struct UsbipTransfer {
   OnUsbipCompletion on_completion;
 };
 
-/// The transfers that were asked for and not answered yet. Not for use by two threads at once.
+/// The unanswered transfers. Not thread-safe.
 class OpenTransfers {
  public:
   void add(std::uint32_t sequence, UsbipTransfer transfer) { transfers_.emplace(sequence, std::move(transfer)); }
   bool contains(std::uint32_t sequence) const { return transfers_.contains(sequence); }
-  /// The server may have sent its answer already, so the transfer stays until the unlink is answered.
+  /// The server may already have sent its answer, so the transfer stays open until the unlink is answered.
   void unlink(std::uint32_t unlink_sequence, std::uint32_t sequence) { unlinks_.emplace(unlink_sequence, sequence); }
 
-  /// How many bytes of data follow an answer. Throws Disconnected for an answer to what was not asked for.
+  /// The number of data bytes that follow an answer. Throws Disconnected if the answer belongs to no open transfer.
   std::size_t data_length_of(const usbip::ReturnSubmit& answer) const;
-  /// Once they are there: what an answer says of the transfer that it ends, or none if it ends nothing.
+  /// A transfer that an answer has finished.
   struct Ended {
     OnUsbipCompletion on_completion;
     UsbipCompletion completion;
   };
   std::optional<Ended> take(const usbip::ReturnSubmit& answer, std::vector<std::byte> data);
-  /// All that are left.
+  /// Removes and returns all open transfers.
   std::vector<UsbipTransfer> take_all();
 
  private:
   std::unordered_map<std::uint32_t, UsbipTransfer> transfers_;
-  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< sequence of the unlink to that of its transfer
+  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< unlink sequence to transfer sequence
 };
 
 }  // namespace inkwell::device

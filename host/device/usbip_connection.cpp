@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Before the import: what is no USB/IP server may wait for something else for ever.
+/// Until the import: a peer that is not a USB/IP server may never answer.
 constexpr auto reply_timeout = 3s;
 
 ReceiveBytes from(Socket& socket) {
@@ -50,7 +50,7 @@ UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string&
                     "Close the other program.",
                     bus_id, server.text()));
   device_ = *device;
-  socket_.wait_at_most(std::nullopt);  // from here on silence is a device with nothing to say
+  socket_.wait_at_most(std::nullopt);  // after the import, silence only means that the device has no data
 }
 
 UsbipConnection::~UsbipConnection() { close(); }
@@ -76,7 +76,7 @@ std::uint32_t UsbipConnection::submit(usbip::Direction direction, std::uint8_t e
   message.header.device = device_;
   message.header.direction = direction;
   message.header.endpoint = endpoint & 0x0Fu;
-  if (setup != nullptr) std::memcpy(message.setup.data(), setup, sizeof *setup);  // little-endian, as USB is
+  if (setup != nullptr) std::memcpy(message.setup.data(), setup, sizeof *setup);  // setup packets are little-endian
 
   const std::lock_guard lock(mutex_);
   if (closed_) throw Disconnected("The device is gone. Connect it again.");
@@ -117,7 +117,7 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
     std::condition_variable changed;
     std::optional<Completion> completion;
   };
-  const auto waiting = std::make_shared<Waiting>();  // outlives this call if the answer comes after the time-out
+  const auto waiting = std::make_shared<Waiting>();  // outlives this call if the answer arrives after the time-out
   const auto sequence = submit(direction, 0, &setup, setup.length, data, [waiting](Completion completion) {
     const std::lock_guard lock(waiting->mutex);
     waiting->completion = std::move(completion);
@@ -172,7 +172,7 @@ void UsbipConnection::receive_answers() {
   for (const auto& transfer : abandoned) transfer.on_completion({-ENODEV, 0, {}});
 }
 
-/// The server ends the connection when the device goes away, and when it ends itself.
+/// The server closes the connection when the device disappears, and when the server exits.
 void UsbipConnection::receive(std::span<std::byte> bytes) {
   try {
     socket_.receive(bytes);
@@ -183,7 +183,7 @@ void UsbipConnection::receive(std::span<std::byte> bytes) {
 
 void UsbipConnection::receive_answer() {
   const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
-  // The transfer stays open until all of its answer is there: one that breaks off leaves nobody waiting.
+  // The transfer stays open until its answer is complete, so that an incomplete answer still ends the waiting call.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);

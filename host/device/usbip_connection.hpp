@@ -1,4 +1,4 @@
-// An imported USB/IP device: transfers go out, a thread of its own takes the answers in.
+// An imported USB/IP device. A separate thread receives the answers to transfers.
 #pragma once
 
 #include <chrono>
@@ -20,40 +20,40 @@
 
 namespace inkwell::device {
 
-/// What a USB/IP server exports. Throws Error if nobody or something else answers, or nothing for 3 s.
+/// Lists the devices of a USB/IP server. Throws Error if no USB/IP server answers, or nothing arrives for 3 s.
 std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server);
 
 class UsbipConnection {
  public:
-  /// A request takes some milliseconds of board time, but on a busy computer a virtual board's seconds are long.
+  /// A request takes some milliseconds of board time. On a busy computer the board time of a virtual board may be slow.
   static constexpr auto control_timeout = std::chrono::seconds(15);
 
   using Completion = UsbipCompletion;
   using OnCompletion = OnUsbipCompletion;
 
-  /// Imports the device. Throws Error if it is in use or gone, or as list_usbip_devices does. Call `start` before the
-  /// first transfer. A control transfer is taken back after `timeout`.
+  /// Imports the device. Throws Error if the device is in use or gone, and the errors of list_usbip_devices(). Call
+  /// `start` before the first transfer. A control transfer is canceled after `timeout`.
   UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                   std::chrono::milliseconds timeout = control_timeout);
   ~UsbipConnection();
 
-  /// Control transfers wait in the turns of `lock_step`, which outlives this.
+  /// Control transfers wait for the turns of `lock_step`, which must outlive this object.
   void wait_in_lock_step(LockStep& lock_step) { lock_step_ = &lock_step; }
-  /// `on_disconnect` is called once, from the receiving thread, with a sentence.
+  /// The receiving thread calls `on_disconnect` once, with a sentence.
   void start(std::function<void(const std::string&)> on_disconnect);
 
-  /// Completions come on the receiving thread, which may submit again from within.
+  /// The receiving thread calls `on_completion`, which may submit further transfers.
   std::uint32_t submit_in(std::uint8_t endpoint, std::uint32_t length, OnCompletion on_completion);
   std::uint32_t submit_out(std::uint8_t endpoint, std::span<const std::byte> data, OnCompletion on_completion);
 
-  /// Control transfers wait for their end. Throw Stalled, Disconnected, or Error on time-out.
+  /// Control transfers are synchronous. They throw Stalled, Disconnected, or Error on time-out.
   std::vector<std::byte> control_in(const Setup& setup);
   void control_out(const Setup& setup, std::span<const std::byte> data);
 
-  /// Takes the transfer back. Its completion then comes with -ECONNRESET, or with its answer if that was sooner.
+  /// Cancels the transfer. It completes with -ECONNRESET, or with its answer if that arrives first.
   void unlink(std::uint32_t sequence);
 
-  /// Ends the connection and the receiving thread; open transfers are forgotten.
+  /// Closes the connection and stops the receiving thread. Open transfers are dropped.
   void close();
 
  private:
@@ -64,12 +64,12 @@ class UsbipConnection {
   void receive_answer();
   void receive(std::span<std::byte> bytes);
 
-  std::chrono::milliseconds timeout_;  ///< of a control transfer
-  std::string gone_;                   ///< the sentence for a device that goes away
+  std::chrono::milliseconds timeout_;  ///< for a control transfer
+  std::string gone_;                   ///< the message when the device disappears
   LockStep* lock_step_ = nullptr;
   Socket socket_;
   std::uint32_t device_ = 0;
-  std::mutex mutex_;  ///< guards sending, the sequence and what is open
+  std::mutex mutex_;  ///< guards sending, `sequence_` and `open_`
   std::uint32_t sequence_ = 0;
   OpenTransfers open_;
   bool closed_ = false;

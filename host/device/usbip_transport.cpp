@@ -22,11 +22,11 @@ using namespace std::chrono_literals;
 namespace identity = protocol::usb;
 
 constexpr int report_transfers = 32;
-constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
+constexpr std::size_t reports_kept = 1024;  // one second; then the oldest are dropped, which the sequence shows
 constexpr std::size_t writes_under_way = 16;
 constexpr std::size_t writes_in_lock_step = 1024;
-// How long a device that takes no command is waited for: a second of its own time, which its reports tell, however
-// long a busy computer makes that; or silence, of the clock on the wall.
+// Limits for a device that accepts no command: one second of board time, which its reports show, or this wall time
+// without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
 constexpr char takes_no_commands[] = "The device takes no commands, although it sends its pose. Reset the board.";
@@ -102,7 +102,7 @@ class UsbipTransport : public Transport {
       scope_claimed_ = true;
       ask_for_bulk();
     }
-    // Orders are looked at one after the other: with this answer a refusal of the request before has come, too.
+    // Requests are processed in order: once this answer arrives, a refusal of the bulk request has also arrived.
     try {
       carry_out([&] { connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18)); });
     } catch (...) {
@@ -117,7 +117,8 @@ class UsbipTransport : public Transport {
     for (int i = 1; i < bulk_transfers; ++i) ask_for_bulk();
   }
 
-  /// The scope is free once a transfer was taken back and none is left; who only lets them end keeps it.
+  /// The server releases the scope when a transfer was canceled and none is left. Completed transfers alone do not
+  /// release it.
   void release_scope() override {
     std::unique_lock lock(bulk_mutex_);
     if (!std::exchange(scope_claimed_, false)) return;
@@ -147,8 +148,8 @@ class UsbipTransport : public Transport {
   bool is_in_lock_step() const { return endpoint_.lock_step != nullptr; }
   bool is_report_to_come() const { return reports_asked_ > 0 || reports_.size() > 0; }
 
-  /// Carries out a control transfer. A board in lock step lets time pass for it only while a report is asked for, which
-  /// the thread that reads reports can not do meanwhile.
+  /// Executes a control transfer. In lock step, the board lets time pass for it only while a report is requested. The
+  /// thread that reads reports cannot request one during its own transfer, so this function requests it.
   template <class Transfer>
   std::invoke_result_t<Transfer> carry_out(Transfer transfer) {
     const bool is_out_of_step = is_in_lock_step() && reads_reports_ && !endpoint_.lock_step->is_in_step();
@@ -177,11 +178,11 @@ class UsbipTransport : public Transport {
     connection_.control_out(setup::set_configuration(layout_.configuration), {});
   }
 
-  /// Called with writes_mutex_ held.
+  /// Requires writes_mutex_.
   bool takes_none() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
 
   void wait_for_room(std::unique_lock<std::mutex>& lock) {
-    if (is_in_lock_step()) {  // a wait here might keep the thread that reads reports from letting time pass
+    if (is_in_lock_step()) {  // waiting here might prevent the thread that reads reports from letting time pass
       if (lost_) throw Disconnected(unplugged);
       if (writes_ >= writes_in_lock_step)
         throw Error("1024 commands wait for board time to pass. Send fewer, or wait for poses in between.");
@@ -216,7 +217,7 @@ class UsbipTransport : public Transport {
     });
   }
 
-  /// Called with bulk_mutex_ held.
+  /// Requires bulk_mutex_.
   void ask_for_bulk() {
     const auto place = bulk_under_way_.insert(bulk_under_way_.end(), 0);
     try {
@@ -245,13 +246,13 @@ class UsbipTransport : public Transport {
     if (!scope_claimed_) return;
     if (!done.data.empty()) bulk_.push(std::move(done.data));
     if (bulk_.size() < bulk_kept) return ask_again([this] { ask_for_bulk(); });
-    // A virtual board takes the silence of a streaming host for that of a busy computer, and waits, but not for one
-    // that takes a request back.
+    // A virtual board waits for a streaming host that is silent, because the computer may be busy. It does not wait for
+    // a host that cancels a request.
     if (bulk_owed_++ == 0 && !bulk_under_way_.empty())
       ask_again([this] { connection_.unlink(bulk_under_way_.back()); });
   }
 
-  /// Submitting from the receiving thread fails when the connection just broke; `lose` is called for that anyway.
+  /// Submitting from the receiving thread fails when the connection has failed. `lose` is then called anyway.
   template <class Ask>
   void ask_again(Ask ask) {
     try {
@@ -284,24 +285,24 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
-  std::atomic<int> reports_asked_ = 0;  ///< under way
+  std::atomic<int> reports_asked_ = 0;  ///< pending requests
   std::atomic<bool> reads_reports_ = false;
   std::atomic<int> requests_out_of_step_ = 0;
-  std::mutex bulk_mutex_;  ///< guards the next seven
+  std::mutex bulk_mutex_;  ///< guards the next seven members
   std::condition_variable bulk_changed_;
   bool scope_claimed_ = false;
-  bool bulk_denied_ = false;                 ///< another program has it
+  bool bulk_denied_ = false;                 ///< another program has claimed the scope
   bool bulk_lost_ = false;                   ///< the device is gone
-  bool bulk_taken_back_ = false;             ///< a transfer was, since the scope was to be released
-  int bulk_owed_ = 0;                        ///< transfers not under way because the reader is behind
-  std::list<std::uint32_t> bulk_under_way_;  ///< sequences of the transfers, the newest last
+  bool bulk_taken_back_ = false;             ///< a transfer was canceled since the release was requested
+  int bulk_owed_ = 0;                        ///< transfers that are not pending because the reader is late
+  std::list<std::uint32_t> bulk_under_way_;  ///< sequences of the pending transfers, newest last
   std::mutex writes_mutex_;
   std::condition_variable writes_changed_;
   std::size_t writes_ = 0;
-  unsigned reports_since_taken_ = 0;  ///< while a write is under way
+  unsigned reports_since_taken_ = 0;  ///< while a write is pending
   std::uint64_t reports_come_ = 0;
   bool lost_ = false;
-  UsbipConnection connection_;  ///< last: its thread uses all of the above
+  UsbipConnection connection_;  ///< last: its thread uses all other members
 };
 
 }  // namespace
@@ -310,7 +311,7 @@ std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint) {
   return std::make_unique<UsbipTransport>(endpoint);
 }
 
-// What the virtual board's USB/IP server calls the platform that its device is on.
+// The device path that the virtual board's USB/IP server reports.
 constexpr char virtual_board_path[] = "/inkwell_virtual_board/";
 
 std::vector<Endpoint> find_usbip_devices(const SocketAddress& server) {

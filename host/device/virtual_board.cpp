@@ -55,7 +55,7 @@ struct Pipe {
   }
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
-  /// The board has its end.
+  /// Call this once the board has inherited the write end.
   void keep_read_end() {
     close_write_end();
     own = process::OwnDescriptor(read_end);
@@ -98,7 +98,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   return arguments;
 }
 
-/// The board that the firmware in a flash file is for; empty if it holds none for a board that is known.
+/// The board of the firmware in a flash file; empty if the file has no firmware for a known board.
 std::string board_in(const std::filesystem::path& flash) {
   std::ifstream file(flash, std::ios::binary);
   protocol::ImageIdentity identity{};
@@ -116,7 +116,7 @@ std::filesystem::path firmware_for(const std::string& name) {
   return installation::firmware(board::image_name(*facts));
 }
 
-/// Of the line that the program prints when it is ready; false if it is another one.
+/// Parses the line that the program prints when it is ready; false for any other line.
 bool read_addresses(const std::string& line, SocketAddress& usbip, SocketAddress& control) {
   std::istringstream words(line);
   std::string ready, usbip_word, control_word;
@@ -152,10 +152,10 @@ struct VirtualBoard::Implementation {
     process = fork();
     if (process < 0) throw Error("The virtual board cannot be started: the system allows no more processes.");
     if (process == 0) {
-      // Ctrl-C in the terminal is for the companion, which ends the board when it is done with it.
+      // Ctrl-C in the terminal must reach only the companion, which then stops the board.
       setpgid(0, 0);
       prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (getppid() != parent) _exit(1);  // the parent died before the line above
+      if (getppid() != parent) _exit(1);  // the parent has already exited
       dup2(output.write_end, STDOUT_FILENO);
       dup2(log.write_end, STDERR_FILENO);
       execv(pointers[0], pointers.data());
@@ -166,7 +166,7 @@ struct VirtualBoard::Implementation {
     drain = std::thread([this] { read_log(); });
   }
 
-  /// A full pipe would stop the board, so its log is read for as long as it runs.
+  /// A full pipe would block the board, so its log is read while the board runs.
   void read_log() {
     std::array<char, 4096> chunk;
     for (;;) {
@@ -211,7 +211,7 @@ struct VirtualBoard::Implementation {
     remove_left_behind();
   }
 
-  /// What a board leaves behind that was killed: its sockets and their folder.
+  /// Removes the sockets and the folder of a board that was killed.
   void remove_left_behind() {
     for (const auto& socket : {usbip, control}) {
       struct stat status {};

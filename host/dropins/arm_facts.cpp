@@ -9,7 +9,7 @@
 namespace inkwell::dropins {
 namespace {
 
-constexpr int reach_steps = 12;  ///< of each joint from stop to stop
+constexpr int reach_steps = 12;  ///< per joint, from stop to stop
 
 double parameter(inkwell_arm* arm, const std::string& name) {
   double value = 0;
@@ -17,7 +17,7 @@ double parameter(inkwell_arm* arm, const std::string& name) {
   return value;
 }
 
-/// Parameters whose names differ by the number of the joint or motor.
+/// Reads three parameters whose names differ in the number of the joint or motor.
 Vector of_each(inkwell_arm* arm, const std::string& before, const std::string& after) {
   return {parameter(arm, before + "1" + after), parameter(arm, before + "2" + after),
           parameter(arm, before + "3" + after)};
@@ -99,7 +99,7 @@ std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm) {
   const auto jacobian = jacobian_at(arm, pose.joint_rad);
   const double all = determinant(jacobian);
-  // A Jacobian of links of decimetres has a determinant of 1e-3 m^3; near 0 the forces grow without bound.
+  // Links of decimeters give determinants of about 1e-3 m^3. Near 0 the forces become unbounded.
   constexpr double smallest_m3 = 1e-6;
   if (std::abs(all) < smallest_m3) return {};
   // Cramer's rule on J^T F = tau: row i of J^T is column i of J.

@@ -1,4 +1,4 @@
-// What the parameters of an arm mean in HDAPI's terms. Read once, when the arm is opened.
+// Properties of an arm in HDAPI terms, read once when the arm is opened.
 #pragma once
 
 #include <array>
@@ -16,24 +16,24 @@ struct Workspace {
 
 struct ArmFacts {
   double force_maximum_N;
-  double force_continuous_N;      ///< that every motor bears for ever, even with the arm stretched out
-  Vector joint_torque_full_Nm;    ///< at the current limits
+  double force_continuous_N;      ///< tolerated continuously by every motor, even with the arm stretched out
+  Vector joint_torque_full_Nm;    ///< at the motor current limits
   bool third_is_absolute;         ///< joint 3 is measured from the base, not from link 2
   Vector encoder_counts_per_rad;  ///< negative where an encoder is reversed
-  Workspace reach;                ///< of the probe, over all that the joints' stops allow
-  Workspace box;                  ///< inside of which the arm is to be used
+  Workspace reach;                ///< range of the probe within the joint stops
+  Workspace box;                  ///< usable range
 };
 
-/// Throws std::runtime_error with the library's sentence if it could not do what it was asked.
+/// Throws std::runtime_error with the library's error text if the result is an error.
 void require(inkwell_result result);
 
 /// Throws std::runtime_error with the reason if the arm does not answer.
 ArmFacts read_facts(inkwell_arm* arm);
 
-/// The force at the probe that gives these joint torques (tau = J^T F); nothing where the arm is stretched out.
+/// The force at the probe that corresponds to these joint torques (tau = J^T F); zero where the arm is singular.
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm);
 
-/// Row by row, m/rad: the probe's velocity is this times the joints' speeds.
+/// Jacobian in row-major order, m/rad: multiplied by the joint speeds it is the velocity of the probe.
 std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]);
 
 }  // namespace inkwell::dropins

@@ -1,5 +1,5 @@
-// The types and values of HDAPI as its binary interface has them: what a program that was compiled elsewhere passes in.
-// Programs bring their own headers, so this one stays in here.
+// Types and values of the HDAPI binary interface, as compiled programs pass them. Programs use their original headers,
+// so this header is internal.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ enum ErrorCode : unsigned {
   invalid_license = 0x600,
 };
 
-/// hdGetError() returns it by value.
+/// The return value of hdGetError().
 struct ErrorInfo {
   unsigned code;
   int internal_code;

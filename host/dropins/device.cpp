@@ -13,25 +13,26 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double motor_value_full = 32767.0;
-/// Between questions for the motors' heat, and between looks at the arm's state.
+/// Intervals for reading the motor heat and for checking the arm's state.
 constexpr auto heat_period = 500ms, care_period = 20ms;
 constexpr double enable_timeout_s = 1.0;
-/// Part of a new angular velocity in the one that is shown, once a millisecond.
+/// Weight of a new angular velocity in the smoothed one, once per millisecond.
 constexpr double angular_smoothing = 0.125;
-/// A probe that is slower is at rest.
+/// Below this speed the probe counts as stationary.
 constexpr double rest_m_per_s = 0.1;
 
-// Faults of the board that HDAPI takes for a passing thing: the force comes back by itself once the probe is at rest.
+// Faults that HDAPI treats as temporary: the force returns automatically once the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
-/// By which the board ends the force of a program that is gone, or late.
+/// Faults that the board raises when a program with force has exited or is late.
 bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
 }
 
-/// From one attitude to the next a millisecond or so later: the axis is in the antisymmetric part of the turn.
+/// Rotation vector from one attitude to the next, about a millisecond later. Its axis is in the antisymmetric part of
+/// the rotation matrix.
 Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
   const auto turn = [&](int row, int column) {
     double sum = 0;
@@ -66,11 +67,11 @@ Device::Device(Handle handle, std::string name, const std::string& address)
   care_thread_ = std::thread([this] { care(); });
 }
 
-/// HDAPI's devices belong to one program, and their force is off at first. Neither the force nor the end of the program
-/// before is this one's.
+/// In HDAPI a device belongs to one program, and its force is initially off. The force or the exit of a previous
+/// program must not affect this one.
 void Device::claim() {
   const double none_N[3]{};
-  require(inkwell_set_force(arm(), none_N));  // another program is to hear of it now, not at its first force
+  require(inkwell_set_force(arm(), none_N));  // reports another driver now instead of with the first force
   inkwell_pose pose;
   require(inkwell_get_pose(arm(), &pose));
   if (pose.state == INKWELL_ACTIVE) require(inkwell_disable_force(arm()));
@@ -106,7 +107,7 @@ void Device::begin_frame(std::optional<std::uint64_t> tick) {
 void Device::look() {
   Moment seen;
   seen.pose = now_.pose;
-  const auto result = inkwell_get_pose(arm(), &seen.pose);  // the last known one, if it is lost
+  const auto result = inkwell_get_pose(arm(), &seen.pose);  // the last known pose if the link is lost
   is_lost_ = result != INKWELL_OK;
   seen.angular_velocity_rad_per_s = now_.angular_velocity_rad_per_s;
   const double passed_s = seen.pose.time_s - now_.pose.time_s;
@@ -128,10 +129,10 @@ bool Device::sends_poses() const {
   return inkwell_get_pose(arm(), &pose) == INKWELL_OK;
 }
 
-/// Of the program before this one, or of a link that was lost.
+/// Whether a previous program, or the loss of the link, caused the fault.
 bool Device::is_inherited(int fault) const { return is_of_a_host(fault) && !had_force_; }
 
-/// Raises what came up since the last frame, once.
+/// Raises each new condition since the last frame once.
 void Device::note_condition() {
   const int fault = !is_lost_ && now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
   if (fault != 0) held_ = {};
@@ -195,7 +196,8 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports a lost link or a fault with its own code; the program must see that there is no force.
+  // The next frame reports a lost link or a fault with its specific code. This error shows the program that there is no
+  // force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_told_lost_;
   is_force_told_lost_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;
@@ -215,14 +217,14 @@ Calibration Device::calibration() {
     raise(comm_error, inkwell_error_text(), result);
     return calibration_needs_manual_input;
   }
-  // In a fault a switch that is closed may be what is wrong, and nothing is calibrated before it is cleared.
+  // A closed inkwell switch may be the cause of a fault, and no calibration takes place until the fault is cleared.
   const bool is_about_to_be = pose.in_inkwell != 0 && pose.state != INKWELL_FAULT;
   return is_referenced != 0 ? calibration_ok
          : is_about_to_be   ? calibration_needs_update
                             : calibration_needs_manual_input;
 }
 
-// ---- the force as a whole ----------------------------------------------------------------------------------
+// ---- force output ---------------------------------------------------------------------------------------------------
 
 void Device::set_scheduler_runs(bool runs) {
   scheduler_runs_ = runs;
@@ -259,13 +261,14 @@ void Device::care() {
     bool asked_for = force_is_asked_for_;
     lock.unlock();
     inkwell_pose pose;
-    // What fails here is a lost link, which the next frame tells, or the arm is not ready, which the next turn tries.
+    // A failure has two possible causes. The next frame reports a lost link, and the next pass retries if the arm is
+    // not ready.
     const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
-    // A silence changes nothing here; the wait ends in time then.
+    // A silence has no effect here: the wait then ends with a time-out.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
-    // A force that was taken away by another program, by a fault that does not pass, or with the link, is not switched
-    // on again unless the program asks for it.
+    // The force is not switched on automatically after another program, a lasting fault or a lost link has switched it
+    // off. The program must request it again.
     const bool was_on = is_on;
     if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;
     const bool passes_by = !is_lost && pose.state == INKWELL_FAULT && passes(pose.fault);

@@ -1,4 +1,4 @@
-// An arm as HDAPI shows it: what a frame saw, what it asks for, and which forces are allowed.
+// An arm as an HDAPI device: frames, requested forces, and allowed forces.
 #pragma once
 
 #include <atomic>
@@ -18,22 +18,22 @@
 
 namespace inkwell::dropins {
 
-/// What a program asked for in a frame, as it wrote it.
+/// The requests of a program in a frame, in the program's units.
 struct Command {
   std::optional<Vector> force_N, joint_torque_mNm;
   std::optional<std::array<double, 6>> motor_values;
   bool asks_for_force() const { return force_N || joint_torque_mNm || motor_values; }
-  Vector torque_mNm{}, gimbal_torque_mNm{};  ///< kept for who reads them back: the arm has no motors for them
+  Vector torque_mNm{}, gimbal_torque_mNm{};  ///< stored only for reading back: the gimbal has no motors
 };
 
-/// What a frame saw, and what it asked for.
+/// Pose and requests of a frame.
 struct Moment {
   inkwell_pose pose{};
   Vector angular_velocity_rad_per_s{};
   Command command;
 };
 
-/// Capabilities, with what is on when a device is opened.
+/// Capabilities and their values when a device is opened.
 #define INKWELL_HD_CAPABILITIES(X)                                  \
   X(0x4000, force_output, "HD_FORCE_OUTPUT", false)                 \
   X(0x4001, max_force_clamping, "HD_MAX_FORCE_CLAMPING", true)      \
@@ -48,11 +48,11 @@ struct Capabilities {
 #define X(value, name, text, at_start) bool name = at_start;
   INKWELL_HD_CAPABILITIES(X)
 #undef X
-  /// NULL for a value that is none.
+  /// NULL for an unknown capability.
   bool* find(Enum value);
 };
 
-/// Figures that a program may set.
+/// Settings that a program may change.
 struct Settings {
   double velocity_limit_mm_per_s = 1200.0;
   double impulse_limit_N_per_ms = 4.0;
@@ -60,7 +60,7 @@ struct Settings {
   double status_light = 0.0;
 };
 
-/// Every member that is not marked otherwise is called with the lock of Devices.
+/// Every member function requires the lock of Devices unless stated otherwise.
 class Device {
  public:
   /// Opens the arm and claims its force. Throws std::runtime_error with the reason.
@@ -82,26 +82,26 @@ class Device {
   Capabilities capabilities;
   Settings settings;
 
-  /// `tick` of the scheduler if it is the one who calls.
+  /// `tick`: the scheduler's tick number if the scheduler calls this.
   void begin_frame(std::optional<std::uint64_t> tick);
   void end_frame();
   bool in_frame() const { return in_frame_; }
-  /// What the frame is to ask for.
+  /// The requests of the current frame.
   Command& command() { return now_.command; }
 
-  /// The scheduler runs, or does no more; the force follows this and the capability.
+  /// Called when the scheduler starts or stops. The force follows this state and the capability.
   void set_scheduler_runs(bool runs);
-  /// The program wants its force, again if it was lost.
+  /// Switches the force on or off as the program requests, also after a loss.
   void follow_force_output();
-  /// Returns once the board has confirmed that the force is off, or the program wants its force again. Raises
+  /// Returns once the board has confirmed that the force is off, or the program requests the force again. Raises
   /// COMM_ERROR if the board does not confirm it. Called without the lock of Devices.
   void wait_until_force_is_off();
-  /// At the end of a tick: the force of the last frame goes on if the tick had no frame.
+  /// Called after each tick: repeats the force of the last frame if the tick had no frame.
   void renew_force();
 
   Calibration calibration();
 
-  /// Whether poses come.
+  /// Whether poses arrive.
   bool sends_poses() const;
 
  private:
@@ -113,11 +113,11 @@ class Device {
   void look();
   bool is_inherited(int fault) const;
   void note_condition();
-  /// The force that `command` asks for, within HDAPI's promises; what was sent.
+  /// Sends the force of `command` within HDAPI's limits and returns it.
   Vector send(const Command& command, const inkwell_pose& pose);
   std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
-  /// The thread that does what takes a round trip to the device, so that no frame waits for it.
+  /// A thread for the calls that need a round trip to the device, so that no frame waits for them.
   void care();
 
   const Handle handle_;
@@ -127,25 +127,25 @@ class Device {
   inkwell_information information_{};
 
   Moment now_, before_;
-  Command held_;          ///< what asks for a force, of the last frame that did
-  bool is_lost_ = false;  ///< no poses came at the last look
+  Command held_;          ///< force requests of the last frame that had any
+  bool is_lost_ = false;  ///< no poses arrived at the last check
   bool in_frame_ = false, was_frame_in_tick_ = false;
   std::optional<std::uint64_t> begun_in_tick_;
   ForceGuard guard_;
-  ErrorCode dropped_for_ = success;  ///< why the last frame's force was dropped
+  ErrorCode dropped_for_ = success;  ///< reason why the last frame's force was dropped
   bool scheduler_runs_ = false;
   bool was_warm_ = false;
   bool is_force_told_lost_ = false;
   int fault_ = 0;
 
   std::atomic<double> motor_heat_[3]{};
-  std::atomic<bool> had_force_ = false;  ///< since the scheduler started and the link was made
+  std::atomic<bool> had_force_ = false;  ///< since the scheduler started and the link was opened
   std::mutex care_mutex_;
   std::condition_variable care_changed_, off_known_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
-  bool force_is_asked_for_ = false;  ///< since it was lost
-  /// Reason why the board did not confirm that the force is off; "" once it has. Not set while the force is wanted or
-  /// the answer is awaited.
+  bool force_is_asked_for_ = false;  ///< since the last loss
+  /// Reason why the board did not confirm that the force is off; "" after the confirmation. Not set while the force is
+  /// requested or the confirmation is pending.
   std::optional<std::string> off_problem_;
   std::thread care_thread_;
 };

@@ -17,17 +17,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Names that programs give to the arm that they expect to be the only one.
+/// Names that programs use for the only arm.
 constexpr std::string_view default_names[] = {"", "Default Device", "Default PHANToM"};
 
-/// Throws std::runtime_error if it is written as an address and is none.
+/// Throws std::runtime_error if the text has the form of an address but is invalid.
 inkwell_address_kind kind_of(const std::string& address) {
   inkwell_address_kind kind{};
   if (inkwell_kind_of_address(address.c_str(), &kind) != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
   return kind;
 }
 
-/// Each opening of such an address makes a board of its own.
+/// Each opening of such an address starts a separate board.
 bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
 thread_local Handle current_here = invalid_handle;
@@ -48,7 +48,7 @@ std::string Devices::address_for(const std::string& name) const {
   const auto arms = list_arms();
   for (const auto& arm : arms)
     if (!name.empty() && (name == arm.serial_number || name == arm.address)) return arm.address;
-  // A name of the program's own, as "Left": the next arm that it has not opened.
+  // A program-specific name such as "Left" selects the next arm that this program has not opened.
   const auto is_open = [this](const std::string& address) {
     return !makes_a_board(address) && std::any_of(devices_.begin(), devices_.end(), [&](const auto& device) {
       return device && device->address() == address;
@@ -61,7 +61,7 @@ std::string Devices::address_for(const std::string& name) const {
   if (!arms.empty())
     throw std::runtime_error(fmt::format(
         "There is no arm for the name {}: this program has opened each of the {} there are.", name, arms.size()));
-  return {};  // none: inkwell_open() says so
+  return {};  // none: inkwell_open() reports this
 }
 
 Handle Devices::open(const char* given) {
@@ -89,7 +89,8 @@ Handle Devices::open(const char* given) {
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = current_here = handle;
-    // Programs take what is on the stack now for this call's. Who had the handle before is gone.
+    // Programs assume that errors on the stack belong to this call, so errors of the previous device with this handle
+    // are removed.
     forget_errors_of(handle);
     return handle;
   } catch (const std::exception& error) {
@@ -106,7 +107,7 @@ bool Devices::close(Handle handle) {
     device = std::exchange(devices_[handle], nullptr);
     if (current_ == handle) current_ = invalid_handle;
   }
-  // The scheduler may wait for its next pose; the arm is to be free when this returns.
+  // The scheduler may still wait for a pose of the device. The arm must be closed when this returns.
   while (device.use_count() > 1) std::this_thread::sleep_for(1ms);
   return true;
 }

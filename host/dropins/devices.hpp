@@ -1,4 +1,4 @@
-// The devices that the program has open, by handle, and which of them is current.
+// The open devices of the program by handle, and the current device.
 #pragma once
 
 #include <atomic>
@@ -13,46 +13,46 @@
 
 namespace inkwell::dropins {
 
-/// What a forked child knows of its parent's devices.
+/// Information about the parent's devices in a forked child.
 struct ParentsDevices {
   int process = 0;
-  Handle handles = 0;  ///< those below it may be the parent's
+  Handle handles = 0;  ///< lower handles may belong to the parent
 };
 
 class Devices {
  public:
   explicit Devices(const ParentsDevices& parents) : parents_(parents) {}
-  /// Without the lock, which a thread may have held that the child does not have.
+  /// Does not lock the mutex, because a thread that does not exist in the child may have held it.
   ParentsDevices as_parents() const;
 
-  /// Held by every call of the interface while it looks at a device; never while one is opened or closed.
+  /// Every call of the interface locks this while it uses a device, but not while it opens or closes one.
   std::mutex& mutex() { return mutex_; }
 
-  /// Opens the arm that the name stands for and makes it current; raises an error and gives invalid_handle if it can
-  /// not. Takes the lock itself.
+  /// Opens the arm with this name and makes it current. On failure raises an error and returns invalid_handle. Locks
+  /// the mutex.
   Handle open(const char* name);
-  /// Takes the lock itself. False if there is no such device.
+  /// Locks the mutex. False if there is no such device.
   bool close(Handle handle);
   void close_all();
-  /// Returns once every device has its force off. Takes the lock itself.
+  /// Returns once the force of every device is off. Locks the mutex.
   void wait_until_forces_are_off();
 
-  // The following with the lock.
+  // The following functions require the mutex.
 
-  /// The device under the handle; NULL, and BAD_HANDLE is raised, if there is none.
+  /// The device with this handle. If there is none, returns NULL and raises BAD_HANDLE.
   Device* find(Handle handle);
-  /// What the calling thread made current, so that no other thread's frames take it away; before it made any, what the
-  /// program did last.
+  /// The current device of the calling thread, so that frames of other threads do not change it. For a thread that has
+  /// selected none, the last selection in the program.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
-  /// Keeps the current device open while the lock is released; NULL, and BAD_HANDLE is raised, if there is none.
+  /// Keeps the current device open while the mutex is unlocked. If there is none, returns NULL and raises BAD_HANDLE.
   std::shared_ptr<Device> hold_current();
   bool make_current(Handle handle);
-  /// Only for the calling thread; nothing if there is no such device.
+  /// Affects only the calling thread. It has no effect if there is no such device.
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   void renew_forces();
-  /// The first device that sends poses, by which the scheduler is paced; none if there is none.
+  /// The first device that sends poses, which sets the pace of the scheduler; NULL if there is none.
   std::shared_ptr<Device> pacing();
 
  private:
@@ -61,10 +61,10 @@ class Devices {
 
   const ParentsDevices parents_;
   const process::Origin origin_;
-  std::atomic<Handle> handles_given_ = 0;  ///< upper bound of the number in use
+  std::atomic<Handle> handles_given_ = 0;  ///< upper limit of the used handles
   std::mutex mutex_, opening_;
-  std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty places were closed
-  Handle current_ = invalid_handle;               ///< for threads that made none current
+  std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty entries are closed devices
+  Handle current_ = invalid_handle;               ///< for threads that have selected none
   bool scheduler_runs_ = false;
 };
 

@@ -13,7 +13,7 @@ namespace inkwell::dropins {
 namespace {
 
 constexpr std::size_t stack_maximum = 256;
-/// Of texts that are kept for ever. Sentences differ by device and cause, so that a program meets a handful.
+/// Limit for texts that are never freed. Sentences differ by device and cause, so a program normally needs only a few.
 constexpr std::size_t kept_maximum = 1024;
 
 struct Text {
@@ -59,11 +59,11 @@ const process::HeldAtFork stack_at_fork(stack_mutex);
 
 struct Stack {
   std::deque<ErrorInfo> errors;
-  std::map<unsigned, std::string> sentences;  ///< the newest of each code
+  std::map<unsigned, std::string> sentences;  ///< newest sentence per code
   std::set<std::string> kept;
 };
 
-/// Lives until the process ends: programs ask for errors in their last destructors.
+/// Never destroyed, because programs read errors in their last destructors.
 Stack& stack() {
   static auto& stack = *new Stack;
   return stack;

@@ -1,4 +1,4 @@
-// HDAPI's errors: one stack for all threads of the program, the newest on top.
+// The HDAPI error stack, shared by all threads of the program.
 #pragma once
 
 #include <string>
@@ -7,20 +7,20 @@
 
 namespace inkwell::dropins {
 
-/// Puts an error on the stack. `sentence` says what is wrong and what to do; without one the code's own text stands.
-/// A program that never looks loses the oldest.
+/// Pushes an error. `sentence` states the problem and the remedy; without it the text of the code is used. When the
+/// stack is full, the oldest error is dropped.
 void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int internal_code = 0);
 
-/// Takes the newest off; `success` when there is none.
+/// Pops the newest error; `success` if there is none.
 ErrorInfo take_error();
 
-/// Takes those of one device off that were raised before, and tells whether `looked_for` was among them.
+/// Removes the errors of one device and returns whether `looked_for` was among them.
 bool forget_errors_of(Handle device, ErrorCode looked_for = success);
 
-/// "HD_DEVICE_FAULT: ..." with the newest sentence that was raised under this code. Never NULL; stays valid.
+/// "HD_DEVICE_FAULT: ..." with the newest sentence for this code. Never NULL; remains valid.
 const char* error_text(unsigned code);
 
-/// The same text each time at the same place, for as long as the program runs.
+/// Returns the text at a permanent address, which is the same for equal texts.
 const char* keep(const std::string& text);
 
 }  // namespace inkwell::dropins

@@ -6,7 +6,7 @@
 namespace inkwell::dropins {
 namespace {
 
-/// The board lets go of a force that is not renewed for so long, so that the way back begins at nothing.
+/// The board drops a force that is not renewed within this time. The ramp then restarts from zero.
 constexpr double pause_s = 0.05;
 
 Vector scaled_to(const Vector& vector, double longest) {
@@ -27,7 +27,8 @@ ForceGuard::Answer ForceGuard::drop(ErrorCode why) {
 ForceGuard::Answer ForceGuard::step(const ForceDemand& demand, const ForceLimits& limits) {
   const double passed_s = std::max(0.0, demand.time_s - time_s_);
   time_s_ = demand.time_s;
-  if (passed_s > 0.0) {  // several frames may see the same pose: together they change the force no more than one
+  if (passed_s > 0.0) {  // several frames may use the same pose: together they may change the force only as much as one
+                         // frame
     earlier_N_ = before_N_;
     since_earlier_s_ = passed_s;
   }

@@ -1,4 +1,4 @@
-// What HDAPI promises of every force: bounded, never with a jump, off while the stylus is too fast, and back by a ramp.
+// Force limits that HDAPI guarantees: bounded, without jumps, off above the speed limit, and restored by a ramp.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ using Vector = std::array<double, 3>;
 
 double length(const Vector& vector);
 
-/// Which of the promises are wanted, and their figures.
+/// The active limits and their values.
 struct ForceLimits {
   double maximum_N;
   double speed_m_per_s;
@@ -23,7 +23,7 @@ struct ForceLimits {
 struct ForceDemand {
   Vector force_N;
   double speed_m_per_s;
-  double time_s;  ///< of the board
+  double time_s;  ///< board time
   bool is_on;     ///< the arm's force is on, and the stylus is out of the inkwell
 };
 
@@ -31,17 +31,17 @@ class ForceGuard {
  public:
   struct Answer {
     Vector force_N;
-    ErrorCode error;  ///< `success`, or why there is no force
+    ErrorCode error;  ///< `success`, or the reason why there is no force
   };
   Answer step(const ForceDemand& demand, const ForceLimits& limits);
 
  private:
   Answer drop(ErrorCode why);
 
-  double ramp_N_ = 0.0;  ///< as large may the force be by now
+  double ramp_N_ = 0.0;  ///< current upper limit of the force
   double time_s_ = 0.0;
   Vector before_N_{};
-  Vector earlier_N_{};  ///< the last one at the pose before
+  Vector earlier_N_{};  ///< the last force at the previous pose
   double since_earlier_s_ = 0.0;
 };
 

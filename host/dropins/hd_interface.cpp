@@ -1,4 +1,4 @@
-// Devices, frames, scheduler, errors, calibration. What is asked for and set is in hd_state.cpp.
+// Devices, frames, scheduler, errors, calibration. Parameters and capabilities are in hd_state.cpp.
 #include "hd_interface.hpp"
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace process = inkwell::process;
 
 namespace {
 
-/// With a callback that does not return, hdStopScheduler() does not return either.
+/// If a callback does not return, hdStopScheduler() does not return either.
 constexpr auto for_ever = std::chrono::hours(24);
 
 Handle current_handle() {
@@ -21,8 +21,8 @@ Handle current_handle() {
   return runtime().devices.current_handle();
 }
 
-/// A callback that acts for a thread that waits for it: it begins with that thread's current device, and that thread
-/// goes on with the callback's.
+/// A callback that runs for a waiting thread. It starts with the current device of that thread, and that thread
+/// afterwards has the current device of the callback.
 struct ForCaller {
   HdCallback callback;
   void* user;
@@ -167,7 +167,7 @@ HdEnum hdCheckCalibration(void) {
 HdEnum hdCheckCalibrationStyle(void) { return calibration_style_inkwell; }
 
 void hdUpdateCalibration(HdEnum style) {
-  // The board takes the inkwell's angles by itself when the stylus rests there, so that nothing is left to be done.
+  // The board references the encoders automatically when the stylus rests in the inkwell, so no action is needed.
   with_device(current_handle(), [&](Device& device) {
     if (style != calibration_style_inkwell)
       return raise(invalid_enum, device.handle(), "The arm is calibrated by the inkwell. Update that style.");
@@ -178,7 +178,7 @@ void hdUpdateCalibration(HdEnum style) {
 
 void hdUpdateCalibrationMessage(HdEnum style) { hdUpdateCalibration(style); }
 
-// ---- the rest ----------------------------------------------------------------------------------------------
+// ---- other functions ------------------------------------------------------------------------------------------------
 
 HdBoolean hdDeploymentLicense(const char*, const char*, const char*) { return 1; }
 HdBoolean hdScaleGimbalAngles(double, double, double, double[16]) { return 1; }

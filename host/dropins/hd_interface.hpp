@@ -1,4 +1,4 @@
-// The functions of libHD.so, as programs call them. docs/dropins.md says what each does.
+// The exported functions of libHD.so. docs/dropins.md describes them.
 #pragma once
 
 #include "constants.hpp"
@@ -55,7 +55,7 @@ INKWELL_HD void hdUpdateCalibrationMessage(HdEnum style);
 INKWELL_HD HdBoolean hdDeploymentLicense(const char* vendor, const char* application, const char* password);
 INKWELL_HD HdBoolean hdScaleGimbalAngles(double x, double y, double z, double transform[16]);
 
-/// Not of HDAPI, but for libhdPhantom.so, whose frames the program knows nothing of: takes the errors of one device off
-/// the stack. 1 if the loss of its link was among them.
+/// Not part of HDAPI. libhdPhantom.so uses it to remove the errors of one device from the stack, because its frames are
+/// invisible to the program. Returns 1 if the loss of the link was among them.
 INKWELL_HD HdBoolean hdInkwellForgetErrors(HdHandle device);
 }

@@ -1,7 +1,7 @@
-// libhdPhantom.so, through which CHAI3D 3 finds an Omni: a program on libHD.so with a frame a tick for each open
-// device.
+// libhdPhantom.so, through which CHAI3D 3 finds an Omni. It is a client of libHD.so with one frame per tick for each
+// open device.
 //
-// CHAI3D's x points to the user, y to the right and z up, so that its axes are HDAPI's z, x and y; metres and newtons.
+// CHAI3D: x points to the user, y to the right, z up. These are HDAPI's z, x and y axes. Units are meters and newtons.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -30,12 +30,12 @@ constexpr Enum current_buttons = 0x2000, current_position = 0x2050, current_velo
                current_transform = 0x2052, usable_workspace = 0x2551, current_force = 0x2700, force_output = 0x4000;
 constexpr unsigned short priority = 32767;
 constexpr char type_text[] = "PHANTOM Omni";
-/// For a tick; the original waits for ever.
+/// For a tick; the original waits indefinitely.
 constexpr auto tick_patience = 1s;
-/// Ticks that a force goes on for: who drives sets one in each tick, and one who hangs is to lose it.
+/// Ticks until a force expires. A working program sets a force in each tick, and a hanging program must lose its force.
 constexpr int force_ticks = 100;
 constexpr int good = 0, bad = -1;
-/// HDAPI's axis for each of CHAI3D's.
+/// HDAPI axis of each CHAI3D axis.
 constexpr std::size_t hd_axis[3]{2, 0, 1};
 constexpr double mm = 1e-3;
 
@@ -45,17 +45,17 @@ struct Seen {
 };
 
 struct Phantom {
-  Handle handle = invalid_handle;  ///< from the first question on
-  bool is_enabled = false;         ///< from hdPhantomOpen() on
-  bool is_lost = false;            ///< no poses came in the last tick
+  Handle handle = invalid_handle;  ///< valid from the first access on
+  bool is_enabled = false;         ///< true from hdPhantomOpen() on
+  bool is_lost = false;            ///< no poses arrived in the last tick
   unsigned long frames = 0;
-  Seen seen{};          ///< what was seen last, also of a device that was closed
-  double force_N[3]{};  ///< in HDAPI's axes
+  Seen seen{};          ///< last values, also of a closed device
+  double force_N[3]{};  ///< in HDAPI axes
   int force_ticks_left = 0;
 };
 
 struct Servo {
-  std::mutex opening;  ///< of devices, and starts and stops
+  std::mutex opening;  ///< serializes opening, closing, starting and stopping
   std::vector<std::string> addresses;
   bool runs = false;
   HdTask task = invalid_handle;
@@ -67,7 +67,7 @@ struct Servo {
 
 std::atomic<Servo*> current = nullptr;
 
-/// A forked child has its own object, because the open devices belong to its parent.
+/// A forked child has a separate object, because the open devices belong to its parent.
 Servo& servo() {
   static const bool is_made = [] {
     current = new Servo;
@@ -100,7 +100,7 @@ void frame(Phantom& phantom) {
 }
 
 unsigned tick(void*) {
-  std::vector<Phantom*> open;  // a map's places stay; a handle is taken away only while the servo stands
+  std::vector<Phantom*> open;  // map entries do not move, and a handle is removed only while the servo is stopped
   {
     const std::lock_guard lock(servo().mutex);
     for (auto& [number, phantom] : servo().phantoms)
@@ -137,7 +137,7 @@ void list_arms() {
   std::vector<inkwell_device> arms(count);
   if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return;
   arms.resize(std::min(count, arms.size()));
-  // What INKWELL_DEVICE names stands last there, and is who is meant.
+  // The arm that INKWELL_DEVICE names is last in the list, but it is the preferred one.
   std::reverse(arms.begin(), arms.end());
   servo().addresses.clear();
   for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);
@@ -148,7 +148,7 @@ bool is_number(int number) {
   return number >= 0 && static_cast<std::size_t>(number) < servo().addresses.size();
 }
 
-/// The device, opened if it was not; NULL if it can not be.
+/// The device, which is opened if necessary; NULL on failure.
 Phantom* reach(int number) {
   if (!is_number(number)) return nullptr;
   if (const auto found = servo().phantoms.find(number);
@@ -162,7 +162,7 @@ Phantom* reach(int number) {
   return &phantom;
 }
 
-/// Has the servo run; false if the device is not open.
+/// Starts the servo; false if the device is not open.
 bool is_open(int number) {
   const std::lock_guard opening(servo().opening);
   const auto found = servo().phantoms.find(number);
@@ -171,8 +171,8 @@ bool is_open(int number) {
   return true;
 }
 
-/// Hands what was seen last to `write`, so that a program that does not look at the result gets no chance values; then
-/// -1 if that is not what the device sees now.
+/// Passes the last values to `write`, so that a program that ignores the result gets no random values. Returns -1 if
+/// the values are not current.
 template <class Write>
 int read(int number, Write write) {
   const process::CancellationGuard guard;
@@ -190,8 +190,8 @@ int read(int number, Write write) {
   return sees ? result : bad;
 }
 
-/// Waits for the next tick, which pays attention to what `set` has set; -1, and nothing is set, while a read would be
-/// -1.
+/// Calls `set` and waits for the next tick, which uses the new values. Returns -1 without a call of `set` if the device
+/// is not open or lost.
 template <class Set>
 int set_until_next_tick(int number, Set set) {
   const process::CancellationGuard guard;
@@ -226,7 +226,7 @@ INKWELL_HD int hdPhantomGetNumDevices(void) {
   const std::lock_guard opening(servo().opening);
   const bool is_open = std::any_of(servo().phantoms.begin(), servo().phantoms.end(),
                                    [](const auto& entry) { return entry.second.handle != invalid_handle; });
-  if (!is_open) list_arms();  // the numbers of open ones stay
+  if (!is_open) list_arms();  // the numbers of open devices do not change
   return static_cast<int>(servo().addresses.size());
 }
 
@@ -253,7 +253,7 @@ INKWELL_HD int hdPhantomClose(int number) {
   const auto found = servo().phantoms.find(number);
   if (found == servo().phantoms.end() || found->second.handle == invalid_handle) return bad;
   const bool ran = servo().runs;
-  stop_servo();  // no frame is open after it
+  stop_servo();  // afterwards no frame is open
   hdDisableDevice(found->second.handle);
   const std::lock_guard lock(servo().mutex);
   const Seen seen = found->second.seen;
@@ -298,7 +298,7 @@ INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, c
   });
 }
 
-/// The stylus has no motors: a torque is taken and not felt.
+/// The stylus has no motors: a torque is accepted and has no effect.
 INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
   const double* const torque_Nm[3]{x, y, z};
   if (!is_sound(torque_Nm)) return bad;

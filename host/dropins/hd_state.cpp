@@ -1,4 +1,4 @@
-// What programs ask for and set, by the table of parameters.
+// Reads and writes of parameters and capabilities, based on the parameter table.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,8 @@ using namespace inkwell::dropins;
 
 namespace {
 
-/// The row that a call with this type asks for, and the current device if the row needs one. Raises what is wrong.
+/// The table row for a call with this type, and the current device if the row needs one. Raises an error for an invalid
+/// call.
 struct Asked {
   const Parameter* row = nullptr;
   Device* device = nullptr;
@@ -69,7 +70,7 @@ void set(Enum value, unsigned type, const Value* values) {
   });
 }
 
-/// The current device's capability; raises what is wrong.
+/// Runs `action` with the current device's capability. Raises an error if there is none.
 template <class Action>
 void with_capability(Enum capability, Action action) {
   guarded([&] {
@@ -120,7 +121,7 @@ void hdEnable(HdEnum capability) { switch_capability(capability, true); }
 
 void hdDisable(HdEnum capability) {
   const auto device = switch_capability(capability, false);
-  // A callback does not wait, because the ticks would stop meanwhile.
+  // A callback does not wait, because waiting would stop the ticks.
   if (device && !runtime().scheduler.tick_of_caller()) guarded([&] { device->wait_until_force_is_off(); });
 }
 

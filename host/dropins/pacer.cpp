@@ -7,7 +7,7 @@
 namespace inkwell::dropins {
 namespace {
 
-constexpr double look_up_s = 0.1;  ///< how soon a stop is noticed when no pose comes
+constexpr double look_up_s = 0.1;  ///< longest delay of a stop while no poses arrive
 
 }  // namespace
 

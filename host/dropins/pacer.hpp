@@ -1,4 +1,4 @@
-// When the scheduler's ticks begin: at the poses of the first device that sends some, else by the computer's clock.
+// Times the scheduler's ticks by the poses of the first device that sends any, otherwise by the computer's clock.
 #pragma once
 
 #include <chrono>
@@ -14,8 +14,8 @@ class Pacer {
  public:
   explicit Pacer(Devices& devices) : devices_(devices) {}
 
-  /// Waits until as many poses have come since the last call, or `ends`. Returns the board time that passed from tick
-  /// to tick, 0 if that is not known.
+  /// Waits until this number of poses has arrived since the last call, or until `ends` returns true. Returns the board
+  /// time between the ticks, or 0 if it is unknown.
   double wait(std::uint32_t poses, const std::function<bool()>& ends);
 
  private:

@@ -9,11 +9,11 @@
 namespace inkwell::dropins {
 namespace {
 
-// The Omni's published figures, for programs that scale by them.
+// The published values of the Omni, for programs that scale by them.
 constexpr double stiffness_N_per_mm = 0.5, damping_Ns_per_mm = 0.002;
-constexpr double tabletop_offset_mm = 110.0;  // the origin over the table
+constexpr double tabletop_offset_mm = 110.0;  // height of the origin above the table
 constexpr double input_axes = 6, output_axes = 3;
-/// The gimbal's potentiometers are shown as encoders of so many counts in a turn.
+/// The gimbal potentiometers are shown as encoders with this number of counts per turn.
 constexpr double gimbal_counts_per_turn = 4096;
 constexpr int button_1 = 1, button_2 = 2;
 constexpr double status_light_maximum = 7;
@@ -50,7 +50,7 @@ void read_encoders(const Source& source, double* values) {
   }
 }
 
-/// Rows: linear velocity in mm/s, then angular velocity, which the three joints alone do not determine and is left 0.
+/// Rows: linear velocity in mm/s, then angular velocity, which stays 0 because the three joints do not determine it.
 void read_jacobian(const Source& source, double* values) {
   const auto jacobian = jacobian_at(source.device->arm(), pose(source).joint_rad);
   std::fill_n(values, values_maximum, 0.0);
@@ -99,7 +99,7 @@ std::string simulation_mark(const Source& source) {
   return source.device->information().is_virtual != 0 ? " (simulation)" : "";
 }
 
-// clang-format off: a table is read in columns.
+// clang-format off: the table has aligned columns.
 const Parameter table[] = {
     {0x2000, 0x2200, "CURRENT_BUTTONS", "", 1, type_integer, "bit mask: 1 is button 1, 2 is button 2",
      [](const Source& s, double* v) { *v = (pose(s).button_1 ? button_1 : 0) | (pose(s).button_2 ? button_2 : 0); }},
@@ -109,10 +109,8 @@ const Parameter table[] = {
      [](const Source& s, double* v) { *v = pose(s).in_inkwell == 0; }},
     {0x2010, 0x2210, "CURRENT_ENCODER_VALUES", "counts", 6, type_long,
      "0 at joint angle 0; gimbal: 4096 counts per turn", read_encoders},
-    {0x2011, 0, "CURRENT_PINCH_VALUE", "", 1, type_real, "always 0",
-     [](const Source&, double* v) { *v = 0; }},
-    {0x2012, 0, "LAST_PINCH_VALUE", "", 1, type_real, "always 0",
-     [](const Source&, double* v) { *v = 0; }},
+    {0x2011, 0, "CURRENT_PINCH_VALUE", "", 1, type_real, "always 0", [](const Source&, double* v) { *v = 0; }},
+    {0x2012, 0, "LAST_PINCH_VALUE", "", 1, type_real, "always 0", [](const Source&, double* v) { *v = 0; }},
     {0x2050, 0x2250, "CURRENT_POSITION", "mm", 3, type_real, "probe; x right, y up, z to the user",
      [](const Source& s, double* v) { put(pose(s).position_m, 1e3, v); }},
     {0x2051, 0x2251, "CURRENT_VELOCITY", "mm/s", 3, type_real, "probe, over the last 8 ms",
@@ -181,8 +179,7 @@ const Parameter table[] = {
     {0x2608, 0, "FORCE_RAMPING_RATE", "N/s", 1, type_real, "default 10",
      [](const Source& s, double* v) { *v = s.device->settings.ramping_rate_N_per_s; }, nullptr,
      write_positive<&Settings::ramping_rate_N_per_s>},
-    {0x2620, 0, "NOMINAL_MAX_TORQUE_STIFFNESS", "", 1, type_real, "0",
-     [](const Source&, double* v) { *v = 0; }},
+    {0x2620, 0, "NOMINAL_MAX_TORQUE_STIFFNESS", "", 1, type_real, "0", [](const Source&, double* v) { *v = 0; }},
     {0x2621, 0, "NOMINAL_MAX_TORQUE_DAMPING", "", 1, type_real, "0", [](const Source&, double* v) { *v = 0; }},
     {0x2622, 0, "NOMINAL_MAX_TORQUE_FORCE", "mNm", 1, type_real, "0", [](const Source&, double* v) { *v = 0; }},
     {0x2623, 0, "NOMINAL_MAX_TORQUE_CONTINUOUS_FORCE", "mNm", 1, type_real, "0",

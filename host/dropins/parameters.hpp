@@ -1,4 +1,4 @@
-// The one table of HDAPI's parameters: value, name, count, types, and what each means here.
+// The table of HDAPI parameters: value, name, count, types and meaning.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace inkwell::dropins {
 
-/// Types in which a parameter may be asked for, as bits.
+/// Types in which a parameter may be read, as bits.
 enum Type : unsigned {
   type_boolean = 1,
   type_integer = 2,
@@ -23,7 +23,7 @@ inline constexpr unsigned type_real = type_float | type_double;
 
 inline constexpr std::size_t values_maximum = 36;
 
-/// Where values come from: a frame of a device, or the scheduler. Without a device both pointers are NULL.
+/// Source of parameter values: a frame of a device, or the scheduler. Without a device both pointers are NULL.
 struct Source {
   const Device* device;
   const Moment* moment;
@@ -32,16 +32,16 @@ struct Source {
 
 struct Parameter {
   Enum value;
-  Enum last;         ///< of the same in the frame before; 0 if there is none
-  const char* name;  ///< without HD_; CURRENT_... is LAST_... in the frame before
+  Enum last;         ///< value code of the same parameter in the previous frame; 0 if there is none
+  const char* name;  ///< without HD_; CURRENT_... becomes LAST_... in the previous frame
   const char* unit;
   unsigned count;
   unsigned types;
   const char* meaning;
-  /// Writes `count` values. NULL for a text.
+  /// Writes `count` values. NULL for a text parameter.
   void (*read)(const Source& source, double* values) = nullptr;
   std::string (*text)(const Source& source) = nullptr;
-  /// False for a value out of range. NULL if it can not be set.
+  /// False for a value out of range. NULL for a read-only parameter.
   bool (*write)(Device& device, const double* values) = nullptr;
   bool needs_device = true;
 };
@@ -50,7 +50,7 @@ std::span<const Parameter> parameter_table();
 
 struct FoundParameter {
   const Parameter* row;
-  bool is_last;  ///< the value of the frame before is meant
+  bool is_last;  ///< the parameter refers to the previous frame
 };
 std::optional<FoundParameter> find_parameter(Enum value);
 

@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 
 std::atomic<Runtime*> current = nullptr;
 
-constexpr auto patience = 1s;  // with a callback that does not return
+constexpr auto patience = 1s;  // limit for a callback that does not return
 
-/// A program may end without a word: its callbacks are called no more, and its force fades.
+/// When the program exits without closing its devices: stops the callbacks and fades the force.
 __attribute__((destructor)) void end() {
   if (current != nullptr && runtime().scheduler.stop(patience)) runtime().devices.close_all();
 }

@@ -1,4 +1,4 @@
-// The one device list and the one scheduler of the program.
+// The device list and the scheduler of the program.
 #pragma once
 
 #include "devices.hpp"
@@ -19,12 +19,12 @@ struct Runtime {
                       }};
 };
 
-/// Lives until the process ends, because programs call in from their last destructors. A forked child has one of its
-/// own: the devices and the servo thread are its parent's.
+/// Never destroyed, because programs call the library in their last destructors. A forked child has a separate runtime:
+/// the devices and the servo thread belong to its parent.
 Runtime& runtime();
 
-/// A program that ends without a word is called no more before its own static objects go. Call it before the scheduler
-/// starts: what was made until then lives as long as the callbacks do.
+/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Call it before the
+/// scheduler starts: objects created earlier then outlive the callbacks.
 void stop_callbacks_at_exit();
 
 }  // namespace inkwell::dropins

@@ -15,10 +15,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned long pose_rate_Hz = 1000;
 constexpr std::size_t tasks_maximum = 1024;
-/// Programs keep handles in 32 bits, some of them with a sign.
+/// Programs store handles in 32 bits, some of them signed.
 constexpr TaskHandle handle_maximum = 0x7FFFFFFF;
 constexpr TaskHandle no_task = 0;
-/// As much before others as the system allows.
+/// Nice value of the servo thread. Without permission the value does not change.
 constexpr int precedence = -10;
 
 }  // namespace
@@ -31,7 +31,7 @@ Scheduler::Scheduler(Pace pace, std::function<void()> end_tick)
 void Scheduler::start() {
   std::unique_lock lock(mutex_);
   if (runs_ && !ends_) return;
-  if (is_servo_thread()) {  // it was stopped in this very tick
+  if (is_servo_thread()) {  // the scheduler was stopped in this tick
     ends_ = false;
     return;
   }
@@ -95,7 +95,7 @@ bool Scheduler::tick() {
   ++ticks_;
   std::unique_lock lock(mutex_);
   for (const auto& task : Tasks(tasks_)) {
-    if (find(task->handle) == tasks_.end()) continue;  // unscheduled by one before it
+    if (find(task->handle) == tasks_.end()) continue;  // an earlier callback has unscheduled it
     called_ = task->handle;
     lock.unlock();
     const bool goes_on = task->callback(task->user) == callback_continue;
@@ -162,8 +162,8 @@ TaskHandle Scheduler::add(Callback callback, void* user, unsigned short priority
   return handle;
 }
 
-/// At its end the list is locked. What the task acts on may go with the caller's stack: the scheduler was stopped, or
-/// the caller was cancelled.
+/// Removes a task in its destructor and waits for a running call. The data of the task may be on the caller's stack,
+/// which is released when the scheduler stops or the caller is canceled.
 class Scheduler::OffTheList {
  public:
   OffTheList(Scheduler& scheduler, std::unique_lock<std::mutex>& lock, TaskHandle handle)

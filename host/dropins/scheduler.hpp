@@ -1,4 +1,4 @@
-// HDAPI's servo loop: one thread that calls the program's callbacks, the higher priority first, once in each tick.
+// HDAPI's servo loop: one thread that calls the program's callbacks once per tick, in the order of their priority.
 #pragma once
 
 #include <atomic>
@@ -20,38 +20,38 @@ namespace inkwell::dropins {
 
 class Scheduler {
  public:
-  /// Waits for the next tick; `poses` of the device make one. Returns soon when `ends` says so; else the time from tick
-  /// to tick in seconds, 0 if that is not known.
+  /// Waits for the next tick, which comes after this number of poses of the device. Returns soon after `ends` returns
+  /// true. Returns the time between the ticks in seconds, or 0 if it is unknown.
   using Pace = std::function<double(std::uint32_t poses, const std::function<bool()>& ends)>;
 
   /// `end_tick` is called after the callbacks of each tick.
   Scheduler(Pace pace, std::function<void()> end_tick);
 
-  /// Throws std::system_error if the system has no thread for it. One that runs goes on.
+  /// Throws std::system_error if the system cannot create the thread. A running scheduler continues.
   void start();
-  /// Waits for the callback that runs, unless it is the one who calls; false if that takes longer than `limit`. The
-  /// callbacks stay listed.
+  /// Waits for the running callback, unless the callback itself calls this. False if the wait exceeds `limit`. The
+  /// callbacks remain listed.
   bool stop(std::chrono::milliseconds limit);
   bool runs() const;
 
   /// False for a rate at which no device sends poses.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
-  /// Of the last tick, by the clock of the device that paces, and the rate that is set while that is not known.
+  /// Rate of the last tick in the time of the pacing device, or the set rate if that is unknown.
   double measured_rate_Hz() const;
 
-  /// invalid_handle if there are as many as it takes. By the servo thread it is called at once, before it is listed.
+  /// Returns invalid_handle if the list is full. In the servo thread, the callback is called once before it is listed.
   TaskHandle add(Callback callback, void* user, unsigned short priority);
-  /// Returns when it is done; at once after one call if no servo thread runs or it is the one who calls.
+  /// Returns when the callback is done. Without a servo thread, or in the servo thread, the callback is called once.
   bool run_until_done(Callback callback, void* user, unsigned short priority);
-  /// False if it is listed no more. It is not being called when this returns, except by itself.
+  /// False if it is not listed. When this returns, the callback is not running, unless it calls this itself.
   bool remove(TaskHandle handle);
   bool is_listed(TaskHandle handle) const;
-  /// True when it is done; false if the servo thread calls, or ends meanwhile.
+  /// True when the callback is done; false in the servo thread, or if the scheduler stops.
   bool wait_until_done(TaskHandle handle);
 
   double time_since_tick_s() const;
-  /// The number of the tick, for who is called in it.
+  /// The number of the current tick in the servo thread; none in other threads.
   std::optional<std::uint64_t> tick_of_caller() const;
 
  private:
@@ -69,21 +69,21 @@ class Scheduler {
   void loop();
   /// False in a child that a callback has forked.
   bool tick();
-  /// Takes a task off the list, and waits until it is not being called.
+  /// Removes a task from the list, and waits until it is not running.
   class OffTheList;
 
   const Pace pace_;
   const std::function<void()> end_tick_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  Tasks tasks_;  ///< in the order of their calls
+  Tasks tasks_;  ///< in calling order
   TaskHandle last_handle_ = 0, called_ = 0;
   bool runs_ = false, ends_ = false;
   std::uint32_t poses_in_tick_ = 1;
   std::atomic<std::thread::id> servo_thread_id_{};
   std::atomic<std::uint64_t> ticks_ = 0;
   std::atomic<std::chrono::steady_clock::time_point> tick_began_{};
-  std::atomic<double> measured_rate_Hz_ = 0.0;  ///< 0 if it is not known
+  std::atomic<double> measured_rate_Hz_ = 0.0;  ///< 0 if it is unknown
   const process::Origin origin_;
   std::thread thread_;
 };

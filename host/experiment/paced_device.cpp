@@ -10,14 +10,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Short against the host's time-out, and against the 100 ms of scope that the link keeps room for.
+// Short compared to the host time-out, and to the 100 ms of scope data that the link can buffer.
 constexpr std::chrono::nanoseconds slice = 5ms;
 constexpr double slice_s = std::chrono::duration<double>(slice).count();
 constexpr unsigned slices_per_sign_of_life = 2;
 constexpr auto control_period = std::chrono::nanoseconds(1s) / protocol::servo_rate_Hz;
 constexpr auto slice_poses = static_cast<std::uint64_t>(slice_s * protocol::pose_rate_Hz);
-// Reads without a pose until the device counts as dead: half a minute where each waits its 10 ms. A board that lives
-// sends ten in one of them.
+// A device is considered dead after this number of reads without a pose: 30 s with 10 ms per read. A live board sends
+// ten poses in 10 ms.
 constexpr auto read_timeout = 10ms;
 constexpr int silent_reads_limit = 3000;
 constexpr double command_limit_s = 0.5;
@@ -26,9 +26,8 @@ std::chrono::nanoseconds nanoseconds(double time_s) {
   return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(time_s));
 }
 
-/// Tokens count from 1 to 255 and begin again; 0 stands for no command yet. The device carries commands out in their
-/// order, so a later token tells as much as the token itself, and a sign of life that the host sent meanwhile may be
-/// all that a pose still shows.
+/// Tokens count from 1 to 255 and wrap; 0 means no command yet. The device executes commands in order, so a later token
+/// also confirms an earlier command. The newest token in a pose may belong to a later heartbeat.
 bool is_at_or_after(std::uint8_t token, std::uint8_t awaited) {
   constexpr int tokens = 255;
   return token != 0 && (token - awaited + tokens) % tokens < tokens / 2;
@@ -49,7 +48,7 @@ void PacedDevice::read_poses(std::chrono::milliseconds timeout) {
     if (pose->state == protocol::State::fault)
       throw device::Error("The device reports the fault " + device::fault_line(pose->fault));
   }
-  if (timeout == 0ms && poses_received_ == before) return;  // it was only asked what is there
+  if (timeout == 0ms && poses_received_ == before) return;  // a poll without waiting
   silent_reads_ = poses_received_ > before ? 0 : silent_reads_ + 1;
   if (silent_reads_ > silent_reads_limit)
     throw device::Error("The device is silent. Reset the board and run the experiment again.");
@@ -60,20 +59,20 @@ void PacedDevice::pass_slice() {
     device_.keep_alive();
     return read_poses(read_timeout);
   }
-  // By the board's time alone, so that the board gets the same reports at the same instants in each run.
+  // The interval depends only on board time, so that the board gets the same reports at the same instants in each run.
   if (slices_++ % slices_per_sign_of_life == 0) device_.send(protocol::Command::heartbeat);
   const std::uint64_t before = poses_received_;
   control_->run(slice_s);
   passed_ += slice;
-  // Board time stands still now; the reports of the slice may still be on their way. One or two of them belong to
-  // frames that the slice's end cut.
+  // Board time is stopped now, but reports of the slice may still be in transit. One or two reports belong to frames
+  // that the end of the slice interrupted.
   const std::uint64_t expected = pose_ ? slice_poses - 2 : 0;
   read_poses(0ms);
   while (poses_received_ - before < expected) read_poses(read_timeout);
 }
 
 void PacedDevice::pass(double time_s) {
-  read_poses(0ms);  // what waits here is of the past
+  read_poses(0ms);  // discards old poses
   const auto end = passed_ + nanoseconds(time_s);
   while (passed_ < end) pass_slice();
 }

@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double arrival_limit_s = 2.0;  // the scope's ring holds a fraction of it
+constexpr double arrival_limit_s = 2.0;  // the scope's ring buffer covers a fraction of this time
 
 }  // namespace
 

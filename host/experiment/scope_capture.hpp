@@ -1,4 +1,4 @@
-// What the scope sends while an experiment goes on.
+// Scope data during an experiment.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace inkwell::experiment {
 
-/// Asks for signals, and reads them in a thread of its own for as long as it lives.
+/// Selects signals and reads them on a separate thread during its lifetime.
 class ScopeCapture {
  public:
   ScopeCapture(PacedDevice& device, const recording::Information& information);
@@ -21,8 +21,8 @@ class ScopeCapture {
   ScopeCapture& operator=(const ScopeCapture&) = delete;
 
   std::size_t size() const;
-  /// The first `samples` samples, once they are there; gives the scope back. Throws device::Error if they do not come,
-  /// or if some are lost.
+  /// Waits for the first `samples` samples, returns them and releases the scope. Throws device::Error if samples do not
+  /// arrive or are lost.
   recording::Recording take(std::size_t samples);
 
  private:

@@ -34,7 +34,7 @@ void add_simulated_columns(recording::Recording& recording, const device::Trace&
 
   // The trace has one row for each control period, without gaps.
   const std::size_t rows = trace.row_count();
-  // The trace counts all periods since the reset, and the recording perhaps those since the counter last wrapped.
+  // The trace counts all periods since the reset. The period counter of the recording may have wrapped.
   const auto period_of = [&](std::size_t row) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(trace.values[row * width + period_place]));
   };

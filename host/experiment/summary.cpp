@@ -18,18 +18,18 @@ constexpr double relative_error_floor_N = 0.5;
 constexpr double tolerance_N = 0.005, tolerance_relative = 0.01;
 constexpr double hold_duration_s = 0.5;
 
-/// The columns of a vector's three components.
+/// Columns of the three components of a vector.
 std::array<const std::vector<float>*, 3> vector_columns(const Recording& recording, protocol::EachAxis<Signal> rows) {
   return {&recording.column(rows[0]), &recording.column(rows[1]), &recording.column(rows[2])};
 }
 
 double magnitude(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// The force of the spring and the damper on one axis; a wall never pulls.
+/// Force of spring and damper on one axis; a wall never pulls.
 double axis_force_N(double penetration_m, double velocity_m_s, double stiffness, double damping) {
   if (penetration_m == 0) return 0;
   const double outward = penetration_m > 0 ? 1 : -1;
-  // The proxy rests on the wall, so the penetration grows as fast as the probe moves inward.
+  // The proxy rests on the wall, so the penetration rate equals the inward speed of the probe.
   return outward * std::max(0.0, stiffness * std::abs(penetration_m) - damping * velocity_m_s * outward);
 }
 

@@ -45,7 +45,7 @@ BoxWall pushed_wall(const recording::Recording& recording) {
     for (const float penetration_m : recording.column(of_axis(protocol::Signal::penetration_x_m, axis))) {
       if (std::abs(penetration_m) <= deepest_m) continue;
       deepest_m = std::abs(penetration_m);
-      // It points out of the wall, back into the box.
+      // The penetration vector points out of the wall, into the box.
       wall = {axis, penetration_m < 0 ? 1 : -1};
     }
   if (deepest_m == 0) throw device::Error("The sphere touches no wall in this recording. Record a push into one.");

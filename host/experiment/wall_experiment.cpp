@@ -29,24 +29,24 @@ using protocol::State;
 using recording::CurrentStep;
 using recording::Recording;
 
-// The simulated hand: a relaxed human hand and arm, damped so that it does not swing.
+// Simulated hand: a relaxed human hand and arm, damped against oscillation.
 constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
-constexpr double push_N = 2.4, push_part_of_limit = 0.75;  // what the hand presses with, within the force limit
+constexpr double push_N = 2.4, push_part_of_limit = 0.75;  // force of the hand, within the force limit
 constexpr double clear_m = 0.005;                          // distance from the wall before and after the push
-constexpr double touch_m = 0.002;                          // how far the hand is beyond the wall when the push begins
+constexpr double touch_m = 0.002;                          // target distance inside the wall at the start of the push
 constexpr double drag_m = 0.015;                           // along the wall, in the arm's plane
 
-// The times of the hand's path, from the start of the recording.
+// Times in the hand's path, from the start of the recording.
 constexpr double approached_s = 0.7, touched_s = 1.1, pushed_s = 1.9, held_s = 2.6, dragged_s = 3.2, released_s = 3.6,
                  returned_s = 4.1, end_s = 4.2;
-constexpr double settling_s = 0.15;  // after the push stops growing, before the hold counts as steady
+constexpr double settling_s = 0.15;  // from the end of the push's ramp until the hold counts as steady
 
 constexpr float test_amplitude_A = 0.5f, test_duration_s = 0.04f;
 constexpr double test_spacing_s = 0.12;
 
 constexpr double user_limit_s = 120, push_limit_s = 30;
 
-/// Where the probe is when the sphere touches the wall.
+/// Probe coordinate at the first contact of the sphere with the wall.
 double contact_m(const ParameterSet& parameters, BoxWall wall) {
   return wall_position_m(parameters, wall) - wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
 }
@@ -59,7 +59,7 @@ Vector3 middle_of_box_m(const ParameterSet& parameters) {
   return middle;
 }
 
-/// The vertical axis, or along the arm's plane where the wall is horizontal.
+/// The vertical axis, or the axis in the arm's plane if the wall is horizontal.
 std::size_t drag_axis(const ParameterSet& parameters, BoxWall wall) {
   const std::size_t vertical = parameters[Parameter::frame] == 1.0f ? 1 : 2;
   return static_cast<int>(vertical) != wall.axis ? vertical : static_cast<std::size_t>(forward_wall(parameters).axis);
@@ -92,7 +92,6 @@ std::size_t samples_of(double time_s) {
   return static_cast<std::size_t>(std::lround(time_s * protocol::servo_rate_Hz));
 }
 
-/// One pulse of current in each motor while the stylus rests in the inkwell.
 Recording record_current_steps(PacedDevice& device, const recording::Information& about) {
   ScopeCapture capture(device, about);
   for (std::uint8_t motor = 1; motor <= 3; ++motor) {
@@ -119,7 +118,7 @@ void switch_force_on(PacedDevice& device, const ParameterSet& parameters) {
 
 struct Push {
   Recording recording;
-  std::optional<Interval> hold;  ///< when the hand is steady, if that was planned
+  std::optional<Interval> hold;  ///< planned interval with a steady hand, if known
 };
 
 device::Trace read_trace(device::ControlClient& control) {
@@ -132,7 +131,7 @@ device::Trace read_trace(device::ControlClient& control) {
   }
 }
 
-// ---- with a virtual board -------------------------------------------------------------------------------
+// ---- virtual board --------------------------------------------------------------------------------------
 
 void take_to_middle(PacedDevice& device, device::ControlClient& control, const ParameterSet& parameters) {
   const auto& here = device.pose().position_m;
@@ -169,12 +168,12 @@ Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control,
 
   progress("The simulation's own values are read.", 0.82);
   add_simulated_columns(recording, read_trace(control), recorded_quantities());
-  // It is below 0 if the path begins a little before the first sample.
+  // The offset is negative if the path starts before the first sample.
   const double offset_s = device::board_time_s(path_begins_at - recording.periods.front());
   return {std::move(recording), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01}};
 }
 
-// ---- with a real device ---------------------------------------------------------------------------------
+// ---- real device ----------------------------------------------------------------------------------------
 
 bool is_clear(const device::Pose& pose, const ParameterSet& parameters) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -18,7 +18,7 @@ enum State : std::uint8_t { idle = 2, busy = 4, download_idle = 5, manifest = 7,
 constexpr std::uint8_t flash_setting = 0, options_setting = 1;
 constexpr std::uint16_t first_block = 2;
 constexpr std::uint32_t options_address = 0x1FFF'C000;
-/// A sector's erase takes 4 s at most (data sheet), and its time is said with the first answer.
+/// A sector erase takes at most 4 s (data sheet). The first answer contains the expected time.
 constexpr unsigned longest_poll_ms = 10'000;
 
 /// DFU 1.1, section 6.1.2.
@@ -47,7 +47,7 @@ std::array<std::byte, 5> command(std::uint8_t code, std::uint32_t address) {
           std::byte(address >> 24)};
 }
 
-/// The number at the begin of the text, which it takes away. False if there is none.
+/// Reads the number at the beginning of the text and removes it from the text. False if there is none.
 bool take_number(std::string_view& text, std::uint32_t& number, int base) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number, base);
   if (code != std::errc{}) return false;
@@ -75,7 +75,7 @@ std::vector<Sector> parse_memory_layout(std::string_view name) {
     std::uint32_t count = 0, size = 0;
     if (!take_number(rest, count, 10) || !take(rest, "*") || !take_number(rest, size, 10) || rest.empty()) return {};
     const std::uint32_t unit = rest[0] == 'K' ? 1024 : rest[0] == 'M' ? 1024 * 1024 : 1;
-    rest.remove_prefix(std::min<std::size_t>(2, rest.size()));  // the unit, and what may be done there
+    rest.remove_prefix(std::min<std::size_t>(2, rest.size()));  // skips the unit and the access rights
     if (count == 0 || size == 0 || count > sectors_maximum - sectors.size() || size > 0x100'0000 / unit) return {};
     for (std::uint32_t i = 0; i < count; ++i, address += size * unit) sectors.push_back({address, size * unit});
   } while (take(rest, ","));
@@ -108,7 +108,7 @@ BootLoader::Status BootLoader::status() {
 }
 
 void BootLoader::make_idle() {
-  constexpr int tries = 4;  // one request leads to idle from each state, two from some
+  constexpr int tries = 4;  // one request leads to idle from every state, except for some states that need two
   for (int i = 0; i < tries; ++i) {
     const auto now = status();
     if (now.state == State::idle) return;
@@ -154,9 +154,9 @@ void BootLoader::write(std::uint32_t address, std::span<const std::byte> data) {
 
 std::vector<std::byte> BootLoader::read(std::uint32_t address, std::size_t bytes) {
   set_address(address);
-  make_idle();  // an upload begins there
+  make_idle();  // an upload starts from the idle state
   std::vector<std::byte> read;
-  // Always the first block of its address: the loader counts blocks by the length of the request.
+  // Reads always use the first block after the address, because the loader scales block numbers by the request length.
   while (read.size() < bytes) {
     const auto length = static_cast<std::uint16_t>(std::min(block_bytes, bytes - read.size()));
     if (!read.empty()) {
@@ -189,7 +189,7 @@ void BootLoader::write_options(std::span<const std::byte, option_bytes> options)
   channel_.write({dnload, first_block}, options);
   try {
     wait_until_done();
-  } catch (const device::Disconnected&) {  // it has reset the chip
+  } catch (const device::Disconnected&) {  // the loader has reset the chip
   }
 }
 
@@ -198,7 +198,7 @@ void BootLoader::leave() {
   set_address(protocol::image_begin);
   channel_.write({dnload, first_block}, {});
   try {
-    status();  // it leaves with this answer, or before it
+    status();  // the loader starts the program with this answer or before it
   } catch (const device::Disconnected&) {
   }
 }

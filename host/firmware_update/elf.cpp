@@ -10,7 +10,6 @@
 namespace inkwell::firmware_update {
 namespace {
 
-/// A record of the file at `offset`.
 template <class Record>
 Record record_at(std::span<const std::byte> file, std::size_t offset, const std::string& name) {
   if (offset > file.size() || sizeof(Record) > file.size() - offset)

@@ -9,7 +9,7 @@
 
 namespace inkwell::firmware_update {
 
-/// Those with bytes in the file, by their physical addresses. Throws NoImage.
+/// The segments that have bytes in the file, at their physical addresses. Throws NoImage.
 std::vector<Segment> load_segments(std::span<const std::byte> elf, const std::string& name);
 
 }  // namespace inkwell::firmware_update

@@ -11,7 +11,7 @@
 namespace inkwell::firmware_update {
 namespace {
 
-/// Of the STM32F405 with 1 MiB, as its boot loader says.
+/// Flash layout of the STM32F405 with 1 MiB, in the format of its boot loader.
 constexpr char layout[] = "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg";
 
 std::vector<std::byte> read_flash(const std::filesystem::path& name, const local::OwnedFile& file) {
@@ -25,7 +25,7 @@ std::vector<std::byte> read_flash(const std::filesystem::path& name, const local
   return content;
 }
 
-/// `use(file)`, with the errors of it as sentences of this program.
+/// Calls `use(file)` and converts its errors to messages of this program.
 template <class Use>
 void use_flash(const std::filesystem::path& name, Use use) {
   try {

@@ -18,13 +18,14 @@ namespace {
 
 constexpr std::uint32_t flash_begin = protocol::image_begin, flash_bytes = protocol::flash_bytes;
 constexpr std::uint32_t polynomial = 0x04C1'1DB7;
-constexpr std::size_t file_maximum = 64u << 20;  // with all its debug information it has a fiftieth of that
+constexpr std::size_t file_maximum = 64u << 20;  // the real image, including debug information, has one fiftieth of
+                                                 // this size
 
 std::string version_of(const protocol::ImageIdentity& identity) {
   return fmt::format("{}", fmt::join(identity.version(), "."));
 }
 
-/// The build puts the checksum of all before it behind the image (tools/seal_image.py).
+/// The build appends a checksum of the image (tools/seal_image.py).
 bool is_sealed(const std::vector<Segment>& segments) {
   WordChecksum checksum;
   std::uint32_t word = 0;

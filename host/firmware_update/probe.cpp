@@ -44,7 +44,7 @@ void write_image_file(const Image& image, const std::filesystem::path& file) {
   if (!stream) throw device::Error(fmt::format("{} cannot be written. Free some space and try again.", file.string()));
 }
 
-/// Takes pieces of an output apart into lines.
+/// Splits a stream of output into lines.
 class Lines {
  public:
   explicit Lines(const std::function<void(const std::string&)>& on_line) : on_line_(on_line) {}
@@ -94,7 +94,7 @@ std::string intel_hex(const Image& image) {
         append_record(text, HexRecord::upper_address, 0,
                       std::array{std::byte(upper >> 8 & 0xFF), std::byte(upper & 0xFF)});
       }
-      // No record goes beyond the next multiple of its size, and so none beyond 64 KiB.
+      // A record ends at the next multiple of the record size, so no record crosses a 64 KiB boundary.
       const std::size_t count =
           std::min(segment.bytes.size() - i, record_bytes - static_cast<std::size_t>(address) % record_bytes);
       append_record(text, HexRecord::data, static_cast<std::uint16_t>(address),
@@ -117,7 +117,6 @@ std::vector<std::string> openocd_arguments(const std::string& interface, std::in
   return arguments;
 }
 
-/// Returns its exit code.
 int run_openocd(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                 const std::function<void(const std::string&)>& on_line) {
   Lines lines(on_line);
@@ -151,7 +150,7 @@ std::vector<std::string> openocd_arguments_for_reading(const std::string& interf
 }
 
 std::vector<std::string> openocd_arguments_for_writing(const std::string& interface) {
-  // FLASH_OPTCR: BOR_LEV is 0 for level 3; the other bits of the user's byte stay (RM0090, "Option bytes").
+  // FLASH_OPTCR: BOR_LEV 0 selects level 3; the other bits of the user byte are retained (RM0090, "Option bytes").
   const std::string set_brown_out =
       "set optcr [lindex [read_memory 0x40023c14 32 1] 0]; "
       "if {($optcr & 0x0c) != 0} { stm32f2x options_write 0 [expr {$optcr & 0xe0}] }";

@@ -15,13 +15,13 @@ using namespace std::chrono_literals;
 using device::Address;
 using device::Endpoint;
 
-/// A board needs half a second for it; a virtual one on a busy computer a few.
+/// A board needs half a second to change; a virtual board on a busy computer needs a few seconds.
 constexpr auto change_patience = 20s;
 constexpr auto look_again = 50ms;
-/// Until the system has given this user the right to a new device, or has found its driver.
+/// Time in which the system grants access to a new device or finds its driver.
 constexpr auto system_patience = 5s;
 
-/// `chosen`: the image was, by what the board held, and what it held is gone.
+/// `is_chosen`: the image was chosen by the board's previous image, which is erased.
 std::string how_to_go_on(const Image& image, bool is_chosen) {
   return fmt::format(
       "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
@@ -36,7 +36,7 @@ std::vector<Endpoint> arms_at(const Address& address) {
   return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.server) : device::find_arms(address);
 }
 
-/// Those of the address, and of the serial number if it says one.
+/// The boot loaders at the address, with its serial number if it contains one.
 std::vector<Endpoint> loaders_at(const Address& address) {
   auto loaders = device::find_boot_loaders(address);
   if (!address.serial_number.empty())
@@ -68,7 +68,7 @@ auto wait_for(Look look) -> decltype(look()) {
   }
 }
 
-/// A server or a device that just changes may not answer; it is asked again.
+/// Returns nothing if a server or device does not answer because it is restarting. The caller repeats the call.
 template <class Look>
 auto if_it_answers(Look look) -> decltype(look()) {
   try {
@@ -80,7 +80,7 @@ auto if_it_answers(Look look) -> decltype(look()) {
   }
 }
 
-/// Carries out `look` for a device that has just appeared. A refusal by the system is an error only once it lasts.
+/// Waits for a device that has just appeared. A refusal by the system is an error only if it persists.
 template <class Look>
 auto wait_for_admitted(Look look) -> decltype(look()) {
   std::optional<std::chrono::steady_clock::time_point> refused_at;
@@ -96,7 +96,7 @@ auto wait_for_admitted(Look look) -> decltype(look()) {
   });
 }
 
-/// Out of the firmware into the boot loader.
+/// Restarts the board from its firmware into the boot loader.
 Endpoint detach(const Endpoint& arm, const Address& address) {
   std::set<std::string> known;
   for (const auto& each : device::find_boot_loaders(address))
@@ -118,8 +118,8 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
       "again: its old firmware is still there.");
 }
 
-/// What its firmware says of the board is enough to refuse an image before the firmware is left. Where it cannot be
-/// asked, its flash is looked at afterwards.
+/// Refuses an unsuitable image before the board leaves its firmware, based on the board name in the firmware's report.
+/// If the firmware does not answer, the flash is checked later.
 void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& options) {
   const auto board = if_it_answers([&] {
     const auto report = device::Device(device::open_transport(arm)).information().report;
@@ -131,7 +131,7 @@ void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& op
   insist(options.image_for(board->board_name()).value_or(image), board, options.consent);
 }
 
-/// The boot loader of the board that is meant, and the arms beside it.
+/// The boot loader of the selected board, and the serial numbers of the other arms.
 struct Found {
   Endpoint loader;
   std::set<std::string> other_arms;
@@ -153,7 +153,7 @@ Found find_loader(const Address& address, const Image& image, const UpdateOption
   return found;
 }
 
-/// Pieces of a block each, the first of the flash last, and none over a gap of the image.
+/// Blocks of at most one block size, without gaps of the image. The first block of the flash comes last.
 struct Block {
   std::uint32_t address;
   std::span<const std::byte> bytes;
@@ -169,14 +169,14 @@ std::vector<Block> blocks_of(const Image& image) {
   return blocks;
 }
 
-/// Steps of one piece of work, in the share of time that they take.
+/// Steps of a flash write, weighted by their duration.
 class Writing {
  public:
   Writing(BootLoader& loader, const Image& image, const UpdateOptions& options)
       : loader_(loader), options_(options), sectors_(sectors_of(image, loader.sectors())), blocks_(blocks_of(image)) {}
 
   void erase() {
-    for (const Sector& sector : sectors_) {  // the first one first: see update.hpp
+    for (const Sector& sector : sectors_) {  // the first sector first: see update.hpp
       step(fmt::format("erasing: {} KiB at 0x{:08x}", sector.bytes / 1024, sector.address));
       loader_.erase(sector.address);
       done_ += 0.3 / static_cast<double>(sectors_.size());
@@ -217,7 +217,7 @@ class Writing {
   double done_ = 0;
 };
 
-/// What the board says once it runs again: nothing if it did not come back in time.
+/// Reads the versions of the new firmware. They stay empty if the board does not restart in time.
 void look_at_result(const Address& address, const std::set<std::string>& other_arms, UpdateResult& result) {
   wait_for([&] {
     return if_it_answers([&] {
@@ -244,7 +244,7 @@ std::optional<std::array<std::byte, BootLoader::option_bytes>> with_brown_out_le
     throw device::Error("The chip's option bytes say that its flash is protected; they are left as they are.");
   if ((options[0] & level_bits) == std::byte{0}) return {};
   auto changed = options;
-  changed[0] &= ~level_bits;  // all others as they were: some of them would lock the chip for ever
+  changed[0] &= ~level_bits;  // the other bits are retained: some of them would lock the chip permanently
   return changed;
 }
 
@@ -259,7 +259,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
       written.image = image;
     insist(written.image, written.before, options.consent);
   } catch (const device::Error&) {
-    if (written.before) loader.leave();  // to what it says it is
+    if (written.before) loader.leave();  // starts the identified firmware
     throw;
   }
   if (options.is_cancelled()) {
@@ -285,7 +285,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
 }
 
 UpdateResult update(const Address& address, const Image& image, const UpdateOptions& options) {
-  // What no board could have is refused before the board leaves its firmware.
+  // An image that suits no board is refused before the board leaves its firmware.
   insist(image, {}, options.consent);
   UpdateResult result;
   const Found found = find_loader(address, image, options);

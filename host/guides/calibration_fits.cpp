@@ -21,7 +21,7 @@ StopsFit fit_stops(const JointStops& found, const JointStops& expected, double o
 double PotentiometerCurve::ratio(double angle_rad) const {
   const double constant = offset_rad - angle_rad;
   const double discriminant = std::max(slope_rad * slope_rad - 4 * square_rad * constant, 0.0);
-  // This form of the root goes over into the line's as the square term vanishes.
+  // This form of the root converges to the linear solution as the square term vanishes.
   const double divisor = slope_rad + std::copysign(std::sqrt(discriminant), slope_rad);
   if (divisor == 0)
     throw device::Error("The potentiometer's slope is 0, so nothing can be read from it. Load the defaults.");

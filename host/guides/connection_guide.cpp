@@ -1,4 +1,4 @@
-// First connection: is everything there, and does it count the right way?
+// First connection: checks all parts and the directions of the encoders.
 #include <guides/guides.hpp>
 
 #include <fmt/format.h>

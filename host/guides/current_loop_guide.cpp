@@ -1,5 +1,5 @@
-// Current loops: identify each motor from voltage pulses, suggest gains and resistances, try the gains with steps of
-// current.
+// Current loops: identifies each motor from voltage pulses, suggests gains and resistances, and tests the gains with
+// current steps.
 #include <guides/guides.hpp>
 
 #include <algorithm>
@@ -28,26 +28,26 @@ using protocol::Signal;
 using protocol::TestPulse;
 
 constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
-constexpr float voltage_pulse_s = 0.01f;  // tens of time constants of a small motor's winding
+constexpr float voltage_pulse_s = 0.01f;  // tens of winding time constants of a small motor
 constexpr float first_voltage_V = 1.0f, largest_voltage_V = 4.0f;
-constexpr int pairs_of_pulses = 3;  // at the larger voltage; one pulse forward and one back cancel the arm's motion
+constexpr int pairs_of_pulses = 3;  // at the higher voltage; a forward and a backward pulse cancel the arm's motion
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
 constexpr double ripple_A = static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H)) / 2;
 
-/// More digits than the fit supports would only be harder to read and to compare.
+/// Rounds to four digits, the precision of the fit.
 double to_four_digits(double value) {
   const double step = std::pow(10.0, std::floor(std::log10(value)) - 3);
   return step * std::round(value / step);
 }
 
-/// So that what is nearly nothing is written as 0.0, without a sign.
+/// Rounds to 0.1, without a negative zero.
 double tenths(double value) { return 0.1 * std::round(10.0 * value) + 0.0; }
 
-/// What the steps of this guide tell one another.
+/// Data shared by the steps of this guide.
 struct Tuning {
   CurrentLoopOptions options;
   std::string board_name;
-  const board::Facts* board = nullptr;  ///< none: this companion does not know the one that is connected
+  const board::Facts* board = nullptr;  ///< null: this companion does not know the connected board
   std::vector<MotorCircuit> motors;     ///< in the order of options.motors
   std::optional<SuggestedGains> gains;
   std::vector<recording::CurrentStep> before, after;
@@ -56,7 +56,7 @@ struct Tuning {
     board_name = name;
     board = board::find_board(name);
   }
-  /// Without the shunt, which is the board's and not the motor's.
+  /// Motor resistance without the shunt, which belongs to the board.
   std::optional<double> motor_ohm(const MotorCircuit& circuit) const {
     if (board == nullptr) return std::nullopt;
     return circuit.resistance_ohm - static_cast<double>(board->shunt_ohm);
@@ -67,7 +67,7 @@ double held(const ParameterSet& set, protocol::EachAxis<Parameter> rows, int mot
   return static_cast<double>(set[of_number(rows, motor)]);
 }
 
-/// Test pulses stay well below what the motor may carry.
+/// Test current, well below the motor's limit.
 float test_current_A(const ParameterSet& set, int motor) {
   return std::min({step_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor)], allowed_pulse_A(set, motor)});
 }
@@ -150,10 +150,10 @@ class IdentifyMotor final : public Step {
     return pulse;
   }
 
-  /// The second voltage asks for twice the current of the later step test, as far as that is allowed, by the current
-  /// that the first one came to. What the bridges' dead time took from that is a fact of the board.
+  /// Chooses the second voltage. It aims at twice the current of the later step test, within the allowed current. The
+  /// estimate uses the first pulse's current and the board's dead-time voltage.
   void choose_voltage() {
-    identify(pulses_, period_s, ripple_A);  // says so if there is no such circuit
+    identify(pulses_, period_s, ripple_A);  // throws if the currents do not match the circuit
     const auto wanted_A =
         static_cast<double>(std::min(2.0f * test_current_A(set_, motor_), allowed_pulse_A(set_, motor_)));
     const double lost_V = std::min(dead_time_V(), 0.5 * static_cast<double>(first_V_));
@@ -166,7 +166,7 @@ class IdentifyMotor final : public Step {
     return static_cast<double>(tuning_->board->bridge_dead_time_part()) * recorder_->values_of(Signal::supply_V).back();
   }
 
-  /// Mean over both pulses of the last millisecond in which their voltage was on.
+  /// Mean of both pulses over the last millisecond with voltage.
   double settled_A() const {
     constexpr std::size_t samples = protocol::servo_rate_Hz / 1000;
     double sum_A = 0.0;
@@ -206,7 +206,7 @@ class IdentifyMotor final : public Step {
   std::vector<VoltagePulse> pulses_;
 };
 
-/// A step of current in each motor, with the gains that the device holds or, for a while, with the suggested ones.
+/// Applies a current step to each motor, with the device's gains or temporarily with the suggested gains.
 class TryGains final : public Step {
  public:
   TryGains(std::shared_ptr<Tuning> tuning, std::shared_ptr<Findings> findings, bool suggested)
@@ -318,7 +318,7 @@ class TryGains final : public Step {
                                            {"steady_error_A", step.steady_error_A}});
   }
 
-  /// The motors share their gains, so they get those of the mean motor.
+  /// The motors share their gains, so the gains are computed for the mean motor.
   void suggest() {
     MotorCircuit mean;
     const auto count = static_cast<double>(tuning_->motors.size());
@@ -329,7 +329,7 @@ class TryGains final : public Step {
     }
     const auto exact = suggest_gains(mean, tuning_->options.bandwidth_Hz);
     tuning_->gains = {to_four_digits(exact.proportional_V_per_A), to_four_digits(exact.integral_V_per_As)};
-    // The bridge holds a voltage for a period, which delays it by half of one in the mean.
+    // The bridge applies a voltage for one period, which adds a mean delay of half a period.
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)

@@ -1,4 +1,4 @@
-// Directions: each encoder while the user turns its joint, then each motor with a pulse of current.
+// Directions: checks each encoder while the user turns its joint, then each motor with a current pulse.
 #include <guides/guides.hpp>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ class PulseMotor final : public Step {
   double progress() const override { return static_cast<double>(turned_rad_.size()) / 2; }
 
  private:
-  /// Taken out of the inkwell, and slower than the pulse will be.
+  /// The stylus is out of the inkwell, and the joint moves slower than in the pulse.
   bool holds_still(const device::Pose& pose) {
     const double angle_rad = static_cast<double>(pose.joint_rad[motor_ - 1]);
     if (is_closed(pose.switches, protocol::Switch::inkwell) ||
@@ -115,7 +115,7 @@ class PulseMotor final : public Step {
     return joint_rad[end - 1] - joint_rad[begin];
   }
 
-  /// What the hand and gravity do is the same in both pulses and goes out in the difference.
+  /// The effects of hand and gravity are the same in both pulses and cancel in the difference.
   void judge(const Observation& now) {
     const double difference_rad = turned_rad_[0] - turned_rad_[1];
     if (std::abs(difference_rad) < smallest_turn_rad)
@@ -129,7 +129,7 @@ class PulseMotor final : public Step {
     const bool forward = (difference_rad > 0) != encoder_wrong;
     const auto parameter = of_number(Parameter::motor_1_reversed, motor_);
     const bool held_reversed = (*now.parameters)[parameter] == 1.0f;
-    // A test pulse is a motor current as it is, before motor_n_reversed.
+    // A test pulse sets the motor current directly, without motor_n_reversed.
     const bool right = forward != held_reversed;
     findings_->sentences.push_back(fmt::format("A positive current turns joint {} {}, {}.", motor_,
                                                forward ? "forward" : "backward",

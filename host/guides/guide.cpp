@@ -23,7 +23,7 @@ const char* phase_name(Phase phase) {
   return "";
 }
 
-/// Ends a test's pulse as well.
+/// Disabling the force also ends a test pulse.
 void make_safe(DevicePort& port) { port.send(protocol::Command::disable_force); }
 
 }  // namespace
@@ -93,7 +93,7 @@ void Guide::run(const Observation& now, DevicePort& port) {
         "anew.",
         step().title(), lent ? " Parameters that were on trial are still on it if it kept its power." : ""));
   }
-  if (!now.connected || !now.pose || !now.parameters) return;  // it is still being connected
+  if (!now.connected || !now.pose || !now.parameters) return;  // the connection is not complete
   if (now.pose->state == protocol::State::fault)
     throw device::Error("The device reports the fault " + device::fault_line(now.pose->fault));
   if (!made_safe_) {
@@ -132,7 +132,7 @@ bool Guide::holds(const Observation& now, const std::vector<device::ParameterCha
 }
 
 void Guide::end(Phase phase, std::string outcome, DevicePort& port) {
-  // Without a device the commands go nowhere; its firmware ends a pulse after half a second at the latest.
+  // Without a device the commands have no effect. The firmware ends a pulse after at most half a second.
   make_safe(port);
   leave_step(port);
   port.select_signals({});
@@ -152,7 +152,7 @@ std::vector<device::ParameterChange> Guide::proposed_changes() const {
 
 void Guide::apply(DevicePort& port) {
   if (phase_ != Phase::finished || findings_->proposals.empty() || applied_ == Applied::sent) return;
-  put_back_.clear();  // the proposals overwrite what was on trial
+  put_back_.clear();  // the proposals overwrite the temporary values
   port.set_parameters(proposed_changes());
   applied_ = Applied::sent;
 }

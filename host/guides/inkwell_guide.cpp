@@ -1,4 +1,4 @@
-// Referencing: the stylus rests in the inkwell, and the pose is compared with the inkwell's angles.
+// Referencing: compares the pose of the stylus in the inkwell with the inkwell angles.
 #include <memory>
 
 #include <guides/guides.hpp>

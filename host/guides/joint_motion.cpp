@@ -13,7 +13,7 @@ namespace {
 using protocol::Parameter;
 using protocol::State;
 
-constexpr double least_turn_rad = 0.15;  // enough to be meant, and far from any stop
+constexpr double least_turn_rad = 0.15;  // larger than accidental motion, and far from any stop
 constexpr double resting_s = 0.2;
 
 double joint_rad(const device::Pose& pose, int joint) { return static_cast<double>(pose.joint_rad[joint - 1]); }
@@ -30,7 +30,7 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
   const control::Triple angles = parameters.of_each(Parameter::inkwell_joint_1_rad);
   control::Triple turned = angles;
   turned[static_cast<std::size_t>(joint - 1)] += 0.1f;
-  // The shoulder carries the elbow; the other two joints are seen best at the probe.
+  // The elbow shows the shoulder's motion best; the probe shows the motion of the other two joints.
   const auto seen = [&](const control::Triple& at) {
     const auto ends = control::link_ends(at, arm);
     return joint == 2 ? ends.elbow_m : ends.probe_m;
@@ -41,7 +41,7 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
   int axis = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(moved[i]) > std::abs(moved[axis])) axis = i;
-  // Axes of control::Frame. In the paper's frame the user faces the arm and looks against x.
+  // Axes of control::Frame. In the paper's frame the user faces the arm and looks along -x.
   constexpr const char* words[2][3][2] = {{{"away from you, to the arm's base", "towards you, off the arm's base"},
                                            {"to the left", "to the right"},
                                            {"down", "up"}},
@@ -51,7 +51,7 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
   return words[arm.frame == control::Frame::omni ? 1 : 0][axis][moved[axis] > 0 ? 1 : 0];
 }
 
-// ---- the inkwell -----------------------------------------------------------------------------------------
+// ---- inkwell ---------------------------------------------------------------------------------------------
 
 bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   const auto& pose = *now.pose;
@@ -88,7 +88,7 @@ bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   return true;
 }
 
-// ---- a joint turned by the user --------------------------------------------------------------------------
+// ---- joint turned by the user -----------------------------------------------------------------------------
 
 std::string TurnJointForward::title() const { return fmt::format("Encoder {}, {}", joint_, joint_name(joint_)); }
 

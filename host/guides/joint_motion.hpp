@@ -1,4 +1,4 @@
-// Steps that several guides share: the stylus rests in the inkwell, the user turns a joint.
+// Steps of several guides: the stylus rests in the inkwell, or the user turns a joint.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace inkwell::guides {
 
-inline constexpr double user_limit_s = 120;  ///< board time that the user has for one step
+inline constexpr double user_limit_s = 120;  ///< limit for one step of the user, in board time
 
 /// "the waist", "the shoulder", "the elbow".
 const char* joint_name(int joint);
 
-/// Which way the part that joint `joint` moves goes when the joint turns forward, from the arm's own kinematics:
-/// "to the right", "up" and so on, as seen by the user.
+/// Direction of the part that joint `joint` moves when the joint turns forward, from the arm's kinematics: "to the
+/// right", "up" and so on, as seen by the user.
 std::string forward_direction(const protocol::ParameterSet& parameters, int joint);
 
-/// Waits until the stylus rests in the inkwell and the device knows where the arm is.
+/// Waits until the stylus rests in the inkwell and the encoders are referenced.
 class RestInInkwell final : public Step {
  public:
-  /// `reports`: whether the pose found there goes into the findings.
+  /// `reports`: whether the pose in the inkwell is added to the findings.
   RestInInkwell(std::shared_ptr<Findings> findings, bool reports) : findings_(std::move(findings)), reports_(reports) {}
   std::string title() const override { return "Stylus in the inkwell"; }
   std::string text() const override {
@@ -41,10 +41,10 @@ class RestInInkwell final : public Step {
   std::vector<Check> checks_;
 };
 
-/// Encoders that count backwards, as far as they were checked.
+/// Whether each encoder is reversed; std::nullopt if not checked.
 using ReversedEncoders = std::array<std::optional<bool>, 3>;
 
-/// The user turns one joint forward; its encoder must count up.
+/// The user turns one joint forward, and its encoder must count up.
 class TurnJointForward final : public Step {
  public:
   TurnJointForward(std::shared_ptr<Findings> findings, std::shared_ptr<ReversedEncoders> reversed, int joint)

@@ -11,14 +11,14 @@
 namespace inkwell::guides {
 namespace {
 
-/// The part of a pulse that is fitted: from its second sample to its last.
+/// Fitted part of a pulse: from its second sample to its last.
 struct Segment {
   const VoltagePulse* pulse;
-  std::size_t begin;  ///< of the pulse: the first period whose voltage is on
+  std::size_t begin;  ///< of the pulse: the first period with voltage
   std::size_t first, last;
 };
 
-constexpr std::size_t settled_after = 2;  // periods until a voltage surely acts for a whole period
+constexpr std::size_t settled_after = 2;  // periods until a voltage certainly acts for a full period
 constexpr std::size_t shortest = 20;      // periods, about nine time constants of a small motor
 
 Segment find_segment(const VoltagePulse& pulse) {
@@ -38,7 +38,7 @@ Segment find_segment(const VoltagePulse& pulse) {
   return {&pulse, first, first + settled_after, last};
 }
 
-/// Unknowns: logarithms of resistance and time constant (they are positive), dead-time voltage, first currents.
+/// Unknowns: logarithms of resistance and time constant (both are positive), dead-time voltage, first currents.
 struct Model {
   const std::vector<Segment>& segments;
   double period_s, ripple_A;
@@ -73,7 +73,7 @@ Eigen::MatrixXd derivatives(const Model& model, const Eigen::VectorXd& unknowns,
   return jacobian;
 }
 
-/// Levenberg's damping keeps the first steps from leaving the region where the exponential makes sense.
+/// Levenberg damping limits the first steps to the region in which the exponential is meaningful.
 Eigen::VectorXd fit(const Model& model, Eigen::VectorXd unknowns, const Eigen::VectorXd& measured) {
   double damping = 1e-3;
   Eigen::VectorXd fitted = model.currents(unknowns, measured.size());
@@ -107,7 +107,7 @@ double mean_of_second_half(const std::vector<double>& values, const Segment& seg
   return sum / static_cast<double>(segment.last - middle);
 }
 
-/// When the voltage began to act, by the current that the segment starts with.
+/// Delay until the voltage acted, from the first current of the segment.
 double delay_of(const Segment& segment, double first_current_A, double final_A, double time_constant_s,
                 double period_s) {
   const double part = std::clamp(first_current_A / final_A, 0.0, 0.999);
@@ -134,7 +134,7 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
     for (std::size_t k = segment.first; k < segment.last; ++k) measured[at++] = segment.pulse->current_A[k];
     const double current_A = mean_of_second_half(segment.pulse->current_A, segment);
     const double voltage_V = mean_of_second_half(segment.pulse->voltage_V, segment);
-    // More than 30 ohm, or a current against the voltage.
+    // The resistance exceeds 30 ohm, or the current opposes the voltage.
     if (!(current_A / voltage_V > 1.0 / 30.0))
       throw device::Error("No current flows in the motor. Check its plug, its wiring and the supply of the bridges.");
     resistance += voltage_V / current_A / static_cast<double>(segments.size());

@@ -1,4 +1,4 @@
-// Calibration: the potentiometers of the gimbal.
+// Calibration of the gimbal potentiometers.
 #include <guides/guides.hpp>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ PotentiometerCurve held_curve(const ParameterSet& set, int axis) {
           value(set, Parameter::gimbal_1_offset_rad, axis)};
 }
 
-/// What the arm's description says of the whole track.
+/// Range of the full track from the arm description.
 AngleRange described_range(int axis) {
   const auto curve = held_curve(protocol::default_parameters(), axis);
   return {std::min(curve.angle_rad(0), curve.angle_rad(1)), std::max(curve.angle_rad(0), curve.angle_rad(1))};
@@ -43,7 +43,7 @@ struct AxisPoints {
   double middle_ratio = 0.5;
 };
 
-/// The mean over the last reports: the wiper is noisy. Counts time, not reports, of which a window sees fewer.
+/// Mean of the latest reports, because the wiper is noisy. The window is a time, because a program may miss reports.
 class Smoothed {
  public:
   void take(double ratio, double time_s) {
@@ -149,7 +149,7 @@ class FitPotentiometers final : public Step {
     for (double ratio = points.least_ratio; ratio <= points.most_ratio;
          ratio += (points.most_ratio - points.least_ratio) / 50)
       largest_change_rad = std::max(largest_change_rad, std::abs(curve.angle_rad(ratio) - held.angle_rad(ratio)));
-    // A hundredth of a radian is what wiper noise and a hand at the stop leave open.
+    // Uncertainty due to wiper noise and the user's hand at the stop.
     constexpr double tolerance_rad = 0.01;
     const bool agrees = largest_change_rad <= tolerance_rad;
     findings_->sentences.push_back(

@@ -7,7 +7,7 @@
 namespace inkwell::guides {
 namespace {
 
-constexpr std::size_t samples_before = 40;  // that show zero before the pulse
+constexpr std::size_t samples_before = 40;  // zero samples before the pulse
 constexpr double scope_limit_s = 2.0, pulse_limit_s = 1.0;
 
 }  // namespace
@@ -69,7 +69,7 @@ bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
           "reset the board and start the guide again.");
     return false;
   }
-  // From a little before the pulse to the end of the rest after it.
+  // From shortly before the pulse to the end of the rest after it.
   const std::size_t from = begin > samples_before ? begin - samples_before : 0;
   recording_.keep(from, begin + needed);
   state_ = State::done;
@@ -80,8 +80,7 @@ std::size_t PulseRecorder::samples_of_pulse() const {
   return static_cast<std::size_t>(std::lround(pulse_.duration_s * protocol::servo_rate_Hz));
 }
 
-// A recording that is made again may begin while the pulse of the one before is still on, or in the rest after it, in
-// which the board takes no other.
+// A repeated recording may start during the previous pulse or the rest after it, when the board refuses pulses.
 bool PulseRecorder::is_at_rest() const {
   const auto& seen = recording_.column(seen_in_);
   if (seen.size() < rest_samples_) return false;

@@ -9,7 +9,7 @@
 namespace inkwell::guides {
 
 float allowed_pulse_A(const protocol::ParameterSet& set, int motor) {
-  // The arm moves a little while it is tested, and a resistance is known roughly at first.
+  // Margin for the arm's motion during the test and for a resistance that is only roughly known.
   constexpr float part = 0.8f;
   constexpr float least_A = 0.2f;
   const control::Settings settings = control::prepare(set);

@@ -15,10 +15,11 @@ using Rows = protocol::EachAxis<Parameter>;
 
 constexpr double firm_N_per_m = 600, loose_N_per_m = 120, damping_Ns_per_m = 6;
 constexpr double joint_speed_rad_s = 2.0;
-constexpr double chord_rad = 0.15;   // the hand goes straight between points, so they lie close together
-constexpr double turn_rad = 0.25;    // what "turn the joint" means
-constexpr double beyond_rad = 0.02;  // how far into a stop the hand aims
-constexpr double hold_s = 0.6;       // at a stop
+constexpr double chord_rad = 0.15;   // largest distance of path points, because the hand moves in straight lines
+                                     // between them
+constexpr double turn_rad = 0.25;    // angle of a joint turn
+constexpr double beyond_rad = 0.02;  // distance of the hand's target beyond a stop
+constexpr double hold_s = 0.6;       // duration at a stop
 constexpr double press_s = 0.1;
 
 }  // namespace
@@ -27,7 +28,7 @@ SimulatedUser::SimulatedUser(device::ControlClient control, const protocol::Para
     : control_(std::move(control)), arm_(arm) {
   for (int axis = 1; axis <= 3; ++axis) {
     const auto of = [&](Rows rows) { return static_cast<double>(arm_[of_number(rows, axis)]); };
-    // The wipers start in the middle of their tracks.
+    // Initially the wipers are in the middle of their tracks.
     gimbal_rad_[static_cast<std::size_t>(axis - 1)] = of(Parameter::gimbal_1_square_rad) / 4 +
                                                       of(Parameter::gimbal_1_slope_rad) / 2 +
                                                       of(Parameter::gimbal_1_offset_rad);
@@ -53,7 +54,8 @@ SimulatedUser::Joints SimulatedUser::inkwell() const {
   return joints;
 }
 
-/// Takes the stylus out and leads it through the poses, from where the last move ended. Returns how long it takes.
+/// Removes the stylus from the inkwell and moves it through the poses, from the end of the last motion. Returns the
+/// duration.
 double SimulatedUser::move(std::vector<Joints> through, double stiffness_N_per_m) {
   through.insert(through.begin(), joints_);
   joints_ = through.back();
@@ -83,11 +85,11 @@ double SimulatedUser::move(std::vector<Joints> through, double stiffness_N_per_m
   return time_s;
 }
 
-/// Aims a little beyond both stops; only the hand's spring presses, so it is gentle.
+/// Moves slightly beyond both stops. Only the spring of the hand presses, so the force is small.
 void SimulatedUser::move_to_stops(int joint, double now_s) {
   const auto middle = [&](int each) { return (limit_rad(each, false) + limit_rad(each, true)) / 2; };
   const bool parallelogram = arm_[Parameter::transmission] == 1.0f;
-  // Waist, shoulder, and the elbow as its stops know it.
+  // Waist, shoulder, and the elbow angle relative to its stops.
   const auto joints_at = [&](double waist_rad, double shoulder_rad, double elbow_rad) {
     return Joints{waist_rad, shoulder_rad, elbow_rad + (parallelogram ? shoulder_rad : 0)};
   };
@@ -155,7 +157,7 @@ void SimulatedUser::advance(const UserTask& task) {
   if (task == task_ && planned_.empty()) return;
   const double now_s = control_.status().board_time_s;
   if (task != task_) {
-    // What is still planned belongs to the step before; its button is let go at least.
+    // Remaining actions belong to the previous step and are discarded, but its button is released.
     if (!planned_.empty()) control_.buttons(false, false);
     planned_.clear();
     task_ = task;

@@ -1,4 +1,4 @@
-// Calibration of the joints: their stops.
+// Calibration of the joints with their stops.
 #include <guides/guides.hpp>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 
 struct StopsFound {
-  /// All joints while the one that the place stands for rested at its lower and at its upper stop.
+  /// All joint angles while the joint with this index rested at its lower or upper stop.
   std::array<Angles, 3> low{}, high{};
 };
 
@@ -52,7 +52,7 @@ class MoveJointToStops final : public UserMoves {
     expected_ = {value(set, protocol::lower_stops, joint_), value(set, protocol::upper_stops, joint_)};
     Angles joints{};
     for (std::size_t i = 0; i < 3; ++i) joints[i] = static_cast<double>(now.pose->joint_rad[i]);
-    // The elbow's stops lie between the links; see control::elbow_rad.
+    // The elbow stops act between the links; see control::elbow_rad.
     now_rad_ = joints[static_cast<std::size_t>(joint_ - 1)];
     if (joint_ == 3 && set[Parameter::transmission] == 1.0f) now_rad_ -= joints[1];
     if (std::abs(now_rad_ - anchor_rad_) > still_rad) {
@@ -70,7 +70,7 @@ class MoveJointToStops final : public UserMoves {
       found_->high[place] = joints;
     }
   }
-  /// A tenth of the expected travel: encoders with a wrong number of counts show less than there is.
+  /// A tenth of the expected travel is enough, because a wrong counts-per-turn value reduces the measured travel.
   bool is_complete() const override { return most_rad_ - least_rad_ > expected_.width_rad() / 10; }
   void take(const Observation&) override {}
   std::string too_late() const override {
@@ -85,7 +85,6 @@ class MoveJointToStops final : public UserMoves {
   double least_rad_ = std::numeric_limits<double>::infinity(), most_rad_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Compares what was found with the limits.
 class CompareStops final : public Step {
  public:
   CompareStops(std::shared_ptr<Findings> findings, std::shared_ptr<StopsFound> found, StopsTrust trust)
@@ -95,7 +94,7 @@ class CompareStops final : public Step {
 
   bool advance(const Observation& now, DevicePort&) override {
     const ParameterSet& set = *now.parameters;
-    // Joint 3 of a parallelogram is absolute: its stops move with joint 2, which is corrected before it.
+    // Joint 3 of a parallelogram is absolute. Its stops move with joint 2, which is corrected first.
     for (int joint = 1; joint <= 3; ++joint) {
       const auto place = static_cast<std::size_t>(joint - 1);
       const bool relative = joint == 3 && set[Parameter::transmission] == 1.0f;
@@ -147,7 +146,8 @@ class CompareStops final : public Step {
       return;
     }
     if (!width_agrees) {
-      // Four counts a line; stops that yield leave about a hundredth open, which the encoder's data sheet settles.
+      // An encoder has four counts per line. Compliant stops cause an error of about 1 %, so the encoder's data sheet
+      // is more accurate.
       const double counts = value(set, Parameter::encoder_1_counts_per_turn, joint) / fit.scale;
       findings_->propose(
           set, of_number(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),

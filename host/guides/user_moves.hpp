@@ -1,4 +1,4 @@
-// What the guides of the calibration share: steps in which the user moves the arm and says that he has.
+// Common parts of the calibration guides: steps in which the user moves the arm and confirms.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ inline double value(const protocol::ParameterSet& set, protocol::EachAxis<protoc
   return static_cast<double>(set[of_number(rows, number)]);
 }
 
-/// The user does something with the arm or the stylus and says so with Confirm or with button 1.
+/// The user moves the arm or the stylus, and confirms with Confirm or button 1.
 class UserMoves : public Step {
  public:
   void begin(const Observation& now, DevicePort&) override { since_.start(*now.pose); }
@@ -45,7 +45,7 @@ class UserMoves : public Step {
 
  private:
   Stopwatch since_;
-  bool confirmed_ = false, was_pressed_ = true;  // a button held down from before does not count
+  bool confirmed_ = false, was_pressed_ = true;  // ignores a button pressed before the step
 };
 
 }  // namespace inkwell::guides

@@ -17,7 +17,7 @@ glm::vec3 to_glm(const control::Vector3& vector) { return {vector.x, vector.y, v
 }  // namespace
 
 glm::vec3 arm_side(float waist_rad, control::Frame frame) {
-  // The waist's angle tells the links' plane; the links do not while they are in line.
+  // The waist angle defines the plane, because collinear links do not.
   const bool paper = frame == control::Frame::paper;
   const glm::vec3 up = paper ? glm::vec3{0, 0, 1} : glm::vec3{0, 1, 0};
   const glm::vec3 forward = paper ? glm::vec3{std::cos(waist_rad), std::sin(waist_rad), 0.0f}

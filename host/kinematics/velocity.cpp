@@ -6,7 +6,7 @@ namespace inkwell::kinematics {
 
 void VelocityFit::add(double time_s, const std::array<double, 3>& position_m) {
   if (count_ > 0 && time_s < samples_[count_ - 1].time_s) count_ = 0;
-  // Those that are too old go, and the oldest if there are too many.
+  // Removes samples older than the span, and the oldest sample if the array is full.
   const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
   auto first =
       std::find_if(samples_.begin(), end, [&](const Sample& sample) { return time_s - sample.time_s <= span_s; });

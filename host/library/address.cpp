@@ -15,7 +15,7 @@ std::string environment_address() {
   return address == nullptr ? std::string() : std::string(address);
 }
 
-/// Boards that run at the same time have serial numbers of their own.
+/// Boards that run at the same time need different serial numbers.
 std::uint64_t next_seed() {
   static std::atomic<std::uint64_t> boards = 0;
   return static_cast<std::uint64_t>(getpid()) << 16 | ++boards;
@@ -35,7 +35,7 @@ inkwell_device entry(const std::string& address, const device::Endpoint& endpoin
 OpenedArm open_arm(const std::string& given, device::LockStep* lock_step) {
   const auto address = device::parse_address(given.empty() ? environment_address() : given);
   const bool is_stepped = address.seed.has_value();
-  // Until the device is open, a stepped board's time passes only for the requests that this takes.
+  // Until the device is open, board time of a stepped board passes only for the requests of this function.
   device::VirtualBoardOptions board{
       .seed = next_seed(), .real_time = !is_stepped, .paused = is_stepped, .lock_step = true};
   OpenedArm opened{device::open_arm(address, board, lock_step), is_stepped};

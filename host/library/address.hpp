@@ -1,4 +1,4 @@
-// What inkwell_open() and inkwell_list_devices() find.
+// Finds the arms for inkwell_open() and inkwell_list_devices().
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ struct OpenedArm {
   bool is_stepped;  ///< board time passes only while a call of the library waits for it
 };
 
-/// What the address of inkwell_open() stands for; what INKWELL_DEVICE says if it is empty. A virtual board is in
-/// `lock_step`.
+/// Opens the arm at an address of inkwell_open(). An empty address stands for the address in INKWELL_DEVICE. A virtual
+/// board uses `lock_step`.
 OpenedArm open_arm(const std::string& address, device::LockStep* lock_step);
-/// Everything that open_arm() can find, with the address that leads there.
+/// Lists the arms that open_arm() can find, with their addresses.
 std::vector<inkwell_device> list_devices();
 
 }  // namespace inkwell::library

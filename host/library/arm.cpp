@@ -17,15 +17,15 @@ namespace {
 
 using protocol::Command;
 
-/// Board time until a device that was asked for its force is asked again.
+/// Board time after which enable_force is sent again.
 constexpr double ask_again_s = 0.1;
 
-/// A board from which no pose comes for so long is reset, or paused.
+/// After this time without a pose the board counts as reset or paused.
 constexpr double silence_s = 2.0;
 
 std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
 
-/// What a pose of the library's tells of faults, and no more.
+/// Converts the fault information of a library pose.
 device::ShownFault shown_fault(const inkwell_pose& pose) {
   const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
                      : pose.state == INKWELL_STARTING ? protocol::State::testing
@@ -49,7 +49,7 @@ Arm::Arm(const std::string& address)
 
 Arm::~Arm() {
   servo_.ask_to_end();
-  force_.stop();  // what a servo that is still being called returns is sent no more
+  force_.stop();  // discards later forces of a servo that is still running
   if (connection_.device().drives() && poses_.loss() != Loss::link) bid_farewell();
 }
 
@@ -59,10 +59,10 @@ void Arm::bid_farewell() {
   try {
     device.send_force({.mode = protocol::ForceMode::none});
     device.place_shapes({});
-    // A force that is on when USB goes away, as over USB/IP with the last program, would end as a fault.
+    // If USB disconnects while the force is on, as over USB/IP with the last program, the board raises a fault.
     device.disable_force();
     device.release();
-  } catch (const Error&) {  // it is gone already, and its force with it
+  } catch (const Error&) {  // the device is already gone, and so is its force
   }
 }
 
@@ -96,7 +96,7 @@ inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> a
 }
 
 void Arm::sleep(double duration_s) const {
-  constexpr double rounding_s = 1e-6;  // of times that are multiples of a control period
+  constexpr double rounding_s = 1e-6;  // tolerance for times that are multiples of a control period
   inkwell_pose now = pose();
   const double end_s = now.time_s + checked_timeout_s(duration_s) - rounding_s;
   while (now.time_s < end_s) {
@@ -121,7 +121,7 @@ void Arm::enable_force(double timeout_s) {
   poses_.use_force();
   poses_.forget_lost_force();
   for (double waited_s = 0;;) {
-    // A device that does not know yet where it is forgets that it was asked.
+    // A board that is not referenced yet drops the request, so it is repeated.
     device().carry_out(Command::enable_force);
     const double wait_s = std::min(limit_s - waited_s, ask_again_s);
     const auto now = poses_.wait(
@@ -137,7 +137,7 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-// Also during a silence: the board may receive requests that it does not answer.
+// Also during a silence: the board may still receive requests.
 void Arm::disable_force() {
   expecting_force_off([this] { linked_device().disable_force(); });
 }
@@ -146,7 +146,7 @@ void Arm::stop() {
   expecting_force_off([this] { linked_device().stop(); });
 }
 
-/// A fault by which the board ended the force of a program that was there before this one, or before the link was lost.
+/// Clears a fault that a previous program, or the loss of the link, has caused.
 void Arm::clear_inherited_fault() {
   const auto now = shown_fault(pose());
   if (now.state == protocol::State::fault && device::is_left_by_a_host(now.fault) && !poses_.had_force()) clear_fault();

@@ -1,4 +1,4 @@
-// The header of the C interface can include nothing of the protocol, so what it numbers is compared with that here.
+// The header of the C interface cannot include the protocol. This file compares its numbers with the protocol.
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
@@ -12,7 +12,6 @@
 namespace inkwell {
 namespace {
 
-/// A name of C's and its value.
 struct Code {
   std::string_view name;
   int value;
@@ -20,7 +19,7 @@ struct Code {
 #define CODE(name) \
   { #name, INKWELL_##name }
 
-/// Whether C's name is the protocol's in capitals, behind `prefix`.
+/// Whether the C name equals `prefix` plus the protocol's name in capitals.
 constexpr bool is_capital_of(std::string_view c, std::string_view prefix, std::string_view name) {
   if (!c.starts_with(prefix)) return false;
   c.remove_prefix(prefix.size());
@@ -73,7 +72,7 @@ constexpr Code limits[] = {CODE(LIMIT_FORCE),  CODE(LIMIT_CURRENT), CODE(LIMIT_C
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));
-// The limits came later, into a gap: a program that was built before finds all else where it was.
+// `limits` was added later in padding, so the offsets of all other members are unchanged for older programs.
 static_assert(offsetof(inkwell_pose, position_m) == 24 && sizeof(inkwell_pose) == 240);
 
 constexpr Code stored[] = {CODE(STORED_NOTHING), CODE(STORED_PARAMETERS), CODE(STORED_FACTORY_RESET),
@@ -93,7 +92,7 @@ static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_f
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
 static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
 
-// What came later, a program of before has no case for: pose_reader.cpp says which of these it is told.
+// Existing programs cannot handle new states; pose_reader.cpp maps each new state to one of these.
 constexpr Code states[] = {CODE(STARTING), CODE(UNREFERENCED), CODE(READY), CODE(ACTIVE), CODE(FAULT)};
 static_assert(std::ranges::all_of(states, [](const Code& c) {
   return is_capital_of(c.name, "", info(static_cast<protocol::State>(c.value)).name);

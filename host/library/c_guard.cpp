@@ -11,7 +11,7 @@
 namespace inkwell::library {
 namespace {
 
-// Plain memory: a program's last destructors are refused things after the thread's own objects are gone.
+// A plain array, because destructors at program exit may call the library after the thread's objects are destroyed.
 thread_local char error_text[sentence_maximum];
 
 inkwell_result fail(inkwell_result result, const char* sentence) {

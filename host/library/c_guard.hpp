@@ -1,5 +1,5 @@
-// Every call of the C interface is guarded: no exception leaves the library, each call ends in a result, a canceled
-// thread ends where it waits, and a forked child uses nothing of its parent.
+// Guards every call of the C interface. No exception leaves the library, and each call returns a result. A canceled
+// thread stops where it waits. A forked child uses no arm of its parent.
 #pragma once
 
 #include <cxxabi.h>
@@ -24,7 +24,7 @@ struct inkwell_arm {
 
 namespace inkwell::library {
 
-/// Of the exception that is being handled. Its sentence is the calling thread's inkwell_error_text() from then on.
+/// The result for the current exception. Stores its sentence as inkwell_error_text() of the calling thread.
 inkwell_result result_of_exception() noexcept;
 
 template <class Action>
@@ -40,7 +40,7 @@ inkwell_result guarded(Action action) {
   }
 }
 
-/// Throws BadArgument if there is none.
+/// Throws BadArgument if the pointer is null.
 template <class Pointer>
 Pointer required(Pointer pointer, const char* what) {
   if (pointer == nullptr) throw BadArgument(fmt::format("{} is NULL. Pass a valid pointer.", what));

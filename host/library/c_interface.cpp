@@ -21,7 +21,7 @@ std::array<float, 3> floats(const double (&values)[3]) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
 }
 
-/// The vector's three values, `stride` places apart.
+/// Writes the vector's three values to every `stride`-th element.
 void put(const control::Vector3& vector, double* to, std::size_t stride) {
   to[0] = vector.x;
   to[stride] = vector.y;
@@ -71,7 +71,7 @@ inkwell_result inkwell_open(const char* address, inkwell_arm** arm) {
 inkwell_result inkwell_close(inkwell_arm* arm) {
   return guarded([&] {
     if (arm == nullptr) return;
-    if (!arm->origin.is_here()) return;  // the threads that its end would wait for are its parent's
+    if (!arm->origin.is_here()) return;  // a forked child has no threads to wait for
     const inkwell::process::NoCancellationPoints whole;
     if (arm->arm.servo().is_caller())
       throw NotNow("A servo cannot close its own arm. Stop the servo, and close the arm in another thread.");
@@ -119,7 +119,7 @@ inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {
 inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose) {
   return guarded([&] {
     required(pose, "The pointer to the pose");
-    *pose = arm_of(arm).last().pose;  // what stays if none comes
+    *pose = arm_of(arm).last().pose;  // the result if no pose arrives
     const auto answer = arm->seen.take_force() ? Turns::Answer::loop : Turns::Answer::none;
     *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest(), answer);
     arm->seen.note(pose->sequence);
@@ -155,12 +155,12 @@ inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_r
 
 const char* inkwell_fault_name(int fault) {
   for (const auto& row : protocol::fault_table)
-    if (row.code == fault) return row.name.data();  // a literal, so it ends in a zero
+    if (row.code == fault) return row.name.data();  // a string literal, so it is zero-terminated
   return nullptr;
 }
 
 const char* inkwell_fault_text(int fault) {
-  thread_local char text[sentence_maximum];  // plain memory, as that of inkwell_error_text()
+  thread_local char text[sentence_maximum];  // a plain array, as in inkwell_error_text()
   text[0] = '\0';
   guarded([&] {
     const bool known = fault >= 0 && fault <= 0xFFFF;

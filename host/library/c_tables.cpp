@@ -1,4 +1,4 @@
-// What the C interface has by name: parameters, signals, and the scope and recordings that are made of these.
+// Parameters, signals, scope and recordings of the C interface.
 #include <algorithm>
 #include <deque>
 #include <mutex>
@@ -36,14 +36,14 @@ void require_at_most(std::size_t maximum, std::size_t count, const char* what) {
 std::mutex rows_mutex;
 const inkwell::process::HeldAtFork rows_at_fork(rows_mutex);
 
-// The texts of the tables, those of a force law included, end in a zero.
+// All texts of the tables, including those of a force law, are zero-terminated.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
   return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
 }
 inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help.data()}; }
 
-/// A row as C knows it; null beyond the end. A row stays where it is until the process ends: those of a force law come
-/// behind the table's, and programs look at rows in their last destructors.
+/// A row in C form; null after the last row. Rows keep their address until the process exits, because force law rows
+/// are added later and programs may read rows in their last destructors.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
   static auto& rows = *new std::deque<Row>;
@@ -85,7 +85,8 @@ inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names
   });
 }
 
-// ---- what outlives the board's power -----------------------------------------------------------------------
+// ---- stored parameters
+// -----------------------------------------------------------------------------------------------
 
 inkwell_result inkwell_store_parameters(inkwell_arm* arm) {
   return guarded([&] { device::store_parameters(arm_of(arm).device()); });

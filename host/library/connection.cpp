@@ -21,12 +21,12 @@ constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
-/// A process that was stopped and goes on has not listened meanwhile: a longer wait counts as this one.
+/// A process that was stopped has not received poses meanwhile, so each wait counts for at most this time.
 constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
 
-/// The board is there again, but this arm cannot go on with it.
+/// The board is connected again, but this arm cannot use it.
 class CannotReturn : public Error {
  public:
   using Error::Error;
@@ -71,7 +71,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       poses_.take_turns(arm_.board ? Turns::of_own_boards() : std::make_shared<Turns>(false), opening.is_stepped);
     set_geometry(arm_.device->parameters());
     read_poses([&](const ReadPose& first) {
-      // A board of its own has its stylus in the inkwell until the program moves the hand.
+      // A virtual board that was started for this arm has its stylus in the inkwell until the program moves the hand.
       if (is_open_ || (arm_.board && (!first.is_referenced || first.pose.state == INKWELL_STARTING))) return;
       is_open_ = true;
       poses_.let_program_decide();
@@ -88,7 +88,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       read_poses([this, is_first = true](const ReadPose& read) mutable {
         if (!std::exchange(is_first, false)) return;
         poses_.let_program_decide();
-        // The program has to learn of the loss before it switches the force on again.
+        // The program must learn of the loss before it switches the force on again.
         if (read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
           arm_.device->send(protocol::Command::disable_force);
       });
@@ -97,11 +97,11 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
     }
   }
   {
-    // A board of its own ends with the thread that made it, and others may still ask the device.
+    // The virtual board exits with this thread, which created it. Other threads may still use the device until then.
     std::unique_lock lock(end_mutex_);
     end_changed_.wait(lock, [this] { return ends_; });
   }
-  const device::OpenArm let_go = std::move(arm_);  // the device before its board
+  const device::OpenArm let_go = std::move(arm_);  // destroys the device before its board
 }
 
 void Connection::read_poses(const OnPose& on_pose) {
@@ -156,7 +156,7 @@ bool Connection::reopen() {
       poses_.lose(Loss::link, error.what());
     } catch (const CannotReturn& error) {
       poses_.lose(Loss::link, error.what());
-    } catch (const std::exception&) {  // it is not back yet; why the link was lost says more
+    } catch (const std::exception&) {  // not connected yet; the cause of the loss is more informative
     }
   }
 }
@@ -182,7 +182,7 @@ std::optional<device::Endpoint> Connection::find_again() const {
     throw CannotReturn("The virtual board of this arm has exited. Open the arm again.");
   if (arm_.board) return arm_.board->find();
   const auto found = device::find_arms(device::parse_address(device::address_of(arm_.endpoint)));
-  // A server may have several. The board may have another place there since it was unplugged.
+  // A server may export several boards. The position of the board in the list may have changed since the loss.
   const auto same =
       std::find_if(found.begin(), found.end(), [this](const auto& each) { return each.path == arm_.endpoint.path; });
   if (same != found.end()) return *same;

@@ -1,4 +1,4 @@
-// The thread that opens the arm, reads its poses, and opens it again after its link was lost.
+// The thread that opens the arm, reads its poses, and reopens it after a lost link.
 #pragma once
 
 #include <condition_variable>
@@ -19,17 +19,18 @@ namespace inkwell::library {
 
 class Connection {
  public:
-  /// Returns once poses come; those of a board of its own are valid then. Throws Error.
+  /// Returns once poses arrive. For a virtual board that was started for this arm, the poses are valid. Throws Error.
   Connection(const std::string& address, PoseFeed& poses);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Stays the same object when the link is lost and made again.
+  /// The same object after the link was lost and restored.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
 
-  /// Hands the board's control client to `action`, to one at a time. Throws NotNow if the board is not this arm's own.
+  /// Passes the board's control client to `action`; calls are serialized. Throws NotNow if this arm has not started a
+  /// board.
   template <class Action>
   void with_own_board(Action action) {
     const std::lock_guard lock(control_mutex_);
@@ -42,11 +43,11 @@ class Connection {
  private:
   void run(const std::string& address, std::promise<void> opened);
   using OnPose = std::function<void(const ReadPose&)>;
-  /// Until the arm is to be closed. Throws when the link is lost.
+  /// Reads poses until the arm closes. Throws when the link is lost.
   void read_poses(const OnPose& on_pose);
-  /// Another program drives the arm now, or none does. False if this is not known yet.
+  /// Reports that another program drives the arm, or that none does. False if this is not known yet.
   bool tell_lost_claim();
-  /// Waits until the arm is there again, and opens it. False if it is to be closed before.
+  /// Waits until the arm is connected again and opens it. False if the arm closes first.
   bool reopen();
   bool try_to_reopen();
   std::optional<device::Endpoint> find_again() const;
@@ -55,15 +56,14 @@ class Connection {
   device::ControlClient& own_board();
 
   PoseFeed& poses_;
-  device::OpenArm
-      arm_;  ///< made and ended by the thread; constant while the constructor is done and the destructor not
+  device::OpenArm arm_;  ///< created and destroyed by the thread; constant between construction and destruction
   std::mutex control_mutex_;
   mutable std::mutex geometry_mutex_;
   control::Arm geometry_{};
   mutable std::mutex end_mutex_;
   std::condition_variable end_changed_;
   bool ends_ = false;
-  bool is_open_ = false;  ///< of the thread
+  bool is_open_ = false;  ///< used by the thread
   std::thread thread_;
 };
 

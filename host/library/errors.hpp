@@ -1,4 +1,4 @@
-// What the library itself refuses; what the device refuses is in device/error.hpp and its neighbours.
+// Errors of the library itself. Errors of the device are in device/error.hpp and the headers next to it.
 #pragma once
 
 #include <device/error.hpp>
@@ -7,22 +7,22 @@ namespace inkwell::library {
 
 using device::Error;
 
-/// What was waited for did not come.
+/// The expected event did not occur in time.
 class TimedOut : public Error {
  public:
   using Error::Error;
 };
-/// A value that the function can not take.
+/// The function does not accept this value.
 class BadArgument : public Error {
  public:
   using Error::Error;
 };
-/// The force went off, and this program did not switch it off.
+/// The force went off without a call of this program.
 class ForceLost : public Error {
  public:
   using Error::Error;
 };
-/// The device does not take it, or not now.
+/// The device does not accept the request in its current state.
 class NotNow : public Error {
  public:
   using Error::Error;

@@ -1,4 +1,4 @@
-// How often a program sends a force: the board interpolates over this time.
+// Estimates how often a program sends a force. The board interpolates over this time.
 #pragma once
 
 #include <array>
@@ -8,18 +8,18 @@
 
 namespace inkwell::library {
 
-/// Counts in poses, which follow the bus and therefore board time. The PC's clock says nothing about them: a busy
-/// computer delays threads, and a virtual board has a time of its own.
+/// Intervals are counted in poses, which follow board time. The PC clock is unsuitable: a busy computer delays threads,
+/// and a virtual board runs in simulated time.
 class ForceInterval {
  public:
-  /// The program's usual time from one force to the next, ms. `pose_sequence` is that of the newest pose that the
-  /// program had seen when it computed this force. The median of five, so that one late force changes nothing.
+  /// The program's usual interval between forces, ms: the median of five, so that one late force has no effect.
+  /// `pose_sequence` is that of the newest pose that the program had read when it computed this force.
   int next(std::uint32_t pose_sequence);
 
  private:
   std::optional<std::uint32_t> sequence_before_;
   std::array<int, 5> newest_ms_{1, 1, 1, 1, 1};
-  std::size_t oldest_ = 0;  ///< in the list
+  std::size_t oldest_ = 0;  ///< index of the oldest interval
 };
 
 }  // namespace inkwell::library

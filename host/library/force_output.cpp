@@ -9,7 +9,7 @@
 namespace inkwell::library {
 namespace {
 
-/// How soon stop() is noticed while the device does not accept a force.
+/// Longest delay of stop() while the device does not accept a force.
 constexpr auto attention = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -42,7 +42,7 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
   device::ForceRequest request;
   request.pose_sequence = pose_sequence;
   for (std::size_t i = 0; i < 3; ++i) {
-    // What float can not hold is as huge as the largest that it can: the board bounds it.
+    // A value beyond the float range is replaced by a huge one, which the board limits.
     constexpr double largest_N = 1e30;
     if (!std::isfinite(force_N[i]))
       throw BadArgument("The force is not a finite number on one axis. Give finite numbers.");
@@ -53,7 +53,7 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
     request.mode = mode_;
     next_ = request;
   }
-  changed_.notify_one();  // with the lock, the thread would wake to wait for it, and the caller would wake it again
+  changed_.notify_one();  // notified without the mutex, so that the thread does not wake only to wait for it
 }
 
 void ForceOutput::let_go() {
@@ -78,13 +78,13 @@ void ForceOutput::run() {
 
 void ForceOutput::send_next(std::chrono::milliseconds patience) {
   try {
-    // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer forces
-    // replace each other in `next_`.
+    // The bus accepts one report per frame, so a queue of forces would never drain. While a report is pending, newer
+    // forces replace each other in `next_`.
     if (!device_.wait_until_written(patience)) return;
     device::ForceRequest request = take_force();
     if (request.pose_sequence) request.interval_ms = interval_.next(*request.pose_sequence);
-    if (poses_.loss() == Loss::none) device_.send_force(request);  // else it was computed from an older pose
-  } catch (const Error&) {  // the connection's thread meets the same error, and reports it
+    if (poses_.loss() == Loss::none) device_.send_force(request);  // otherwise the force belongs to an older pose
+  } catch (const Error&) {  // the connection thread gets the same error and reports it
     drop_force();
   }
 }

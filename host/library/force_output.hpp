@@ -1,4 +1,4 @@
-// The thread that sends a program's forces, so that no caller waits for the USB.
+// The thread that sends a program's forces, so that no caller waits for USB.
 #pragma once
 
 #include <chrono>
@@ -16,28 +16,28 @@
 
 namespace inkwell::library {
 
-/// Sends the newest force when the device has the one before. The USB takes one in a millisecond, and an old one is
-/// worth nothing. In lock step it goes out before the next pose is asked for.
+/// Sends the newest force when the device has received the previous one. USB transfers one force per millisecond, and
+/// an old force is useless. In lock step the force is sent before the next pose is requested.
 class ForceOutput : private TurnPart {
  public:
-  /// Sends none while `poses` are lost.
+  /// Sends no forces while `poses` reports a loss.
   ForceOutput(device::Device& device, PoseFeed& poses);
   ~ForceOutput();
 
   void set_mode(protocol::ForceMode mode);
-  /// `pose_sequence` is that of the newest pose that the program had seen when it computed the force. Throws
-  /// BadArgument if it is not a finite number.
+  /// `pose_sequence` is that of the newest pose that the program had read when it computed the force. Throws
+  /// BadArgument if the force is not finite.
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
-  /// The force is over, and fades.
+  /// Stops the force, which then fades out.
   void let_go();
-  /// Nothing is sent once this returns.
+  /// No force is sent after this returns.
   void stop();
 
  private:
   void before_pose() override;
   void lose_link(const std::string& cause) override;
   void run();
-  /// Sends the force that waits, if the device accepts the report before in time.
+  /// Sends the queued force if the device accepts the previous report within `patience`.
   void send_next(std::chrono::milliseconds patience);
   /// False after stop().
   bool wait_for_force();
@@ -51,8 +51,8 @@ class ForceOutput : private TurnPart {
   std::optional<device::ForceRequest> next_;
   protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
   bool stops_ = false;
-  ForceInterval interval_;  ///< used by the thread that sends
-  std::thread thread_;      ///< none in lock step, where the thread that reads poses sends
+  ForceInterval interval_;  ///< used by the sending thread
+  std::thread thread_;      ///< not used in lock step, where the thread that reads poses sends the forces
 };
 
 }  // namespace inkwell::library

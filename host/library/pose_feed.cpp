@@ -13,7 +13,7 @@
 namespace inkwell::library {
 namespace {
 
-/// A stepped program learns of a silent board after this time at the earliest: on a busy computer a pose takes long.
+/// Shortest time after which a stepped program is informed of a silent board: on a busy computer a pose may take long.
 constexpr double stepped_silence_s = 2.0;
 
 constexpr char lost_with_the_link[] =
@@ -41,7 +41,8 @@ double checked_timeout_s(double seconds) {
   return std::max(seconds, 0.0);
 }
 
-// ---- for the thread that reads the poses -------------------------------------------------------------------
+// ---- for the thread that reads the poses
+// ------------------------------------------------------------------------------
 
 void PoseFeed::take_turns(std::shared_ptr<Turns> turns, bool is_stepped) {
   turns_ = std::move(turns);
@@ -96,7 +97,8 @@ void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
 
 void PoseFeed::note(const inkwell_pose& pose, bool is_referenced) {
   const bool is_on = pose.state == INKWELL_ACTIVE;
-  const bool is_first = loss_ == Loss::link;  // of a new link: a difference from the old one is not a change
+  const bool is_first = loss_ == Loss::link;  // first pose of a new link: a difference from the old link is not a
+                                              // change
   const bool was_on = is_first ? is_on : seen_.pose.state == INKWELL_ACTIVE;
   if (is_first) had_force_ = false;
   if (was_on && !is_on && !(expects_force_off_ && pose.state == INKWELL_READY)) lose_force(why_off(pose));

@@ -1,5 +1,4 @@
-// The newest pose for every thread that wants it, and the losses that all of them hear of: of the poses, of the link,
-// and of the force.
+// Distributes the newest pose to all threads, and reports losses of the poses, the link and the force to them.
 #pragma once
 
 #include <chrono>
@@ -28,25 +27,25 @@ using Clock = std::chrono::steady_clock;
 /// No time-out.
 inline constexpr double forever_s = std::numeric_limits<double>::infinity();
 
-/// The time-out of a call, from 0 on. Throws BadArgument if it is not a number.
+/// Returns the time-out of a call, at least 0. Throws BadArgument if it is not a number.
 double checked_timeout_s(double seconds);
 
-/// Why no poses come.
+/// Reason why no poses arrive.
 enum class Loss : std::uint8_t {
-  none,     ///< they come
-  silence,  ///< the link is there, but the board sends none
-  link,     ///< the link is gone, and the connection looks for the board
+  none,     ///< poses arrive
+  silence,  ///< the link works, but the board sends no poses
+  link,     ///< the link is lost, and the connection searches for the board
 };
 
-/// The work of a part of the arm in the thread that reads poses, where the board is in lock step.
+/// Work of a part of the arm in the thread that reads poses. Used in lock step only.
 class TurnPart {
  public:
   virtual ~TurnPart() = default;
-  /// Board time does not pass now, and passes after this.
+  /// Called before board time passes.
   virtual void before_pose() {}
-  /// The pose has come, and everything that the board sent before it.
+  /// Called after the pose and all earlier data of the board have arrived.
   virtual void after_pose() {}
-  /// The link is lost. `cause` is a sentence.
+  /// Called when the link is lost. `cause` is a sentence.
   virtual void lose_link([[maybe_unused]] const std::string& cause) {}
 };
 
@@ -54,34 +53,35 @@ class PoseFeed final : public device::LockStep {
  public:
   // ---- for the thread that reads the poses ---------------------------------------------------------------------
 
-  /// From now on poses come in these turns. `is_stepped`: board time passes only while a call waits, and until
-  /// let_program_decide().
+  /// From now on poses arrive in these turns. `is_stepped`: after let_program_decide(), board time passes only while a
+  /// call waits.
   void take_turns(std::shared_ptr<Turns> turns, bool is_stepped);
-  /// The program has its arm, and decides from here on when time passes. To be repeated after a lost link.
+  /// From now on the program decides when time passes. Call this again after a lost link.
   void let_program_decide();
   /// Waits until the next pose may be requested: immediately, unless the board is in lock step. False if the arm
   /// closes.
   bool begin_turn();
-  /// The arm closes: begin_turn() does not wait any more.
+  /// Called when the arm closes: begin_turn() does not wait any more.
   void leave_turns();
 
-  /// Ends a loss. In lock step it returns once servos have answered the pose and the calls that it ends are released.
+  /// Publishes a pose, which ends a loss. In lock step it returns after servos have answered the pose and the waiting
+  /// calls that the pose completes are released.
   void publish(const inkwell_pose& pose, bool is_referenced);
-  /// `cause` is a sentence that says what to do. The newest one counts.
+  /// Reports a loss. `cause` is a sentence with the remedy; the newest one replaces earlier ones.
   void lose(Loss kind, const std::string& cause);
-  /// This program drives the arm no longer, against its will.
+  /// This program has lost its claim of the arm.
   void lose_claim(const std::string& cause);
 
   // ---- poses ---------------------------------------------------------------------------------------------------
 
   struct Seen {
     inkwell_pose pose{};
-    bool is_referenced = false;  ///< whether the arm knows its place
+    bool is_referenced = false;  ///< whether the encoders are referenced
   };
-  /// The last one that came, during a loss too.
+  /// The newest pose, also during a loss.
   Seen last() const;
   Loss loss() const;
-  /// Hands the last one to `take`, then throws Disconnected if that was during a loss.
+  /// Passes the newest pose to `take`, then throws Disconnected during a loss.
   template <class Take>
   void read(Take take) const {
     const std::unique_lock lock(mutex_);
@@ -90,16 +90,16 @@ class PoseFeed final : public device::LockStep {
   }
   /// Throws Disconnected during a loss.
   void require_poses() const;
-  /// Throws Disconnected while the link is gone.
+  /// Throws Disconnected while the link is lost.
   void require_link() const;
 
-  /// The newest pose, once `condition(pose, loss)` holds, or once this much board time has passed, or if no pose came
-  /// for as long. Throws Disconnected while the link is gone; a silence may end in time. `answer` is what the thread
-  /// does with the pose.
+  /// Waits until `condition(pose, loss)` is true, this board time has passed, or no pose has arrived for the same wall
+  /// time. Returns the newest pose. Throws Disconnected while the link is lost; a silence may end in time. `answer`:
+  /// use of the pose by the calling thread.
   template <class Condition>
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {
-    bool is_lost = false;  // the link may be there again before this thread runs
+    bool is_lost = false;  // the link may be restored before this thread runs
     const std::function<bool()> is_over = [&] {
       is_lost = loss_ == Loss::link;
       return is_lost || condition(seen_.pose, loss_);
@@ -109,27 +109,27 @@ class PoseFeed final : public device::LockStep {
     if (is_lost) throw_loss(lock);
     return pose;
   }
-  /// Lets those who wait look at their conditions again.
+  /// Makes all waiting calls check their conditions.
   void wake() const;
 
   // ---- the force ---------------------------------------------------------------------------------------------
 
-  /// This program sets forces from now on, so losses of the force are reported to it.
+  /// This program uses forces from now on, so losses of the force are reported to it.
   void use_force();
-  /// This program switches the force on, or accepts that it is off.
+  /// Called when this program switches the force on, or accepts that it is off.
   void forget_lost_force();
-  /// This program switches the force off.
+  /// Called when this program switches the force off.
   void expect_force_off();
-  /// Throws ForceLost once the force went off against the program's will, until it is on again or forgotten.
+  /// Throws ForceLost after an unexpected loss of the force, until the force is on again or the loss was accepted.
   void require_force() const;
-  /// Whether this program uses the force, and had it since the link was made.
+  /// uses_force(): this program uses forces. had_force(): its force was on since the link was opened.
   bool uses_force() const;
   bool had_force() const;
 
-  /// Losses of the poses or of the force so far. Each ends the servo that runs.
+  /// Number of losses of the poses or the force. Each loss stops the running servo.
   std::uint64_t interruptions() const;
-  /// The newest pose, once it fulfils the condition. Throws the newest loss if there were other ones than `known`. For
-  /// a servo: board time does not pass until it waits again, or ends its answer.
+  /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if the number of losses is not
+  /// `known`. Only for servos: in lock step, board time stops until the servo waits again, or ends its answer.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
     const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };
@@ -142,10 +142,10 @@ class PoseFeed final : public device::LockStep {
   // ---- lock step ---------------------------------------------------------------------------------------------
 
   bool is_in_lock_step() const { return turn_.has_value(); }
-  /// Is called in each turn until it is removed. Only in lock step.
+  /// Calls `part` in each turn until it is removed. Only in lock step.
   void add(TurnPart& part);
   void remove(TurnPart& part);
-  /// This thread, or another one, answers a pose: board time waits for it. Without effect unless in lock step.
+  /// Marks that a thread answers a pose, so that board time waits for it. It has no effect outside lock step.
   void begin_answer(std::thread::id thread, Turns::Answer answer) const;
   void end_answer(std::thread::id thread) const;
 
@@ -158,11 +158,11 @@ class PoseFeed final : public device::LockStep {
     double give_up_s;  ///< board time
     Turns::Answer answer;
     std::thread::id thread;
-    bool is_in_servo = false;               ///< the servo waits for something else before it answers
-    std::optional<inkwell_pose> pose = {};  ///< with which the wait is over
+    bool is_in_servo = false;               ///< the servo waits for another event before it answers
+    std::optional<inkwell_pose> pose = {};  ///< set when the wait is over
   };
 
-  /// A waiter in the list, until the call returns or its thread is cancelled. With the mutex held.
+  /// Registers a waiter until the call returns or its thread is canceled. Requires the mutex.
   class WaitingCall {
    public:
     WaitingCall(const PoseFeed& feed, Waiter& waiter);
@@ -177,7 +177,7 @@ class PoseFeed final : public device::LockStep {
 
   inkwell_pose wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_over, double timeout_s,
                     Turns::Answer answer) const;
-  // With the mutex held:
+  // These functions require the mutex:
   void begin_waiting(Waiter& waiter) const;
   void end_waiting(const Waiter& waiter) const;
   enum class Waiting : std::uint8_t { servos, others, all };
@@ -197,18 +197,18 @@ class PoseFeed final : public device::LockStep {
   std::uint64_t poses_ = 0;
   mutable std::vector<Waiter*> waiters_;
   Loss loss_ = Loss::none;
-  std::string cause_;  ///< of the loss
+  std::string cause_;  ///< cause of the loss
   bool uses_force_ = false, had_force_ = false, expects_force_off_ = false;
   std::optional<std::string> force_lost_;
   std::uint64_t interruptions_ = 0;
-  std::exception_ptr interruption_;  ///< the newest one
+  std::exception_ptr interruption_;  ///< the newest interruption
 
-  // Set before any other part is made.
-  std::shared_ptr<Turns> turns_;      ///< null: poses come by themselves
-  std::optional<Turns::Board> turn_;  ///< likewise
+  // Set before any other part is created.
+  std::shared_ptr<Turns> turns_;      ///< null outside lock step
+  std::optional<Turns::Board> turn_;  ///< none outside lock step
   bool is_stepped_ = false;
-  std::thread::id reader_;  ///< in lock step, from its first turn on
-  bool is_asked_ = false;   ///< a pose; used by the reader only
+  std::thread::id reader_;  ///< set in lock step, from the first turn on
+  bool is_asked_ = false;   ///< a pose was requested; used by the reader only
   std::mutex parts_mutex_;
   std::vector<TurnPart*> parts_;
 };

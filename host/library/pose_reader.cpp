@@ -5,10 +5,10 @@
 namespace inkwell::library {
 namespace {
 
-/// The states that a program knows which was built before there were more.
+/// Maps newer states to the states that existing programs know.
 inkwell_state state_of(protocol::State state) {
   if (protocol::force_is_on(state)) return INKWELL_ACTIVE;
-  // Not to be used for now, and nobody has to do anything about it.
+  // Temporarily unavailable, and no action is required.
   if (state == protocol::State::update || state == protocol::State::testing) return INKWELL_STARTING;
   return static_cast<inkwell_state>(state);
 }
@@ -18,7 +18,7 @@ inkwell_state state_of(protocol::State state) {
 inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& geometry) {
   inkwell_pose pose{};
   pose.time_s = device::board_time_s(report.time_periods);
-  pose.sequence = static_cast<std::uint32_t>(report.sequence);  // wraps, as inkwell.h says
+  pose.sequence = static_cast<std::uint32_t>(report.sequence);  // wraps, as inkwell.h describes
   pose.state = state_of(report.state);
   pose.fault = static_cast<int>(report.fault);
   pose.limits = report.limits;
@@ -31,7 +31,7 @@ inkwell_pose PoseReader::read(const device::Pose& report, const control::Arm& ge
     pose.force_N[i] = report.force_N[i];
   }
   if (!report.is_referenced)
-    velocity_ = {};  // there is none, and no way leads from there to where the arm is
+    velocity_ = {};  // the position is unknown, so no velocity follows from it
   else
     velocity_.add(pose.time_s, position_m);
   const auto velocity_m_s = velocity_.velocity_m_s();

@@ -1,4 +1,4 @@
-// A pose with what follows from it.
+// Computes the derived values of a pose.
 #pragma once
 
 #include <chrono>
@@ -16,12 +16,12 @@ struct ReadPose {
   bool is_referenced;
 };
 
-/// Of one arm, for one thread.
+/// For one arm and one thread.
 class PoseReader {
  public:
   inkwell_pose read(const device::Pose& report, const control::Arm& geometry);
-  /// The newest pose that the device has sent; waits for one if there is none, and returns none on time-out. A reader
-  /// that was late does not pass on the older ones, which a servo would answer too late.
+  /// The newest pose that the device has sent. If none has arrived, it waits for one; none on time-out. Older poses are
+  /// skipped, because a servo would answer them too late.
   std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
                                       const control::Arm& geometry);
 

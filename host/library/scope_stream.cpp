@@ -14,9 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Samples that nobody has read: five seconds.
+/// Limit for unread samples: five seconds.
 constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
-/// How soon the end is noticed when no samples come.
+/// Longest delay of the exit while no samples arrive.
 constexpr auto read_timeout = 20ms;
 
 }  // namespace
@@ -87,7 +87,7 @@ void ScopeStream::run() {
   }
 }
 
-/// The board knows nothing of the selection on its next link.
+/// Ends a selection. After a reconnection the board no longer has it.
 void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   const std::lock_guard lock(mutex_);
   if (selection != selection_ || signals_.empty()) return;
@@ -105,7 +105,7 @@ void ScopeStream::keep(device::ScopeSamples samples) {
   if (recorder_) recorder_->push(samples);
   rows_kept_ += samples.count;
   samples_.push_back(std::move(samples));
-  while (rows_kept_ > rows_maximum) {  // nobody reads: the oldest go, and are counted
+  while (rows_kept_ > rows_maximum) {  // nobody reads: drop the oldest samples and count them as lost
     samples_[1].lost_before += samples_[0].lost_before + samples_[0].count;
     rows_kept_ -= samples_[0].count;
     samples_.pop_front();

@@ -1,4 +1,4 @@
-// The thread that reads the scope: for who asks for samples, and into a recording.
+// The thread that reads the scope, for callers and for a recording.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@
 
 namespace inkwell::library {
 
-/// In lock step it has no thread: the samples that come before a pose are read with it.
+/// In lock step there is no thread: the samples that precede a pose are read together with it.
 class ScopeStream : private TurnPart {
  public:
   ScopeStream(device::Device& device, PoseFeed& poses);
@@ -27,13 +27,13 @@ class ScopeStream : private TurnPart {
 
   /// Throws NotNow during a recording.
   void select(const std::vector<protocol::Signal>& signals);
-  /// At most `capacity` samples of those that came; none on time-out. Throws NotNow if no signals are selected, and
-  /// Disconnected once a loss of the link has ended the selection.
+  /// At most `capacity` received samples; none on time-out. Throws NotNow if no signals are selected, and Disconnected
+  /// if a lost link has ended the selection.
   std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
 
-  /// Throws NotNow if no signals are selected or a recording runs.
+  /// Throws NotNow if no signals are selected or a recording is running.
   void start_recording(const std::string& path, bool is_simulation);
-  /// Throws NotNow if none runs, and Error if the file could not be written.
+  /// Throws NotNow if no recording is running, and Error if the file could not be written.
   recording::RecorderStatus stop_recording();
 
  private:
@@ -42,24 +42,24 @@ class ScopeStream : private TurnPart {
   void run();
   void keep(device::ScopeSamples samples);
   void end(std::uint64_t selection, const std::string& cause);
-  /// With the mutex held; without it in between.
+  /// Requires the mutex, and unlocks it while it waits.
   void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
-  /// With no selection the reason why the last one is over is forgotten.
+  /// If no signals are selected, this also clears the reason why the last selection ended.
   bool is_selected();
 
   device::Device& device_;
   PoseFeed& poses_;
 
-  std::mutex user_mutex_;  ///< one at a time selects, starts and stops; taken before `mutex_`
+  std::mutex user_mutex_;  ///< serializes select, start and stop; locked before `mutex_`
 
-  std::mutex mutex_;  ///< guards the following; never held while the device or a file is waited for
+  std::mutex mutex_;  ///< guards the following members; not held during device or file access
   std::condition_variable changed_;
-  std::atomic<std::uint64_t> selection_ = 0;  ///< so many have been made or have ended; may be read likewise
+  std::atomic<std::uint64_t> selection_ = 0;  ///< number of selections made and ended; may be read without the mutex
   std::vector<protocol::Signal> signals_;
-  std::string ended_by_;                           ///< why the selection is over, empty if the program ended it
-  std::deque<device::ScopeSamples> samples_;       ///< not read yet
+  std::string ended_by_;                           ///< reason why the selection ended; empty if the program ended it
+  std::deque<device::ScopeSamples> samples_;       ///< unread samples
   std::atomic<std::size_t> rows_kept_ = 0;         ///< may be read without the mutex
-  std::unique_ptr<recording::Recorder> recorder_;  ///< changed by who has `user_mutex_` as well
+  std::unique_ptr<recording::Recorder> recorder_;  ///< changing it also requires `user_mutex_`
   bool stops_ = false;
 
   std::thread thread_;

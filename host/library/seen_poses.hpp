@@ -1,5 +1,5 @@
-// Which pose each thread of a program has waited for last. It belongs to its arm and not to the threads: programs call
-// in from their last destructors, when what belongs to a thread is gone already.
+// The newest pose that each thread has waited for. The arm stores these, because programs may call the library in their
+// last destructors, when thread-local objects are already destroyed.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace inkwell::library {
 
 class SeenPoses {
  public:
-  /// Of the calling thread; none before its first.
+  /// For the calling thread; none before its first pose.
   std::optional<std::uint32_t> newest() const {
     const std::lock_guard lock(mutex_);
     const auto seen = sequences_.find(std::this_thread::get_id());
@@ -24,12 +24,12 @@ class SeenPoses {
     sequences_[std::this_thread::get_id()] = sequence;
   }
 
-  /// The calling thread has set a force.
+  /// Notes that the calling thread has set a force.
   void note_force() {
     const std::lock_guard lock(mutex_);
     if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());
   }
-  /// Whether it has since the pose that it waited for last: it is in a loop that answers poses.
+  /// Whether the calling thread has set a force since its last pose: it runs a loop that answers poses.
   bool take_force() {
     const std::lock_guard lock(mutex_);
     return drives_.erase(std::this_thread::get_id()) > 0;

@@ -33,14 +33,15 @@ void Servo::start(Function function) {
   ended_by_ = nullptr;
   known_interruptions_ = poses_.interruptions();
   function_ = std::move(function);
-  poses_.begin_answer(thread_.get_id(), Turns::Answer::servo);  // until it waits for its first pose
+  poses_.begin_answer(thread_.get_id(), Turns::Answer::servo);  // until the servo waits for its first pose
   changed_.notify_all();
 }
 
 void Servo::ask_to_end() {
   is_to_end_ = true;
   poses_.wake();
-  poses_.end_answer(thread_.get_id());  // a call that does not return must not keep the board from losing its force
+  poses_.end_answer(thread_.get_id());  // a call that does not return must not prevent the board from removing the
+                                        // force
 }
 
 void Servo::stop() {
@@ -87,7 +88,7 @@ void Servo::run() {
     std::exception_ptr ended_by;
     try {
       call(function, known_interruptions);
-    } catch (...) {  // poses or force are lost, another program drives, or the program threw
+    } catch (...) {  // loss of poses or force, another driver, or an exception of the function
       ended_by = std::current_exception();
     }
     if (!origin_.is_here()) return;
@@ -109,8 +110,8 @@ void Servo::call(const Function& function, std::uint64_t known_interruptions) {
     seen = pose.sequence;
     double force_N[3]{};
     goes_on = function(pose, force_N);
-    if (!origin_.is_here()) return;  // it has forked, and this is the child, which has this thread only
-    // A force that is no finite number is none; refused, it would let the one before expire.
+    if (!origin_.is_here()) return;  // the function has forked, and this is the child
+    // A force that is not finite counts as 0. Refusing it would leave the previous force active until it expires.
     for (double& value : force_N)
       if (!std::isfinite(value)) value = 0.0;
     output_(force_N, seen);

@@ -1,4 +1,4 @@
-// The thread that calls a program's servo at each pose, until the poses or the force are lost.
+// The thread that calls a program's servo function at each pose, until poses or force are lost.
 #pragma once
 
 #include <atomic>
@@ -17,25 +17,25 @@ namespace inkwell::library {
 
 class Servo {
  public:
-  /// Writes the force on the hand, which is 0 before. False ends the servo, and so do its exceptions.
+  /// Writes the force on the hand, which is preset to 0. Returning false or throwing stops the servo.
   using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
-  /// Where its forces go, with the sequence of the pose that each one answers. What it throws ends the servo.
+  /// Receives each force with the sequence of the pose that it answers. An exception of this function stops the servo.
   using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
 
-  /// `let_go` is called when a servo has ended.
+  /// `let_go` is called when a servo has stopped.
   Servo(const PoseFeed& poses, Output output, std::function<void()> let_go);
-  /// Waits for a call that is under way.
+  /// Waits until a running call returns.
   ~Servo();
 
-  /// Throws NotNow if one runs.
+  /// Throws NotNow if a servo is running.
   void start(Function function);
-  /// Its call that is under way is the last one.
+  /// Requests the stop: a running call is the last one.
   void ask_to_end();
-  /// The same, and waits until it is not called any more, unless it is the servo itself who calls.
+  /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
   void stop();
   bool is_running() const;
-  /// Throws what ended the last servo, if neither the program nor its function did: lost poses, a lost force, or
-  /// another program that drives.
+  /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. It does not throw if the
+  /// program or the function stopped the servo.
   void throw_what_ended_it() const;
   bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }
 
@@ -48,11 +48,11 @@ class Servo {
   const std::function<void()> let_go_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  Function function_;                      ///< that is to be called from now on
-  std::uint64_t known_interruptions_ = 0;  ///< of the poses, when it was started
+  Function function_;                      ///< function of the running servo
+  std::uint64_t known_interruptions_ = 0;  ///< count of interruptions when the servo was started
   std::exception_ptr ended_by_;
   bool runs_ = false, closes_ = false;
-  std::uint64_t started_ = 0;  ///< so many servos have been
+  std::uint64_t started_ = 0;  ///< number of servos started so far
   std::atomic<bool> is_to_end_ = false;
   const process::Origin origin_;
   std::thread thread_;

@@ -1,4 +1,4 @@
-// Texts in the memory of the C interface.
+// Copies texts to C character arrays.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +7,10 @@
 
 namespace inkwell::library {
 
-/// The longest sentence that a thread is told.
+/// Longest error sentence, including the terminating zero.
 inline constexpr std::size_t sentence_maximum = 2048;
 
-/// As much of the text as there is room for, and its end.
+/// Copies as much of the text as fits, and terminates it.
 template <std::size_t size>
 void copy_text(const char* text, char (&to)[size]) {
   std::strncpy(to, text, size - 1);

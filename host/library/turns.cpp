@@ -13,7 +13,8 @@ std::shared_ptr<Turns> Turns::of_own_boards() {
   static pid_t process = 0;
   const std::lock_guard lock(mutex);
   auto turns = newest.lock();
-  const bool is_of_parent = std::exchange(process, getpid()) != getpid();  // whose boards this process does not read
+  const bool is_of_parent = std::exchange(process, getpid()) != getpid();  // the child does not read the boards of its
+                                                                           // parent
   if (!turns || is_of_parent) newest = turns = std::make_shared<Turns>();
   return turns;
 }

@@ -1,11 +1,11 @@
 // Lock step: the program and its virtual boards take turns, and each pose is a turn.
 //
 //   1. Board time passes until the next pose, on every board of the group.
-//   2. Servos are called with it, and their forces are handed over. Board time stands still.
-//   3. The calls that wait for board time look whether they are done.
+//   2. Servos are called with the pose, and their forces are sent. Board time is stopped.
+//   3. Calls that wait for board time check whether they are done.
 //
-// A turn begins when no thread answers a pose. If the group is stepped, also only while some call waits: whatever the
-// program does between two calls then takes no board time, and the same program gives the same run on any computer.
+// A turn begins when no thread answers a pose. In a stepped group it also requires a waiting call. Program code between
+// two calls then takes no board time, and a program has the same run on any computer.
 #pragma once
 
 #include <chrono>
@@ -21,15 +21,15 @@ namespace inkwell::library {
 
 class Turns {
  public:
-  /// Of the virtual boards that this process has started: they share one clock.
+  /// The group of the virtual boards that this process has started. They share one clock.
   static std::shared_ptr<Turns> of_own_boards();
 
-  /// A board of another process does not wait for loops: other programs use its time too.
+  /// A board of another process does not wait for loops, because other programs use its time too.
   explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
 
-  /// How long an answer may take before board time passes without it. In a stepped group the limits are long, so that
-  /// they do not depend on the load of the computer. The others are shorter than the silence after which a program
-  /// regards its board as lost: a servo that hangs does not take the board from other programs.
+  /// Longest answer time after which board time passes anyway. In a stepped group the limits are long, so that they do
+  /// not depend on the computer load. The other limits are shorter than the silence that counts as a loss. A hanging
+  /// servo therefore does not block the board for other programs.
   struct Patience {
     std::chrono::milliseconds loop, servo;
   };
@@ -40,52 +40,54 @@ class Turns {
 
   class Board {
    public:
-    /// In the group from its first turn on. `is_stepped` makes the whole group stepped meanwhile.
+    /// The board joins the group in its first turn. While a board with `is_stepped` belongs to the group, the whole
+    /// group is stepped.
     Board(std::shared_ptr<Turns> turns, bool is_stepped);
     ~Board();
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
 
-    /// Until this call, turns of a stepped board begin by themselves.
+    /// Until this call, turns of a stepped board begin without a waiting call.
     void let_program_decide();
-    /// Waits until the next turn begins, in the same instant for all boards. False after `leave`.
+    /// Waits until the next turn begins, simultaneously for all boards. False after `leave`.
     bool begin();
-    /// Waits until all boards of the turn are as far. False after `leave`.
+    /// Waits until all boards of the turn have reached the same step. False after `leave`.
     bool meet();
-    /// Waits until no servo answers a pose, but not for ever: the thread that would let it return may wait for the
-    /// board. False after `leave`.
+    /// Waits until no servo answers a pose, with a time limit: the thread that a servo waits for may itself wait for
+    /// the board. False after `leave`.
     bool wait_for_servos();
     void end();
-    /// The link of the board is lost: it is in the group again from its next turn on, which begins by itself.
+    /// The link of the board is lost. The board rejoins the group in its next turn, which begins without a waiting
+    /// call.
     void pause();
-    /// The board takes no part any more. Another thread may call this: the calls above then return.
+    /// Removes the board from the group. Another thread may call this; the calls above then return.
     void leave();
 
    private:
     friend class Turns;
     const std::shared_ptr<Turns> turns_;
     const bool is_stepped_;
-    // Guarded by the group's mutex.
+    // Guarded by the mutex of the group.
     bool is_opening_ = true;
-    bool is_ready_ = false;  ///< for the next turn
+    bool is_ready_ = false;  ///< ready for the next turn
     bool is_in_turn_ = false;
     bool has_left_ = false;
-    unsigned met_ = 0;  ///< how often in this turn
+    unsigned met_ = 0;  ///< number of meet() calls in this turn
   };
 
   // ---- threads that call the library ----
 
   enum class Answer : std::uint8_t {
     none,
-    loop,   ///< a loop that waits for a pose and sets a force; it may be over without a word
-    servo,  ///< a servo, which comes back
+    loop,   ///< a loop that waits for a pose and sets a force; it may stop without notice
+    servo,  ///< a servo, which always waits for the next pose
   };
   /// This thread answers a pose until it waits again, or until it ends the answer.
   void begin_answer(std::thread::id thread, Answer answer);
   void end_answer(std::thread::id thread);
-  /// This thread waits for board time, and answers no pose meanwhile. Returns what it did before.
+  /// This thread waits for board time and answers no pose meanwhile. Returns its previous answer.
   Answer begin_waiting(std::thread::id thread);
-  /// The call is done, and its thread answers the pose at which it is, if it is to.
+  /// The wait is over. The thread then answers the newest pose if `answer` is not none.
   void end_waiting(std::thread::id thread, Answer answer);
 
  private:
@@ -93,7 +95,7 @@ class Turns {
     return answer == Answer::servo || (answer == Answer::loop && waits_for_loops_);
   }
   bool is_stepped() const;
-  /// Stops the wait for answers that have taken too long.
+  /// Stops waiting for answers that have exceeded their limit.
   void forget_late_answers(std::chrono::milliseconds waited);
   bool may_begin() const;
   void begin_turn();
@@ -103,7 +105,7 @@ class Turns {
   std::condition_variable changed_;
   std::set<Board*> boards_;  ///< from their first turn on
   std::uint64_t turn_ = 0;
-  unsigned waiting_ = 0;  ///< calls
+  unsigned waiting_ = 0;  ///< number of waiting calls
   std::map<std::thread::id, Answer> answering_;
 };
 

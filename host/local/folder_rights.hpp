@@ -1,4 +1,4 @@
-// Whether other users can exchange what this user puts into a folder.
+// Checks whether other users can replace this user's files in a folder.
 #pragma once
 
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 
 namespace inkwell::local {
 
-/// The folder exists, and no other user but root can remove or rename this user's files in it.
+/// True if the folder exists, and no other user except root can remove or rename this user's files in it.
 inline bool only_owner_changes(const std::filesystem::path& folder) {
   struct stat status {};
   if (::stat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) return false;

@@ -31,7 +31,7 @@ std::runtime_error refusal(const SocketAddress& where, std::string_view option, 
   return std::runtime_error(fmt::format("{}: {} cannot be used: {}.", option, where.text(), reason));
 }
 
-/// Others must not be able to put a socket of theirs in the place of ours.
+/// Checks that other users cannot replace the socket.
 void check_folder(const fs::path& folder, const SocketAddress& where, std::string_view option) {
   std::error_code code;
   if (!fs::is_directory(folder, code))
@@ -40,8 +40,8 @@ void check_folder(const fs::path& folder, const SocketAddress& where, std::strin
     throw refusal(where, option, "other users may change its folder. Choose a folder that only you can write");
 }
 
-/// Programs that start at the same time look at a name one after the other. The lock ends with the descriptor. A user
-/// who keeps a lock on a shared folder delays the start by a second.
+/// Serializes programs that start at the same time. The lock ends with the descriptor. A user who locks a shared folder
+/// permanently delays the start by one second.
 Descriptor lock_folder(const fs::path& folder) {
   Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   constexpr int tries = 100;
@@ -49,7 +49,7 @@ Descriptor lock_folder(const fs::path& folder) {
   return file;
 }
 
-/// Removes the socket of a program that is gone. Anything else stays.
+/// Removes the socket of a terminated program. All other files stay.
 void remove_left_behind(const SocketAddress& where, std::string_view option) {
   struct stat status {};
   if (::lstat(where.path.c_str(), &status) != 0) return;
@@ -98,7 +98,7 @@ void Listener::listen_on_port(std::string_view option) {
 }
 
 void Listener::listen_on_path(std::string_view option) {
-  // Absolute: the program may change its folder before it removes the socket.
+  // Absolute, because the working folder may change before the socket is removed.
   address_.path = fs::absolute(address_.path);
   if (address_.path.string().size() > UnixName::longest_path)
     throw refusal(address_, option, "the path is too long for a socket. Choose a shorter one");
@@ -107,7 +107,7 @@ void Listener::listen_on_path(std::string_view option) {
   const Descriptor folder_lock = lock_folder(folder);
   remove_left_behind(address_, option);
   const UnixName name(address_.path);
-  // Linux gives the file the mode of the socket, so that there is no moment at which others may connect.
+  // Linux applies the mode of the socket to the file, so other users cannot connect at any moment.
   struct stat status {};
   if (::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0 || ::bind(socket_.number(), name.address(), name.size()) != 0)
     throw refusal(address_, option, std::strerror(errno));

@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
 
-/// Where the links of a file lead: the file shall be replaced, not a link to it.
+/// Target of a symbolic link: the file must be replaced, and not the link.
 fs::path behind_links(fs::path path) {
-  constexpr int links_maximum = 40;  // as Linux has it
+  constexpr int links_maximum = 40;  // limit of Linux
   std::error_code code;
   for (int i = 0; i < links_maximum && fs::is_symlink(path, code); ++i) {
     const fs::path target = fs::read_symlink(path, code);
@@ -48,10 +48,10 @@ bool is_named(const Descriptor& file, const fs::path& path) {
   return named.st_dev == status.st_dev && named.st_ino == status.st_ino;
 }
 
-/// The process that has a lock of this file, as /proc/locks lists it.
+/// Process with a lock on this file, from /proc/locks.
 std::optional<pid_t> owner_of(const Descriptor& file) {
   const struct stat status = status_of(file);
-  std::optional<pid_t> on_another_device;  // some file systems give their files other device numbers than themselves
+  std::optional<pid_t> on_another_device;  // some file systems report different device numbers for their files
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     int process = 0;
@@ -67,7 +67,7 @@ std::optional<pid_t> owner_of(const Descriptor& file) {
   return on_another_device;
 }
 
-/// A file that may not be written can be replaced all the same if its folder may.
+/// Opens the file also without write permission, because a file is replaceable if its folder is writable.
 Descriptor open_existing(const fs::path& path) {
   constexpr int flags = O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
   Descriptor file(::open(path.c_str(), O_RDWR | flags));
@@ -104,11 +104,11 @@ void OwnedFile::acquire() {
       next_ = open_next();
       std::error_code code;
       if (!fs::exists(path_, code)) return;
-      drop_next();  // another program has just created it
+      drop_next();  // another program has just created the file
       continue;
     }
     lock(file);
-    if (!is_named(file, path_)) continue;  // another program has just replaced it
+    if (!is_named(file, path_)) continue;  // another program has just replaced the file
     file_ = std::move(file);
     return;
   }
@@ -128,7 +128,8 @@ void OwnedFile::lock(const Descriptor& file) {
                               owner ? name_of_process(*owner) : "another program"));
 }
 
-/// Every program that replaces or creates the file has to lock this one first, so only one does so at a time.
+/// Opens and locks the new file. Every program locks it before replacing or creating the owned file, so only one
+/// program does so at a time.
 Descriptor OwnedFile::open_next() {
   for (;;) {
     Descriptor next(::open(next_path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0666));

@@ -23,9 +23,9 @@ namespace inkwell::local {
 namespace {
 
 constexpr char pattern[] = "/inkwell-XXXXXX";
-constexpr std::size_t longest_name = 16;  ///< of a socket in the folder, with the slash
+constexpr std::size_t longest_name = 16;  ///< name of a socket in the folder, with the slash
 
-/// Sockets must be able to lie there, and other users must not be able to exchange the new folder for theirs.
+/// Whether the folder can contain sockets, and other users cannot replace the new folder.
 bool is_suitable(const char* folder) {
   if (folder == nullptr || folder[0] != '/' || !only_owner_changes(folder)) return false;
   try {

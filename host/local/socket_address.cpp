@@ -37,7 +37,7 @@ Descriptor connect_to(const std::filesystem::path& path) {
   if (!socket.is_open()) return socket;
   int result = -1;
   do result = ::connect(socket.number(), name.address(), name.size());
-  while (result != 0 && errno == EINTR);  // a Unix socket that waits for its server can be asked again
+  while (result != 0 && errno == EINTR);  // a connection to a Unix socket can be retried after an interruption
   if (result == 0) return socket;
   const int reason = errno;
   socket = Descriptor();

@@ -1,4 +1,4 @@
-// The path of a Unix socket in the form of the system's calls.
+// The path of a Unix socket as a system call argument.
 #pragma once
 
 #include <sys/socket.h>
@@ -15,7 +15,7 @@ class UnixName {
  public:
   static constexpr std::size_t longest_path = sizeof(sockaddr_un::sun_path) - 1;
 
-  /// A path that is longer is cut off: check it before.
+  /// Longer paths are truncated, so the caller must check the length.
   explicit UnixName(const std::filesystem::path& path) {
     address_.sun_family = AF_UNIX;
     const std::string text = path.string();

@@ -1,4 +1,4 @@
-// libinkwell for Octave and MATLAB, from one source: inkwell_mex(COMMAND, ...) is what the .m files beside it call.
+// libinkwell for Octave and MATLAB, from one source. The .m files in this folder call inkwell_mex(COMMAND, ...).
 //
 //   mkoctfile --mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell     Octave
 //   mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell                 MATLAB
@@ -17,7 +17,7 @@ namespace {
 using inkwell::require;
 using Arguments = std::vector<const mxArray*>;
 
-std::map<int, inkwell_arm*> arms;  ///< open ones, by the number that the interpreter knows them by
+std::map<int, inkwell_arm*> arms;  ///< open arms by their number in the interpreter
 int newest = 0;
 
 struct Wrong : std::runtime_error {
@@ -85,7 +85,7 @@ mxArray* column(const double* values, std::size_t count) {
   return array;
 }
 
-// ---- commands: arguments after the command's name, answers in the order of the .m file ------------------------
+// ---- commands: arguments after the command name, results in the order of the .m file -------------------------
 
 using Answers = std::vector<mxArray*>;
 
@@ -167,7 +167,7 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
 
 Answers pose(const Arguments& arguments) {
   inkwell_pose pose;
-  // Asked of the pose before and of one that is as new or newer: true if it holds for the one between.
+  // Read before and after the pose: if both values are true, the encoders were referenced during the pose.
   int was_referenced, is_referenced;
   require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
   require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
@@ -175,7 +175,7 @@ Answers pose(const Arguments& arguments) {
   return {struct_of(pose, was_referenced != 0 && is_referenced != 0)};
 }
 
-/// Without an error while no poses come.
+/// Returns the last pose without an error while no poses arrive.
 Answers last_pose(const Arguments& arguments) {
   inkwell_pose pose{};
   int is_referenced = 0;
@@ -325,7 +325,8 @@ Answers select(const Arguments& arguments) {
   return {};
 }
 
-/// Reads so many samples of the signals whose number the caller knows: values, control periods, how many were lost.
+/// Reads this number of samples of the selected signals. Returns the values, the control periods and the number of
+/// lost samples.
 Answers read(const Arguments& arguments) {
   inkwell_arm* arm = find(arguments)->second;
   const auto columns = static_cast<std::size_t>(number(argument(arguments, 1)));
@@ -396,7 +397,7 @@ Answers run(const Arguments& arguments) {
   return command->second(Arguments(arguments.begin() + 1, arguments.end()));
 }
 
-/// By which a program can tell errors apart.
+/// Error identifier, with which a program distinguishes errors.
 const char* identifier_of(inkwell_result result) {
   switch (result) {
     case INKWELL_DISCONNECTED: return "inkwell:disconnected";
@@ -408,7 +409,7 @@ const char* identifier_of(inkwell_result result) {
 }  // namespace
 
 void mexFunction(int answer_count, mxArray* answers[], int argument_count, const mxArray* arguments[]) {
-  static char sentence[1024];  // mexErrMsgIdAndTxt() does not come back, so nothing may be left to be destroyed
+  static char sentence[1024];  // static, because mexErrMsgIdAndTxt() does not return and runs no destructors
   sentence[0] = '\0';
   const char* identifier = identifier_of(INKWELL_FAILED);
   mexAtExit(close_all);

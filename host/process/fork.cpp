@@ -13,7 +13,7 @@ namespace {
 constinit HeldAtFork* first = nullptr;
 constinit std::mutex descriptors_mutex;
 
-/// Lives until the process ends: descriptors are closed in last destructors.
+/// Never destroyed, because descriptors are closed in the last destructors.
 std::vector<int>& descriptors() {
   static auto& all = *new std::vector<int>;
   return all;

@@ -9,10 +9,10 @@
 namespace inkwell::python {
 namespace {
 
-/// In the thread that calls a servo.
+/// True in the thread that calls a servo.
 thread_local bool in_servo = false;
 
-/// None is no force; anything but three numbers ends the servo.
+/// None means zero force. Any other value than three finite numbers throws, which stops the servo.
 Vector force_of(const py::object& answer) {
   if (answer.is_none()) return {};
   Vector force_N;
@@ -41,7 +41,7 @@ void raise(inkwell_result result, const std::string& sentence, const Pose* last_
 }
 
 Arm::Use::Use(Arm& arm) : arm_(arm) {
-  if (!arm.origin_.is_here()) {  // other threads may have held the locks that this process has a copy of
+  if (!arm.origin_.is_here()) {  // after fork(), copied locks may be locked by threads that do not exist here
     int is_referenced = 0;
     const auto result = inkwell_is_referenced(arm.arm_, &is_referenced);
     raise(result, inkwell_error_text());
@@ -70,14 +70,14 @@ Arm::~Arm() {
     close();
   } catch (py::error_already_set& error) {
     error.discard_as_unraisable("an arm that was not closed");
-  } catch (const py::builtin_exception&) {  // a call that cannot be made any more
+  } catch (const py::builtin_exception&) {  // the exception can no longer be raised
   }
 }
 
 bool Arm::is_closed() const { return closed_; }
 
 void Arm::close() {
-  if (!origin_.is_here()) closed_ = true;  // there is nothing to be closed: the arm stays its parent's
+  if (!origin_.is_here()) closed_ = true;  // only the parent process can close the arm
   if (is_closed()) return;
   if (in_servo)
     raise(INKWELL_REFUSED, "A servo cannot close its own arm. Stop the servo, and close the arm in another thread.");
@@ -118,7 +118,7 @@ Pose Arm::wait_for_pose(double timeout_s) {
 
 void Arm::sleep(double duration_s) {
   if (!(duration_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The duration is not valid. Give a time of 0 s or more.");
-  constexpr double attempt_s = 0.05;  // so that Ctrl-C is heard
+  constexpr double attempt_s = 0.05;  // short, so that Ctrl-C is handled soon
   const double end_s = pose().time_s + duration_s;
   for (double left_s = duration_s; left_s > 0; left_s = end_s - pose().time_s) {
     const Use arm(*this);
@@ -154,7 +154,7 @@ void Arm::enable_force(double timeout_s) {
   call_patiently(
       timeout_s, [](inkwell_arm* arm, double time_s) { return inkwell_enable_force(arm, time_s); },
       [this](inkwell_result result) {
-        // Refused for now, or for good?
+        // Continue after a time-out or a temporary refusal.
         return result == INKWELL_TIMED_OUT || (result == INKWELL_REFUSED && pose().state != INKWELL_FAULT);
       });
 }
@@ -225,7 +225,7 @@ void Arm::start_servo(py::function servo) {
     // Two threads that start servos must store them in the order in which the library started them.
     const std::lock_guard lock(servo_mutex_);
     const auto result = inkwell_start_servo(arm, &Arm::call_servo, next.get());
-    if (result == INKWELL_OK) servo_.swap(next);  // the previous one is destroyed with the interpreter's lock
+    if (result == INKWELL_OK) servo_.swap(next);  // the previous servo is destroyed with the interpreter's lock
     return result;
   });
 }

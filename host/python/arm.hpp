@@ -1,4 +1,5 @@
-// An open arm for the interpreter: calls wait without its lock, hear Ctrl-C, and none meets an arm that is closed.
+// An open arm for the interpreter. Calls wait without the interpreter's lock, react to Ctrl-C, and never use a closed
+// arm.
 #pragma once
 
 #include <array>
@@ -46,10 +47,10 @@ class Arm {
   void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
 
   void start_servo(py::function servo);
-  /// Raises what the servo raised, or what else has ended it.
+  /// Raises the servo's exception, or the other reason why the servo has ended.
   void stop_servo();
   bool servo_is_running();
-  /// Raises what has ended the servo, once, if neither the program nor its function did.
+  /// Raises once the reason why the servo has ended, if neither the program nor the servo function ended it.
   void check_servo();
 
   double parameter(const std::string& name);
@@ -67,8 +68,8 @@ class Arm {
   void press_virtual_buttons(bool button_1, bool button_2);
 
   void select_signals(const std::vector<std::string>& names);
-  /// (values, periods, lost): at most `rows` rows of one value for each signal, and none after a time-out; with `fill`
-  /// all of them, or TimedOut if none comes for so long.
+  /// Returns (values, periods, lost): at most `rows` rows with one value for each signal, and no rows after a
+  /// time-out. With `fill` it returns `rows` rows, or raises TimedOut if no row arrives for `timeout_s`.
   py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
   void start_recording(const std::string& path);
   /// (samples, lost)
@@ -77,8 +78,8 @@ class Arm {
  private:
   std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);
 
-  /// While one lives, the arm stays open. Raises Refused if it is closed, or belongs to the process that this one was
-  /// forked from.
+  /// The arm stays open while a Use exists. The constructor raises Refused if the arm is closed or belongs to the
+  /// parent process.
   class Use {
    public:
     explicit Use(Arm& arm);
@@ -93,9 +94,9 @@ class Arm {
   struct Servo {
     py::function function;
     std::exception_ptr raised;
-    bool is_told = false;  ///< what else has ended it
+    bool is_told = false;  ///< true once another reason for the end was raised
   };
-  /// Why a servo has ended.
+  /// Reason why a servo has ended.
   struct Ending {
     std::exception_ptr raised;
     inkwell_result result = INKWELL_OK;
@@ -105,13 +106,13 @@ class Arm {
   };
 
   static int call_servo(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user) noexcept;
-  /// Of a servo that is not called any more; each is taken once.
+  /// Reason why the stopped servo has ended; each reason is returned once.
   Ending take_ending();
-  /// Calls the library without the interpreter's lock; what it refuses is raised.
+  /// Calls the library without the interpreter's lock and raises its errors.
   template <class Call>
   void call(Call library_call);
-  /// Tries `attempt(arm, time)` for short times until it does not ask to go on, so that Ctrl-C and close() are heard.
-  /// The times of the attempts add up to the time-out, so that a time-out in board time stays one.
+  /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
+  /// durations of the attempts add up to the time-out, which therefore counts board time where the library does.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>
@@ -128,7 +129,7 @@ class Arm {
   std::mutex servo_mutex_;
   std::unique_ptr<Servo> servo_;  ///< guarded by servo_mutex_; its content by the interpreter's lock
 
-  std::mutex scope_mutex_;  ///< so that the signals stay the same while samples of them are read
+  std::mutex scope_mutex_;  ///< the signals do not change while samples are read
   std::size_t signal_count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What the library refuses becomes an exception of the package: each code has a class of its own in inkwell/errors.py.
+// Converts errors of the library into exceptions; each code has a separate class in inkwell/errors.py.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace inkwell::python {
 
 namespace py = pybind11;
 
-/// Raises the class of inkwell.errors for `result`, which carries the pose if there is one. The interpreter's lock is
-/// held.
+/// Raises the class of inkwell.errors for `result`, with the last pose if there is one. The caller holds the
+/// interpreter's lock.
 [[noreturn]] void raise(inkwell_result result, const std::string& sentence, const Pose* last_pose = nullptr);
 
-/// Calls the library without the interpreter's lock; what it refuses is raised.
+/// Calls the library without the interpreter's lock and raises its errors.
 template <class Call>
 void call(Call library_call) {
   inkwell_result result;
   std::string sentence;
   {
-    const process::CancellationGuard guard;  // a thread that ends here would never lock the interpreter again
+    const process::CancellationGuard guard;  // a canceled thread would never acquire the interpreter's lock again
     const py::gil_scoped_release unlocked;
     result = library_call();
     if (result != INKWELL_OK) sentence = inkwell_error_text();

@@ -1,4 +1,4 @@
-// What the package's Python files are built on: the library's structs with arrays that numpy reads, and an arm.
+// The native module under the package's Python files: the library's structs with numpy arrays, and an arm.
 #include <string>
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace inkwell::python {
 namespace {
 
-/// A member's numbers as a read-only array, without a copy; the struct lives as long as the array.
+/// A numeric member as a read-only array without a copy. The array keeps the struct alive.
 template <class Struct, std::size_t size>
 py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_t> shape = {size}) {
   return [member, shape](const py::object& self) {
@@ -20,7 +20,7 @@ py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_
   };
 }
 
-/// A member of text, or a flag that C has as an int.
+/// A text member, or a flag that is an int in C.
 template <class Struct, std::size_t size>
 py::cpp_function text_of(char (Struct::*member)[size]) {
   return [member](const Struct& self) { return std::string(self.*member); };
@@ -57,7 +57,7 @@ void put(const py::handle& vector, double (&to)[3]) {
   for (std::size_t i = 0; i < 3; ++i) to[i] = values[i];
 }
 
-/// From the classes of inkwell/shapes.py.
+/// Places shapes from the classes of inkwell/shapes.py.
 void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
   std::vector<Plane> flat;
   for (const auto& plane : planes) {
@@ -79,7 +79,7 @@ void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
 std::vector<inkwell_device> list_devices() {
   std::vector<inkwell_device> devices;
   std::size_t count = 0;
-  do {  // until none was plugged in meanwhile
+  do {  // repeats if a device was plugged in between the calls
     devices.resize(count);
     call([&] { return inkwell_list_devices(devices.data(), devices.size(), &count); });
   } while (count > devices.size());
@@ -96,7 +96,7 @@ py::list parameters() {
   return rows;
 }
 
-/// (code, name)
+/// List of (code, name).
 py::list faults() {
   py::list rows;
   for (int code = 0; inkwell_fault_name(code) != nullptr; ++code)

@@ -1,4 +1,4 @@
-// Samples of the scope, which the library writes where numpy reads them.
+// Scope samples, written by the library directly into numpy arrays.
 #include <algorithm>
 
 #include <pybind11/numpy.h>

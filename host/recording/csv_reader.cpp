@@ -18,7 +18,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// None also for what does not fit.
+/// Returns std::nullopt also for numbers out of range.
 template <class Whole>
 std::optional<Whole> whole_number(std::string_view text) {
   Whole value = 0;
@@ -27,7 +27,7 @@ std::optional<Whole> whole_number(std::string_view text) {
   return value;
 }
 
-/// None for a time that no board can have.
+/// Returns std::nullopt for times that no board can reach.
 std::optional<std::int64_t> period_at(double time_s) {
   constexpr double convertible = 1e18;
   const double periods = time_s * protocol::servo_rate_Hz;
@@ -46,7 +46,7 @@ class CsvReader {
     std::string line;
     while (std::getline(stream_, line)) {
       ++line_number_;
-      // The last line of a program that was killed may stop anywhere: what lacks its end is left out.
+      // The last line of a killed program may be incomplete. A line without its end is ignored.
       if (stream_.eof()) break;
       if (line.starts_with("# "))
         comment(std::string_view(line).substr(2));

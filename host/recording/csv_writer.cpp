@@ -1,6 +1,6 @@
-// CSV recordings: lines "# key = value" about the recording, a line of column names, a line for each sample. A line
-// "# simulated NAME = what it is" marks a column that no device filled, but a simulation. A line "# mark PERIOD KIND
-// CLOCK = what happened" stands among the samples, near those of its period.
+// CSV recordings: lines "# key = value" about the recording, a line of column names, and a line for each sample. A line
+// "# simulated NAME = description" marks a column from a simulation. A line "# mark PERIOD KIND CLOCK = description"
+// comes between samples, close to the samples of its period.
 #include "formats.hpp"
 
 #include <cerrno>
@@ -98,8 +98,8 @@ class CsvWriter final : public Writer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  process::OwnDescriptor own_;  ///< a child would write the buffered data again
-  std::size_t simulated_;       ///< how many simulated quantities stand behind the signals
+  process::OwnDescriptor own_;  ///< a child process would write the buffered data again
+  std::size_t simulated_;       ///< number of simulated quantities after the signals
   fmt::memory_buffer text_;
 };
 

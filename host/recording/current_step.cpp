@@ -10,7 +10,7 @@
 namespace inkwell::recording {
 namespace {
 
-constexpr double rise_level = 0.632;  // what a first-order answer reaches after its time constant
+constexpr double rise_level = 0.632;  // level of a first-order response after one time constant
 
 }  // namespace
 

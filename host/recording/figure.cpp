@@ -17,32 +17,31 @@ namespace {
 
 using protocol::Parameter;
 
-constexpr std::size_t points_maximum = 1200;  ///< about one for each pixel of the plot's width
+constexpr std::size_t points_maximum = 1200;  ///< about one per pixel of the plot's width
 constexpr int width_pixels = 1600;
 constexpr int titles_pixels = 120, time_axis_pixels = 120;
 constexpr int pane_pixels = 320, pane_gap_pixels = 40;
-constexpr int names_gap_pixels = 85, names_margin_pixels = 25;        // before a name, its line included, and behind it
-constexpr double character_pixels = 11.5, names_parts_maximum = 0.3;  // as wide as names of signals mostly are
-constexpr double tics_maximum = 6;                                    // of the numbers that a pane has room for
+constexpr int names_gap_pixels = 85, names_margin_pixels = 25;        // before and after a name with its line
+constexpr double character_pixels = 11.5, names_parts_maximum = 0.3;  // typical width of the characters in signal names
+constexpr double tics_maximum = 6;                                    // largest number of tick labels in a pane
 
-constexpr int over_titles_pixels = 30;  // more, for those of what is laid over
+constexpr int over_titles_pixels = 30;  // additional height for the titles of the overlaid recording
 constexpr std::string_view broken = "dashtype (8,5)", separator = "  ·  ";
 
 constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
 
-/// Samples from `begin` up to `end`.
 struct Range {
   std::size_t begin, end;
 };
 
-/// Samples that are far apart need not be so evenly: each is drawn at its own time.
+/// Whether each sample is drawn at its time. Samples with a large step need not be evenly spaced.
 bool has_point_each(const Recording& recording, Range shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
 
 std::string name_over(Quantity quantity) { return fmt::format("{}_over", name_of(quantity)); }
 
-/// Those that the recording which is laid over holds, too.
+/// The quantities that the overlaid recording also contains.
 std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& quantities) {
   std::vector<Quantity> held;
   if (over == nullptr) return held;
@@ -53,7 +52,7 @@ std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& 
   return held;
 }
 
-/// Behind the bands that the data have, those of the recording that is laid over, of the same stretches of time.
+/// Appends the bands of the overlaid recording for the same time ranges.
 void add_over(FigureData& data, const Overlay& over, const std::vector<Quantity>& quantities) {
   if (data.rows.empty()) return;
   const Recording& recording = over.recording();
@@ -89,7 +88,7 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
     }
     return data;
   }
-  // With few points, each of them is one sample; the half period keeps rounding from moving one to its neighbour.
+  // With few points, each point is one sample. The half period prevents rounding from moving a sample to its neighbor.
   const double half_period_s = 0.5 / protocol::servo_rate_Hz;
   const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
   std::size_t begin = shown.begin;
@@ -107,7 +106,7 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
   return data;
 }
 
-/// "2026-11-22T04:27:47Z" as "2026-11-22 04:27 UTC"; what does not look like this, as it is.
+/// Converts "2026-11-22T04:27:47Z" to "2026-11-22 04:27 UTC". Other formats are returned unchanged.
 std::string minute_of(const std::string& utc) {
   constexpr std::size_t date_length = 10, minute_length = 16;
   if (utc.size() <= minute_length || utc[date_length] != 'T' || utc.back() != 'Z') return utc;
@@ -131,7 +130,7 @@ std::vector<std::string> facts_of(const Recording& recording) {
   return parts;
 }
 
-/// A line of its own below the subtitle: the recording that is laid over, and what differs from the other one.
+/// A separate line below the subtitle: the overlaid recording and its differences.
 std::string over_titles(const Recording& recording, const Overlay& over, int height) {
   constexpr double over_pixels = 112.0;
   const auto known = facts_of(recording);
@@ -142,7 +141,7 @@ std::string over_titles(const Recording& recording, const Overlay& over, int hei
                      gnuplot_text(text), 1 - over_pixels / height);
 }
 
-/// For the legend: which recording has whole lines, and which broken ones.
+/// Legend entries for the recordings with solid and with broken lines.
 std::string line_kinds(const Recording& recording, const Overlay& over) {
   return fmt::format(
       ", \\\n     NaN with lines linewidth 2 linecolor rgb ink title {}, \\\n"
@@ -156,10 +155,11 @@ std::string time_label(const Recording& recording, double shown_s) {
   return fmt::format("time  /  s          line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum);
 }
 
-/// Dashed lines through all panes; their texts stand in the first one only, in steps so that neighbours do not overlap.
+/// Dashed lines through all panes. The texts of the lines are in the first pane only, at staggered heights to avoid
+/// overlap.
 std::string marks(const Recording& recording, double from_s, double to_s, bool with_text) {
   std::string text;
-  int number = 12;  // above those of titles and axes
+  int number = 12;  // gnuplot label number, above the numbers of the title and axis labels
   for (const auto& mark : recording.marks) {
     const double at_s = recording.elapsed_s_at(mark.period);
     if (at_s < from_s || at_s > to_s) continue;
@@ -177,7 +177,7 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
   return text;
 }
 
-/// How far from left to right the panes go: the longest name has room beside them.
+/// Right edge of the panes, with space for the longest name.
 double right_edge(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes) {
   std::size_t longest = over == nullptr ? 0 : std::max(recording.name.size(), over->recording().name.size());
   for (const auto& pane : panes)
@@ -186,8 +186,7 @@ double right_edge(const Recording& recording, const Overlay* over, const std::ve
   return 1 - std::min(names_parts_maximum, names_pixels / width_pixels);
 }
 
-/// The command for numbers at round steps of the axis, so far apart that they are read with ease. gnuplot would take up
-/// to twice as many.
+/// Command for tick labels at round steps with readable spacing. By default, gnuplot draws up to twice as many.
 std::string tics_of(const FigurePane& pane, const FigureData& data) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < data.names.size(); ++i) {
@@ -229,7 +228,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
   for (int i = 0; i < count; ++i, top -= pane_pixels + pane_gap_pixels) {
     const auto& pane = panes[static_cast<std::size_t>(i)];
     if (i == 1) {
-      // gnuplot would draw the first pane's labels again in every pane.
+      // gnuplot would repeat the first pane's labels in every pane.
       text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
     }
     if (i + 1 == count)
@@ -237,7 +236,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
                           gnuplot_text(time_label(recording, to_s - from_s)));
     text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n",
                         static_cast<double>(top) / height, static_cast<double>(top - pane_pixels) / height);
-    // A label instead of ylabel, which would stand elsewhere in each pane, as far out as the numbers push it.
+    // A label replaces ylabel, whose position depends on the width of the tick labels in each pane.
     text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
                         gnuplot_text(pane.label));
     text += tics_of(pane, data);
@@ -247,7 +246,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
       const std::string name(name_of(pane.quantities[j]));
       curves.push_back({name, j < colours.size() ? colour : colour + " dashtype 2", name});
     }
-    // Above the others, so that noise does not hide them.
+    // Drawn last, so that noise does not hide these curves.
     for (const auto quantity : held_by(over, pane.quantities)) {
       const auto j = static_cast<std::size_t>(std::find(pane.quantities.begin(), pane.quantities.end(), quantity) -
                                               pane.quantities.begin());
@@ -259,7 +258,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
   return text + "unset multiplot\n";
 }
 
-/// Names and unit as far as they fit beside their axis; every name stands in the legend as well.
+/// Names and unit, limited to the length of their axis; the legend contains every name.
 std::string label_of(const std::vector<std::string>& words, std::string_view unit) {
   constexpr std::size_t letters_maximum = 26;
   std::string names = fmt::format("{}", fmt::join(words, ", "));
@@ -311,7 +310,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   write_text(work.path() / "figure.gnuplot",
              script(recording, options.over, figure_panes(quantities), data, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
-  // Beside it first, so that a full disk does not cost an older picture.
+  // Written to a temporary file first, so that a full disk does not destroy an older picture.
   std::filesystem::path unfinished = picture;
   unfinished += ".unfinished";
   std::error_code error, ignored;

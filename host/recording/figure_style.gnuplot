@@ -1,4 +1,4 @@
-# The look of all figures. Colours of Okabe and Ito: told apart with every kind of colour blindness.
+# Style of all figures. The colors of Okabe and Ito are distinguishable with every kind of color blindness.
 set encoding utf8
 ink = '#24292f'; grey = '#6b7280'; pale = '#e5e7eb'
 blue = '#0072b2'; vermilion = '#d55e00'; green = '#009e73'; purple = '#cc79a7'; orange = '#e69f00'; sky = '#56b4e9'

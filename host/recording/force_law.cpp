@@ -18,7 +18,7 @@ std::string force_law_digits(const Information& information) {
 }
 
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file) {
-  if (digits.empty()) return;  // a file of an earlier version, or of a device that told none
+  if (digits.empty()) return;  // a file of an earlier version, or of a device without a report
   std::vector<std::byte> report(digits.size() / 2);
   bool is_whole = digits.size() % 2 == 0;
   for (std::size_t i = 0; i < report.size(); ++i) {

@@ -22,7 +22,7 @@ set xlabel 'time  /  s' textcolor rgb ink
 set style fill transparent solid 0.22 noborder
 )";
 
-/// Characters that mean nothing to gnuplot within double quotes, nor to its macros and formats.
+/// Characters without a special meaning in gnuplot's double quotes, macros and formats.
 bool is_harmless(char c) {
   constexpr std::string_view marks = " _.,:;()/+-=<>";
   const bool is_utf8 = (static_cast<unsigned char>(c) & 0x80u) != 0;
@@ -79,7 +79,7 @@ std::string gnuplot_text(std::string_view text) {
     if (is_harmless(c))
       quoted += c;
     else
-      // gnuplot reads four digits after a zero, and three after any other digit.
+      // gnuplot reads four octal digits after a zero, and three after any other digit.
       quoted += fmt::format("\\{:0{}o}", static_cast<unsigned>(c), c < 0100 ? 4 : 3);
   }
   return quoted + "\"";

@@ -7,12 +7,12 @@ namespace inkwell::recording {
 namespace {
 
 std::recursive_mutex use_of_hdf5;
-// A child that is forked while a file is written would find the library in the middle of it.
+// Without this lock, a child forked during a write would inherit the library in an inconsistent state.
 const process::HeldAtFork use_of_hdf5_at_fork(use_of_hdf5);
 
 std::recursive_mutex& hdf5_mutex() {
-  // Every file is closed by its owner. At the end of the program the library would try again to write what a full disk
-  // has refused, and complain in words of its own. Works only before the first use of the library, which is here.
+  // Every file is closed by its owner. At exit the library would retry writes that a full disk has refused, and print
+  // its own errors. The call has an effect only before the first use of the library, which is here.
   [[maybe_unused]] static const herr_t stays_quiet = H5dont_atexit();
   return use_of_hdf5;
 }
@@ -41,7 +41,7 @@ Handle text_type(std::size_t bytes) {
 Handle byte_text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), bytes == 0 ? 1 : bytes);
-  // Padded, not ended, by zeros: the text may fill its place to the last byte.
+  // Padded with zeros instead of terminated, so the text may fill all bytes.
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   return type;
 }

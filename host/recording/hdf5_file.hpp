@@ -1,4 +1,4 @@
-// A little order over the C interface of HDF5: handles that close themselves, and errors that throw.
+// C++ wrapper for the C interface of HDF5: handles that close automatically, and errors that throw.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Held around every use of HDF5: one thread at a time, because the library is not made for more, and without
-/// its own printing, because errors become exceptions with sentences instead.
+/// Owned during every use of HDF5. The object serializes the threads, because the library is not thread-safe. The
+/// object also disables the library's error output, because errors become exceptions with sentences.
 class QuietHdf5 {
  public:
   QuietHdf5();
@@ -47,16 +47,15 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// For opening a file, without the library's own lock on it, unless the environment's HDF5_USE_FILE_LOCKING wants it.
-/// That lock goes over to every process that is started meanwhile, and stays until the last of them has ended: nobody
-/// could open the recording until then. Two recorders are kept apart by the file's name, which must be new; other
-/// programs are not kept from writing into a recording that is being made.
+/// Access list that disables the library's file lock, unless the environment variable HDF5_USE_FILE_LOCKING enables it.
+/// Child processes inherit this lock until they exit, and no program could open the recording until then. Two recorders
+/// cannot use one file, because its name must be new. Other programs are not prevented from writing into an unfinished
+/// recording.
 Handle file_access();
 
 /// Fixed-length UTF-8 text.
 Handle text_type(std::size_t bytes);
-/// The same for programs that know no UTF-8 and refuse the whole file for it, as Octave's `load` does: bytes of which
-/// HDF5 takes no notice.
+/// Fixed-length text without the UTF-8 mark. Some programs, such as Octave's `load`, refuse a file with UTF-8 text.
 Handle byte_text_type(std::size_t bytes);
 
 void write_attribute(hid_t object, const char* name, const std::string& text);

@@ -12,13 +12,13 @@
 namespace inkwell::recording {
 namespace {
 
-constexpr std::size_t attribute_bytes_maximum = 65'536;  // the description of a force law has at most 16 384
+constexpr std::size_t attribute_bytes_maximum = 65'536;  // a force law description has at most 16,384 bytes
 constexpr std::size_t mark_bytes_maximum = 4096;
 constexpr hsize_t names_maximum = 4096;
-constexpr std::uint64_t samples_maximum = std::uint64_t{1} << 32;  // as many as the board's counter distinguishes
+constexpr std::uint64_t samples_maximum = std::uint64_t{1} << 32;  // range of the board's counter
 constexpr std::uint64_t chunk_bytes_maximum = 16 << 20;
 constexpr std::uint64_t deflate_ratio_maximum = 1100;  // zlib compresses by a factor of at most 1032
-constexpr std::uint64_t harmless_bytes = 65'536;       // may be declared without content, as a crash leaves it
+constexpr std::uint64_t harmless_bytes = 65'536;       // may be declared without content, as after a crash
 
 bool is_whole_number(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
@@ -47,8 +47,8 @@ struct Hdf5Input::Dataset {
 };
 
 Hdf5Input::Hdf5Input(const std::filesystem::path& file) : name_(file.string()) {
-  // A file of an earlier version that its writer did not close says so until someone clears the mark; readers of
-  // HDF5's single-writer mode may open it all the same.
+  // A file of an earlier version can still be marked as open if its writer did not close it. Readers in HDF5's
+  // single-writer mode may open the file regardless.
   const Handle access = file_access();
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ})
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), mode, access.id()), H5Fclose);
@@ -63,7 +63,7 @@ Hdf5Input::Hdf5Input(std::span<const std::byte> content, std::string name)
   constexpr std::size_t increment = 65'536;
   const Handle access = file_access();
   H5Pset_fapl_core(access.id(), increment, false);
-  // HDF5 copies the content and does not change it.
+  // HDF5 copies the content and does not modify it.
   H5Pset_file_image(access.id(), const_cast<std::byte*>(content.data()), content.size());
   file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!file_) fail("is damaged: HDF5 cannot open it");
@@ -75,7 +75,7 @@ void Hdf5Input::fail(const std::string& what) const {
 
 bool Hdf5Input::has(const std::string& path) const { return H5Lexists(file_.id(), path.c_str(), H5P_DEFAULT) > 0; }
 
-/// A link of another kind leads into another file, or nowhere.
+/// Refuses links of other kinds, which lead to another file or to no object.
 void Hdf5Input::check_is_here(const std::string& path) const {
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
     const std::string part = path.substr(0, end);
@@ -142,8 +142,7 @@ std::vector<std::string> Hdf5Input::names_in(const std::string& group_path) cons
   return found;
 }
 
-/// Refuses values that lie in another file, that need a filter from a library that HDF5 would load, or that unpack to
-/// any size.
+/// Refuses values in external files, values that need a filter plug-in, and values of unlimited decompressed size.
 Hdf5Input::Dataset Hdf5Input::open(const std::string& path) const {
   check_is_here(path);
   Dataset dataset{
@@ -165,7 +164,7 @@ Hdf5Input::Dataset Hdf5Input::open(const std::string& path) const {
   const std::string unknown = fmt::format("is damaged: {} is stored in a form that no recording has", path);
   if (!is_known) fail(unknown);
 
-  // Not before: to determine the size of a view of other files, HDF5 opens them.
+  // Read only after the checks above, because HDF5 opens other files to determine the size of a virtual dataset.
   dataset.type = Handle(H5Dget_type(dataset.itself.id()), H5Tclose);
   dataset.space = Handle(H5Dget_space(dataset.itself.id()), H5Sclose);
   const std::size_t element_bytes = H5Tget_size(dataset.type.id());
@@ -213,7 +212,7 @@ std::uint64_t Hdf5Input::length_of(const std::string& path) const {
   return count < 0 ? 0 : static_cast<std::uint64_t>(count);
 }
 
-/// Memory is allocated only for elements that the file has content for.
+/// Checks the content, so that memory is allocated only for stored elements.
 void Hdf5Input::check_content(const Dataset& column, std::uint64_t count) {
   const auto declared =
       static_cast<std::uint64_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(column.space.id())));

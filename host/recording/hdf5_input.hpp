@@ -1,5 +1,6 @@
-// The one way to read an HDF5 file. HDF5 copies whatever a file declares into the memory that it is given. Therefore
-// class, type, rank, number of elements and size of every dataset and attribute are checked here before they are read.
+// The only interface that reads HDF5 files. HDF5 copies any declared amount of data into the given memory. The
+// functions therefore check class, type, rank, number of elements and size of each dataset and attribute before reading
+// it.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +15,29 @@
 
 namespace inkwell::recording {
 
-/// Every function throws device::Error if the file is damaged. The caller has a QuietHdf5.
+/// Every function throws device::Error if the file is damaged. The caller must own a QuietHdf5.
 class Hdf5Input {
  public:
   explicit Hdf5Input(const std::filesystem::path& file);
-  /// Reads the content of a file from memory. `name` is the file's name in sentences.
+  /// Reads the content of a file from memory. `name` is the file's name in error sentences.
   Hdf5Input(std::span<const std::byte> content, std::string name);
 
   const std::string& name() const { return name_; }
   bool has(const std::string& path) const;
 
-  /// An attribute of the file; empty if there is none. Nothing for a text of variable length, which is not read.
+  /// Returns a file attribute, or an empty text if it is missing. std::nullopt for text of variable length, which is
+  /// not read.
   std::optional<std::string> text_attribute(const char* name) const;
-  /// 0 if there is none.
+  /// Returns 0 if the attribute is missing.
   std::int64_t number_attribute(const char* name) const;
 
-  /// Names in a group, in alphabetical order. A name longer than 127 bytes is cut.
+  /// Names in a group, in alphabetical order. Names longer than 127 bytes are truncated.
   std::vector<std::string> names_in(const std::string& group) const;
 
   std::int64_t whole_number(const std::string& path) const;
   float real_number(const std::string& path) const;
 
-  /// Elements that a column declares.
+  /// Declared number of elements in a column.
   std::uint64_t length_of(const std::string& column) const;
   /// The first `count` elements of a column.
   std::vector<std::int64_t> whole_numbers(const std::string& column, std::uint64_t count);
@@ -58,7 +60,7 @@ class Hdf5Input {
 
   std::string name_;
   Handle file_;
-  std::uint64_t bytes_left_ = 0;  ///< of the file, for columns that have not been read yet
+  std::uint64_t bytes_left_ = 0;  ///< bytes of the file for columns that are not read yet
 };
 
 }  // namespace inkwell::recording

@@ -1,21 +1,21 @@
-// How a recording lies in an HDF5 file; columns are compressed (shuffle and deflate, which every HDF5 has):
+// Layout of a recording in an HDF5 file. Columns are compressed with shuffle and deflate, which every HDF5 build has.
 //
 //   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
-//                        serial_number, arm, force_law (as the device sent it, in hexadecimal digits), simulation,
+//                        serial_number, arm, force_law (as sent by the device, in hexadecimal digits), simulation,
 //                        servo_rate_Hz, step_periods (control periods from one sample to the next)
 //   /parameters/NAME     scalar float, attributes unit and help
-//   /period              int64[N], control period of each sample (uint32, which wraps, in files of earlier versions)
+//   /period              int64[N], control period of each sample (wrapping uint32 in files of earlier versions)
 //   /time_s              float64[N]
 //   /signals/NAME        float32[N], attributes unit and help
-//   /simulated/NAME      float32[N], attributes unit and help: what a simulation knew beside the signals, if it did
-//   /marks/period        int64[M] (likewise)
+//   /simulated/NAME      float32[N], attributes unit and help: quantities of a simulation, if available
+//   /marks/period        int64[M] (wrapping uint32 in files of earlier versions)
 //   /marks/text          text[M] of fixed length, the bytes of UTF-8
-//                        (called UTF-8, and shorter, in files of earlier versions)
+//                        (marked as UTF-8, and shorter, in files of earlier versions)
 //   /marks/kind          text[M]: mark of the user, connection, force, fault, parameter, loss
-//   /marks/clock_utc     text[M]: of the computer, ISO 8601 with milliseconds
-//                        (these two are not in files of earlier versions)
-//   /samples             uint64, how many samples are whole on the disk; a column may be longer after a crash
-//   /complete            int32, 1 once the end was written
+//   /marks/clock_utc     text[M]: time of the computer, ISO 8601 with milliseconds
+//                        (kind and clock_utc are not in files of earlier versions)
+//   /samples             uint64, number of samples that are completely on disk; a column may be longer after a crash
+//   /complete            int32, 1 once the recording is complete
 #pragma once
 
 #include <cstddef>

@@ -69,7 +69,7 @@ class Hdf5Reader {
       about.parameters[*parameter] = input_.real_number("/parameters/" + name);
     }
     about.signals = read_columns("/signals", protocol::find_signal);
-    // A file of an earlier version has no such group.
+    // Files of earlier versions have no such group.
     if (input_.has("/simulated")) about.simulated = read_columns("/simulated", protocol::find_simulated_quantity);
   }
   std::string text(const char* name) {
@@ -79,7 +79,7 @@ class Hdf5Reader {
           fmt::format("The {} of {} is a text of variable length; it was left out.", name, input_.name()));
     return std::move(found).value_or("");
   }
-  /// What the columns of a group hold, by their names.
+  /// Contents of the columns of a group, from their names.
   template <class Value>
   std::vector<Value> read_columns(const char* group_name, std::optional<Value> (*find)(std::string_view)) {
     std::vector<Value> found;
@@ -90,7 +90,7 @@ class Hdf5Reader {
         recording_.remarks.push_back(
             fmt::format("The signal {} of {} is not known here; it was left out.", name, input_.name()));
     }
-    // HDF5 gives names in alphabetical order; in the table's order those that belong together stand together.
+    // HDF5 returns names in alphabetical order. The order of the table groups related columns.
     std::sort(found.begin(), found.end());
     if (std::adjacent_find(found.begin(), found.end()) != found.end())
       input_.fail(fmt::format("is damaged: {} has a name twice", group_name));
@@ -102,7 +102,7 @@ class Hdf5Reader {
     if (count == 0) return;
     const auto mark_periods = periods("/marks/period", count);
     const auto texts = input_.texts("/marks/text", count);
-    // A file of an earlier version has neither.
+    // Files of earlier versions have neither kinds nor clock times.
     const bool has_kinds = input_.has("/marks/kind");
     const auto kinds = has_kinds ? input_.texts("/marks/kind", count) : std::vector<std::string>(count);
     const auto clocks = has_kinds ? input_.texts("/marks/clock_utc", count) : std::vector<std::string>(count);

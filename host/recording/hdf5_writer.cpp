@@ -1,8 +1,10 @@
-// HDF5 recordings that every program can open after this process was killed. For that the file is in the format of
-// HDF5 1.8 at the latest, which has no mark "open for writing" that somebody would have to take away; what tells where
-// the samples are reaches the disk in flush() only, behind the samples, and when there is room for all of it; and what
-// was written stays in its place, since a compressed chunk is written once, when it is full. What is left is the moment
-// in which HDF5 splits a full node of a column's 64 chunks: a few writes in 13 s at 20 kHz.
+// HDF5 recordings that any program can open after this process was killed, for three reasons:
+//
+// - The file has the format of HDF5 1.8 or earlier, which has no mark "open for writing" that would have to be cleared.
+// - The index of the samples is written only in flush(), after the samples, and only if it fits on the disk.
+// - Written data does not move, because a compressed chunk is written once, when it is full.
+//
+// A risk remains while HDF5 splits a full node with 64 chunks of a column: a few writes every 13 s at 20 kHz.
 #include "formats.hpp"
 
 #include <algorithm>
@@ -23,10 +25,10 @@
 namespace inkwell::recording {
 namespace {
 
-constexpr hsize_t chunk_periods = 4096;      ///< 0.2 s, which a crash costs at most, with recorder.cpp's flush_interval
-constexpr hsize_t chunk_samples_least = 16;  ///< a chunk has some tens of bytes about itself
+constexpr hsize_t chunk_periods = 4096;      ///< 0.2 s, lost in a crash in addition to flush_interval
+constexpr hsize_t chunk_samples_least = 16;  ///< a chunk has some tens of bytes of overhead
 constexpr hsize_t chunk_marks = 16;
-constexpr unsigned compression_level = 2;  // of 9; low, since the writer keeps up with 20 kHz
+constexpr unsigned compression_level = 2;  // of 9; low, so that the writer keeps up with 20 kHz
 
 class Hdf5Writer final : public Writer {
  public:
@@ -57,7 +59,7 @@ class Hdf5Writer final : public Writer {
       for (std::size_t j = 0; j < simulated_width; ++j)
         values_[width_ + j].push_back(simulated[i * simulated_width + j]);
     }
-    // A scope frame has some tens of samples, and HDF5 takes as long for them as for thousands.
+    // A scope frame has some tens of samples. HDF5 needs as much time for some tens of samples as for thousands.
     if (periods_.size() >= chunk_samples_) write_samples(periods_.size() / chunk_samples_ * chunk_samples_);
   }
   void mark(const Mark& mark) override {
@@ -72,7 +74,7 @@ class Hdf5Writer final : public Writer {
     const QuietHdf5 quiet;
     find_room();
     if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) fail();
-    // Only now are the samples known to be on the disk: a column may have grown without its values.
+    // The samples are on disk only now. Before this point, a column may have grown without its values.
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
     if (H5Dflush(samples_.id()) < 0) fail();
   }
@@ -90,7 +92,7 @@ class Hdf5Writer final : public Writer {
   static Handle access() {
     Handle list = file_access();
     H5Pset_libver_bounds(list.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
-    // The library's cache of what lies where would write parts of it when it likes; for some megabytes it need not.
+    // HDF5 may write parts of its metadata cache at any time. These settings prevent this for caches of some megabytes.
     H5AC_cache_config_t cache{};
     cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
     H5Pget_mdc_config(list.id(), &cache);
@@ -99,7 +101,7 @@ class Hdf5Writer final : public Writer {
     cache.flash_incr_mode = H5C_flash_incr__off;
     cache.decr_mode = H5C_decr__off;
     H5Pset_mdc_config(list.id(), &cache);
-    H5Pset_cache(list.id(), 0, 0, 0, 0);  // chunks are written whole, so that none has to wait for its rest
+    H5Pset_cache(list.id(), 0, 0, 0, 0);  // chunks are written completely, so no chunk waits in a cache
     return list;
   }
   Handle group(hid_t file, const char* name) {
@@ -114,7 +116,7 @@ class Hdf5Writer final : public Writer {
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(properties.id(), 1, &chunk);
     if (packing == Packing::compressed) {
-      H5Pset_shuffle(properties.id());  // bytes of the same weight together, which then resemble each other
+      H5Pset_shuffle(properties.id());  // groups bytes of equal significance, which compress better
       H5Pset_deflate(properties.id(), compression_level);
     }
     Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
@@ -128,7 +130,7 @@ class Hdf5Writer final : public Writer {
     return made;
   }
 
-  /// Closed once, so that from the first sample on there is a whole file.
+  /// Closes the file once, so that it is complete before the first sample.
   void lay_out(const Information& about) {
     const Handle file(H5Fcreate(file_name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access().id()), H5Fclose);
     if (!file) fail();
@@ -160,7 +162,7 @@ class Hdf5Writer final : public Writer {
     const Handle simulated = group(file.id(), "simulated");
     for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
     const Handle marks = group(file.id(), "marks");
-    // Each mark is written when it comes, into a chunk that has to keep its size.
+    // Marks are written immediately into chunks of constant size.
     growing(marks.id(), "period", H5T_STD_I64LE, chunk_marks, Packing::none);
     growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks, Packing::none);
     growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks, Packing::none);
@@ -180,7 +182,7 @@ class Hdf5Writer final : public Writer {
   void open_for_writing(const Information& about) {
     file_ = Handle(H5Fopen(file_name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
-    // A process that is started meanwhile would keep the space of a file that is removed.
+    // Otherwise a child process would prevent the space of a deleted file from being freed.
     ::fcntl(descriptor(), F_SETFD, FD_CLOEXEC);
     const auto open = [&](const std::string& path) {
       Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
@@ -216,19 +218,20 @@ class Hdf5Writer final : public Writer {
     void* handle = nullptr;
     return H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &handle) < 0 ? -1 : *static_cast<int*>(handle);
   }
-  /// For all that a flush writes: one that fails in the middle would leave a file that nobody can open.
+  /// Reserves disk space for all data of a flush. A flush that failed halfway would leave an unreadable file.
   void find_room() {
     haddr_t end = 0;
     if (H5Fget_eoa(file_.id(), &end) < 0 || ::posix_fallocate(descriptor(), 0, static_cast<off_t>(end)) != 0) fail();
   }
-  /// Closing writes what the last flush() has not, which may not find room: it goes nowhere.
+  /// Closing would write data that the last flush() has not written, possibly to a full disk. This function redirects
+  /// the file to /dev/null.
   void let_go() {
     const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
     if (nowhere < 0) return;
     ::dup2(nowhere, descriptor());
     ::close(nowhere);
   }
-  /// Cut to its place in the file.
+  /// Writes a text, truncated to its length in the file.
   void write_mark_text(const Handle& column, std::string_view text, std::size_t bytes) {
     std::string place(text.substr(0, bytes));
     place.resize(bytes);
@@ -252,7 +255,7 @@ class Hdf5Writer final : public Writer {
   [[noreturn]] void fail() const {
     std::error_code error;
     const auto space = std::filesystem::space(std::filesystem::absolute(file_name_).parent_path(), error);
-    // What is no disk, such as /proc, has no room at all and is not full.
+    // File systems that are not disks, such as /proc, report no capacity and are not full.
     const bool full = !error && space.capacity > 0 && space.available < 1'000'000;
     throw device::Error(fmt::format("{} cannot be written: {}.", name_,
                                     full ? "the disk is full. Free some space or choose another place"
@@ -260,15 +263,15 @@ class Hdf5Writer final : public Writer {
   }
 
   std::string name_, file_name_;
-  std::size_t width_;  ///< how many signals there are
+  std::size_t width_;  ///< number of signals
   hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
-  process::OwnDescriptor own_;         ///< of the file
-  std::vector<Handle> columns_;        ///< of the signals, then of the simulated quantities
-  std::vector<std::int64_t> periods_;  ///< of samples that are not in the file yet, with the columns below
+  process::OwnDescriptor own_;         ///< descriptor of the file
+  std::vector<Handle> columns_;        ///< signals, then simulated quantities
+  std::vector<std::int64_t> periods_;  ///< samples that are not in the file yet, with the columns below
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;
-  hsize_t size_ = 0;  ///< samples in the file
+  hsize_t size_ = 0;  ///< number of samples in the file
   hsize_t mark_count_ = 0;
 };
 

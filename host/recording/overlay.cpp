@@ -43,7 +43,7 @@ device::ScopeSamples Overlay::beside(const device::ScopeSamples& of_base) const 
   samples.values.assign(samples.count * width, std::nanf(""));
   const std::int64_t first = of_base.first_period - base_begins_periods_ - shift_periods_;
   const auto elapsed_periods = [&](std::size_t sample) { return over_.periods[sample] - over_.periods.front(); };
-  // The newest sample at or before the first period, whose values hold until the next one is due.
+  // Starts with the newest sample at or before the first period; its values apply until the next sample.
   std::size_t sample = over_.sample_at(static_cast<double>(first) / protocol::servo_rate_Hz);
   if (sample > 0 && (sample == over_.size() || elapsed_periods(sample) > first)) --sample;
   for (std::size_t i = 0; i < samples.count; ++i) {
@@ -71,7 +71,7 @@ std::pair<std::string, std::string> names_beside_each_other(const std::filesyste
     one_folder = one_folder.parent_path();
     other_folder = other_folder.parent_path();
   } while (one_name == other_name && one_folder != other_folder);
-  return {one_name.parent_path().string(), other_name.parent_path().string()};  // what is empty at first ends in "/"
+  return {one_name.parent_path().string(), other_name.parent_path().string()};  // without the trailing "/"
 }
 
 std::vector<std::string> common_marks(const Recording& a, const Recording& b) {

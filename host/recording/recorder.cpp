@@ -19,14 +19,14 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t queue_bytes_maximum = 64u << 20;
-/// A crash costs as much, and a chunk of a file (hdf5_writer.cpp): half a second.
+/// A crash loses at most this interval plus one chunk of the file (hdf5_writer.cpp), together half a second.
 constexpr auto flush_interval = 300ms;
 
 std::size_t size_of(const device::ScopeSamples& samples) {
   return samples.values.size() * sizeof(float) + sizeof samples;
 }
 
-/// No device tells what a simulation knows.
+/// A device does not send simulated quantities.
 Information only_signals(Information information) {
   information.simulated.clear();
   return information;
@@ -96,9 +96,9 @@ struct Recorder::Implementation {
   RecorderStatus status{.running = true};
   std::optional<std::int64_t> first_period;
   std::int64_t newest_period = 0;
-  std::vector<Mark> early_marks;  ///< set before the first sample came, which gets them
+  std::vector<Mark> early_marks;  ///< marks before the first sample, assigned to the first sample
 
-  std::thread thread;  // last, so that it finds everything made
+  std::thread thread;  // last member, so that the thread starts after all others exist
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Information& information)
@@ -119,9 +119,9 @@ void Recorder::push(const device::ScopeSamples& samples) {
     self.wake.notify_one();
     return;
   }
-  // Counted by their periods, so that those are counted too that were lost between the link and here.
+  // Counted from the periods, which includes samples lost between the link and this function.
   if (self.first_period) self.status.lost += static_cast<std::uint64_t>(step - 1);
-  if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // the next block's step counts it as lost
+  if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // counted as lost by the next block
   const bool is_first = !self.first_period;
   if (is_first) self.first_period = samples.first_period;
   self.newest_period = samples.first_period + static_cast<std::int64_t>(samples.count) - 1;

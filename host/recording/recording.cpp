@@ -35,9 +35,9 @@ std::uint64_t Recording::lost() const {
 }
 
 std::size_t Recording::sample_at(double elapsed) const {
-  // A hundredth of a period, so that a time that was computed finds the sample that it was computed from.
+  // The tolerance of 1 % of a period covers rounding: a time computed from a sample must find this sample.
   const double rounding_s = 0.01 / protocol::servo_rate_Hz;
-  std::size_t first = 0, end = size();  // what is looked for is not before the one nor after the other
+  std::size_t first = 0, end = size();  // search range of the result
   while (first < end) {
     const std::size_t middle = first + (end - first) / 2;
     if (elapsed_s(middle) < elapsed - rounding_s)
@@ -134,7 +134,7 @@ Recording read_either(const std::filesystem::path& file) {
   constexpr std::array hdf5_signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   if (start == hdf5_signature) return read_hdf5(file);
   if (start[0] == '#') {
-    stream.clear();  // of a file that is shorter
+    stream.clear();  // clears the end-of-file state of a shorter file
     stream.seekg(0);
     return read_csv(stream, file.string());
   }
@@ -142,7 +142,7 @@ Recording read_either(const std::filesystem::path& file) {
                                   file.string(), format_name));
 }
 
-/// Every text of the file may be printed, drawn and copied into another file.
+/// Converts all texts of the file to plain text, which is safe to print, draw and copy.
 void make_plain(Recording& recording) {
   auto& about = recording.information;
   for (std::string* text : {&about.created_utc, &about.firmware_version, &about.serial_number, &about.arm})
@@ -197,7 +197,7 @@ void check_can_be_created(const std::filesystem::path& file, Existing existing) 
 
 namespace {
 
-/// Of a file that was not there; if it cannot be begun, it is not there afterwards either.
+/// Creates a new file. If this fails, no file remains.
 std::unique_ptr<Writer> create_new(const std::filesystem::path& file, const Information& information,
                                    const std::string& name) {
   try {
@@ -233,7 +233,7 @@ std::unique_ptr<Writer> create(const std::filesystem::path& file, const Informat
 
 void save(const Recording& recording, const std::filesystem::path& file) {
   check_can_be_created(file, Existing::is_replaced);
-  // The ending stays last, because it chooses the format.
+  // The extension stays last, because it determines the format.
   const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
   std::error_code error;
   std::filesystem::remove(part, error);

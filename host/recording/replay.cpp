@@ -80,7 +80,7 @@ std::optional<device::Pose> Replay::pose() const {
       std::any_of(std::begin(pose.force_N), std::end(pose.force_N), [](float force_N) { return force_N != 0.0f; });
   pose.state = pushes ? protocol::State::active : protocol::State::ready;
   pose.fault = protocol::Fault::none;
-  pose.is_referenced = true;  // not recorded, so the arm is drawn by its joint angles
+  pose.is_referenced = true;  // not recorded; the arm is drawn from its joint angles
   const float supply_dV = std::clamp(10.0f * value(Signal::supply_V), 0.0f, 255.0f);
   pose.supply_dV = static_cast<std::uint8_t>(supply_dV);
   return pose;

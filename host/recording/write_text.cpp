@@ -14,7 +14,7 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   if (stream.flush()) return;
   stream.close();
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);  // half of it is no use
+  if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);  // an incomplete file
   throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
 }
 

@@ -1,4 +1,4 @@
-// What befalls an arm: its host goes, its board starts anew, something breaks and is mended.
+// Adverse events: the host disconnects, the board restarts, or a fault is injected and cleared.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ using protocol::State;
 
 double host_timeout_s(const Bench& bench) { return static_cast<double>(bench.accepted[Parameter::host_timeout_s]); }
 
-/// The hand somewhere, on its way, or pressed into a wall.
+/// Brings the hand to a random state: at a point, in motion, or pressed into a wall.
 void be_in_use(Bench& bench, bool with_force) {
   if (with_force)
     bench.make_active();
@@ -33,7 +33,7 @@ void be_in_use(Bench& bench, bool with_force) {
   bench.pass(bench.random.from(0.0, 0.7));
 }
 
-/// Parts of the code or of what it works with may be anything from now on.
+/// A fault of the program may affect any part of the code or its data.
 Disturbance disturbance_by(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::program_astray:
@@ -45,7 +45,7 @@ Disturbance disturbance_by(InjectedFault fault) {
   }
 }
 
-/// What an encoder counts may be less than the arm turns, so that the arm is lost from then on.
+/// Whether the encoder may count less than the joint turns. The position is then wrong until the next reference.
 bool may_lose_counts(const campaign::CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::encoder_stuck:
@@ -59,7 +59,8 @@ bool regains(Bench& bench) {
   try {
     bench.oracle.connected();
     if (!bench.board.connected() && !bench.board.connect(1.0)) return false;
-    // What is told of a fault or a restart takes the permission away, and comes before the user asks again.
+    // A reported fault or restart withdraws the permission for force. The phase reads fault and restart count before it
+    // requests force again.
     bench.look_closely();
     bench.pass(0.02);
     bench.oracle.ask_for_force();
@@ -69,14 +70,14 @@ bool regains(Bench& bench) {
   }
 }
 
-/// Only a reset ends it, by the tables or because nothing runs any more.
+/// Whether only a reset helps, according to the table or because the processor is locked up.
 bool reset_is_the_way(Bench& bench) {
   if (bench.board.is_locked_up()) return true;
   return bench.board.is(State::fault) &&
          protocol::watch_table[protocol::place_of(bench.board.pose()->fault)].clearing == protocol::Clearing::by_reset;
 }
 
-/// What gave the force back.
+/// Returns the action that restored the force.
 std::string recover(Bench& bench, Disturbance disturbance) {
   bench.board.control().heal_all();
   bench.pass(0.05);
@@ -121,7 +122,7 @@ std::string pull_cable(Bench& bench) {
 
 std::string be_silent(Bench& bench) {
   be_in_use(bench, true);
-  // The last sign of life may have come two looks ago.
+  // The last heartbeat may be two look intervals old.
   const double short_s = bench.random.from(0.1, 0.7) * host_timeout_s(bench);
   bench.pass(short_s, false);
   bench.pass(0.02);
@@ -154,7 +155,7 @@ std::string reset_board(Bench& bench) {
   be_in_use(bench, bench.random.chance(0.7));
   if (bench.random.chance(0.3)) bench.set(legal_changes(bench.random, bench.accepted, Reach::careful, 5));
   bench.reset();
-  bench.check_parameters();  // the defaults
+  bench.check_parameters();  // expects the defaults
   bench.make_active();
   return "";
 }
@@ -170,7 +171,7 @@ std::string be_too_fast(Bench& bench) {
     there_m[axis] += 0.03;
     back_m[axis] -= 0.03;
   }
-  // 0.1 m in a tenth of a second: 1.9 m/s at most.
+  // 0.1 m in 0.1 s: at most 1.9 m/s.
   bench.board.control().hand_path({{0.3, there_m}, {0.4, back_m}, {0.5, there_m}});
   bench.pass(0.6);
   bench.oracle.must_have_told(protocol::watch(Fault::over_speed));
@@ -199,7 +200,7 @@ std::string put_fault_in(Bench& bench) {
   bench.pass(bench.random.from(0.05, 0.8));
   const auto told = bench.oracle.told();
   const std::string way = recover(bench, disturbance);
-  // Where it was put in the encoders may have lost the arm without a word, or with one on the way to the inkwell.
+  // The fault may have caused lost counts. Lost counts may be undetected, or detected on the way to the inkwell.
   if (may_lose_counts(put_in)) bench.oracle.allow_lost_counts();
   bench.give_up_force();
   bench.dock();

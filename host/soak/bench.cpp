@@ -19,7 +19,7 @@ using protocol::State;
 constexpr double look_s = 0.005;
 constexpr double close_look_s = 0.1;
 
-/// Status and truth both count them from the power on, with the trial of the watchdog as the first.
+/// Status and truth count resets from power-on; the first reset is the watchdog test.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 
 bool force_on(const device::Pose& pose) { return protocol::force_is_on(pose.state); }
@@ -80,7 +80,7 @@ void Bench::look_closely() {
   if (is_sound() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
 }
 
-/// The pose is a little older than the truth.
+/// The pose is slightly older than the truth.
 void Bench::check_pose() {
   if (!board.pose() || !board.pose()->is_referenced) return;
   const auto truth = board.control().truth();
@@ -105,7 +105,7 @@ void Bench::disturb(Disturbance disturbance) {
 void Bench::check_all() {
   look_closely();
   if (!board.connected()) fail(Complaint::no_answer, "there is no device at the end of the phase");
-  if (board.is(State::fault)) throw PhaseFailed("the fault was told");  // so the next phase begins without it
+  if (board.is(State::fault)) throw PhaseFailed("the fault was told");  // the next phase must start without a fault
   pass(look_s);
   check_pose();
   check_parameters();
@@ -113,7 +113,7 @@ void Bench::check_all() {
 
 // ---- parameters ----------------------------------------------------------------------------------------------
 
-/// A limit that is lowered holds at once; the currents need a moment.
+/// A lower limit applies immediately, but the currents need time to decrease.
 void Bench::limit_changes(float force_limit_N) {
   const auto limit_N = static_cast<double>(force_limit_N);
   if (limit_N == oracle.force_limit_N()) return;
@@ -175,7 +175,7 @@ void Bench::hold(const protocol::ParameterSet& set) {
   oracle.limit_force(static_cast<double>(accepted[Parameter::force_limit_N]));
 }
 
-// ---- what a user does ----------------------------------------------------------------------------------------
+// ---- user actions --------------------------------------------------------------------------------------------
 
 void Bench::connect(double limit_s) {
   oracle.connected();
@@ -208,8 +208,8 @@ void Bench::take_out() {
 }
 
 void Bench::dock() {
-  // A reference is taken anew once the arm has been still in the inkwell for a while, and what was lost before is told
-  // only there, some milliseconds after the switch has closed.
+  // The arm is referenced again after a rest in the inkwell. Lost counts are reported only there, some milliseconds
+  // after the switch has closed.
   constexpr double longest_s = 2.3, look_every_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
   double rested_s = 0;
@@ -217,13 +217,13 @@ void Bench::dock() {
   while (waited_s < longest_s) {
     pass(look_every_s);
     waited_s += look_every_s;
-    // Counts were lost, and only here the board finds the arm again. Whether that may be is the oracle's to say.
+    // The board detects lost counts only here. The oracle decides whether lost counts are allowed.
     if (board.is(State::fault)) {
       rested_s = 0;
       const protocol::Fault told = board.pose()->fault;
       if ((lost_counts & protocol::watch(told)) == 0) continue;
       board.command(Command::clear_fault);
-      // Then the switch has to be seen open as well.
+      // This fault also requires the switch to be open once.
       if (told == protocol::Fault::inkwell_implausible) {
         board.control().dock(false);
         pass(look_every_s);

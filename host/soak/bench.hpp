@@ -1,4 +1,4 @@
-// A virtual board with its arm, a hand, a host and a judge: what the phases are made of.
+// A virtual board with arm, hand, host and oracle: the environment of the phases.
 #pragma once
 
 #include <functional>
@@ -15,55 +15,54 @@
 
 namespace inkwell::soak {
 
-/// The board does not do what it was asked for, so that the phase makes no sense any more. Told already.
+/// The board does not follow a command, so the phase cannot continue. The finding is already recorded.
 struct PhaseFailed : device::Error {
   using Error::Error;
 };
 
-/// The sitting is over in the middle of a phase. No error, so that nothing on the way takes it for one of the board's.
+/// End of the sitting during a phase. SittingOver is not an error class, so that no handler treats the end as an error
+/// of the board.
 struct SittingOver {};
 
 class Bench {
  public:
   Bench(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board);
 
-  // ---- time, looked at all along
-  /// Lets board time pass with the host's signs of life or without.
-  /// Throws SittingOver at the end of the sitting.
+  // ---- time, with continuous checks
+  /// Lets board time pass, with or without heartbeats. Throws SittingOver at the end of the sitting.
   void pass(double time_s, bool gives_sign_of_life = true);
-  /// What the simulation knows at this instant.
+  /// Checks the true quantities at this instant.
   void look();
-  /// What is read rarely: restarts, broken rules, whether the processor is locked up.
+  /// Checks rarely read states: restarts, violated rules, and lock-up of the processor.
   void look_closely();
-  /// The same, and whether the board still answers and holds what it accepted.
+  /// Like look_closely(), and checks that the board answers and stores its accepted parameters.
   void check_all();
 
-  // ---- what a user does
-  /// Connected, no fault, referenced, force off, the hand holding the stylus in free space.
+  // ---- user actions
+  /// Postcondition: connected, no fault, referenced, force off, and the hand holds the stylus in free space.
   void make_ready();
   void make_active();
   void give_up_force();
   void dock();
   void take_out();
   void connect(double limit_s = 1.0);
-  /// Clears the fault, switches the force on.
+  /// Clears the fault and switches the force on.
   void go_on();
   void reset();
-  /// From where it pulls to now.
+  /// Starts at the present target of the hand.
   void move_hand(device::Vector3 to_m, double duration_s);
   device::Vector3 free_point_m();
   device::Vector3 wall_point_m(double force_N);
-  /// Random buttons, angles of the stylus, questions.
+  /// Random buttons, stylus angles and queries.
   void fidget();
 
   // ---- parameters
   void set(std::span<const device::ParameterChange> changes);
   void set(device::ParameterChange change) { set(std::span(&change, 1)); }
-  /// Sends what must be refused.
   void try_illegal();
   void restore_defaults();
   void check_parameters();
-  /// What the board holds now, as after it started anew.
+  /// Sets the expected parameters of the board, for example after a restart.
   void hold(const protocol::ParameterSet& set);
 
   [[noreturn]] void fail(Complaint complaint, const std::string& text);
@@ -74,13 +73,13 @@ class Bench {
   Sitting sitting;
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
-  protocol::ParameterSet stored{};  ///< what a start gives
-  /// Asked all along; none while the board starts, which a sitting does in any case.
+  protocol::ParameterSet stored{};  ///< values after a restart
+  /// Polled continuously. Empty while the board starts, because every sitting completes the start.
   std::function<bool()> is_over;
-  /// The cable is out, or the program is killed.
+  /// The cable is unplugged, or the program is killed.
   bool device_may_go = false;
   bool is_sound() const { return disturbance_ == Disturbance::none; }
-  /// What is put in, or none any more.
+  /// Sets the active disturbance; Disturbance::none after it is cleared.
   void disturb(Disturbance disturbance);
 
  private:
@@ -91,10 +90,10 @@ class Bench {
   double until_close_look_s_ = 0;
 };
 
-/// Lets the phase of this kind happen; what was done, in words.
+/// Runs a phase of this kind. Returns a description in words.
 std::string play(Bench& bench, Kind kind);
 
-// In uses.cpp, storms.cpp, stores.cpp and adversities.cpp:
+// Defined in uses.cpp, storms.cpp, stores.cpp and adversities.cpp:
 std::string use_docking(Bench& bench);
 std::string use_free_space(Bench& bench, double time_s);
 std::string use_walls(Bench& bench, double time_s);

@@ -14,7 +14,7 @@ namespace {
 using protocol::Fault;
 using protocol::State;
 
-/// A pose may be of the milliseconds before what was done, and so may what the bridges did.
+/// Largest age of poses and bridge states relative to the latest action.
 constexpr double behind_s = 0.01;
 
 }  // namespace
@@ -89,7 +89,7 @@ void Oracle::follow_self_test(bool may_test_itself) {
 void Oracle::see(const Look& look) {
   now_s_ = look.board_time_s;
   if (std::exchange(restarts_looked_at_, look.restarts) != look.restarts) follow_self_test(true);
-  // The pulses of a self-test are not bound by the force limit.
+  // The self-test's pulses are not subject to the force limit.
   const bool tested_itself = may_test_itself_ || test_is_over_;
   if (std::exchange(test_is_over_, false)) may_drive_until_s_ = std::max(may_drive_until_s_, now_s_);
   if (std::exchange(force_may_be_on_, protocol::force_is_on(state_)) && !tested_itself) judge_force(look);
@@ -113,10 +113,10 @@ void Oracle::judge_force(const Look& look) {
   else
     note(hardest_press_with_fault_over_ms_, look.peak_motor_force_over_ms_N);
   if (disturbance_ == Disturbance::program) return;
-  // Until the bridges are off a fault may make a motor press harder for some periods, too short a time for the arm
-  // to pass on.
+  // Until the bridges are off, a fault may increase the force of a motor for a few periods. This is too short to move
+  // the arm.
   const double judged_N = is_sound ? look.peak_motor_force_N : look.peak_motor_force_over_ms_N;
-  // The noise of the current sensors, which is all that a limit of next to nothing shows.
+  // Noise of the current sensors, which dominates for very small limits.
   constexpr double noise_N = 0.1;
   if (judged_N > force_tolerance * force_limit_N_ + noise_N)
     complain(Complaint::too_much_force, fmt::format("the motors press with {:.2f} N{}, the limit is {:.2f} N", judged_N,
@@ -154,7 +154,7 @@ void Oracle::tell(Fault fault) {
 }
 
 void Oracle::complain(Complaint complaint, std::string text) {
-  // One of a kind in a phase tells enough: the first.
+  // Only the first complaint of a kind is recorded in each phase.
   for (const Finding& finding : findings_)
     if (finding.phase == phase_ && finding.complaint == name_of(complaint)) return;
   findings_.push_back(

@@ -38,7 +38,7 @@ std::string row(std::string_view what, const std::string& figure) {
   return fmt::format("  {:<42}{:>12}\n", what, figure);
 }
 
-/// How much of the limit, and where that was.
+/// Table rows for the largest force relative to the limit, and the phase of this force.
 std::string rows_of_press(const Soak& soak, Press Sitting::*which, std::string_view what) {
   const auto part_of_limit = [&](const Sitting& sitting) { return (sitting.*which).part_of_limit(); };
   const auto hardest = std::ranges::max_element(soak.sittings, {}, part_of_limit);

@@ -10,7 +10,7 @@
 namespace inkwell::soak {
 namespace {
 
-/// Longer than any sitting; a processor that is locked up does not stop the time then.
+/// Longer than any sitting. With this option a locked-up processor does not stop board time.
 constexpr double board_lives_s = 1e6;
 
 class Run {
@@ -37,7 +37,7 @@ class Run {
     return bench_.oracle.board_time_s() >= bench_.choices.sitting_s || (is_stopped_ && is_stopped_());
   }
 
-  /// False if the board cannot be used any more, or the sitting is over.
+  /// Returns false if the board is unusable or the sitting is over.
   bool phase(Kind kind) {
     PhaseResult result{.number = static_cast<unsigned>(bench_.sitting.phases.size() + 1),
                        .kind = std::string(info(kind).name),
@@ -69,14 +69,14 @@ class Run {
     }
   }
 
-  /// After a phase that failed, so that the next one is not blamed.
+  /// Restarts after a failed phase, so that the failure does not affect the next phase.
   bool begin_anew() {
     try {
       bench_.device_may_go = false;
       bench_.board.control().heal_all();
       bench_.board.control().usb(true);
       bench_.look_closely();
-    } catch (const device::Error&) {  // told already
+    } catch (const device::Error&) {  // already recorded
     }
     try {
       bench_.disturb(Disturbance::none);
@@ -129,13 +129,13 @@ Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoar
   board.real_time = false;
   board.paused = true;
   board.seconds = board_lives_s;
-  board.brown_out_level = 3;  // as on a board that was flashed
+  board.brown_out_level = 3;  // setting of a flashed board
   board.seed = choices.seed + number;
   return Run(number, choices, board, tell, is_stopped).all();
 }
 
 unsigned sittings_in(double board_time_s, const Choices& choices) {
-  constexpr double rounding = 1e-9;  // of a length that was such a part of the time
+  constexpr double rounding = 1e-9;  // tolerance for a sitting length computed as a fraction of the board time
   return static_cast<unsigned>(std::max(1.0, std::ceil(board_time_s / choices.sitting_s - rounding)));
 }
 

@@ -1,4 +1,4 @@
-// Parameters that are kept over a start of the board.
+// Stored parameters across restarts.
 #include <fmt/format.h>
 
 #include <device/board_store.hpp>
@@ -11,7 +11,7 @@ namespace {
 using protocol::Command;
 using protocol::StoreResult;
 
-/// What a command to store or to forget came to.
+/// Checks the result of a command that stores or erases parameters.
 void expect(Bench& bench, Command command, StoreResult expected) {
   constexpr double longest_s = 1.0, step_s = 0.01;
   bench.board.command(command);
@@ -25,7 +25,7 @@ void expect(Bench& bench, Command command, StoreResult expected) {
                fmt::format("the store came to \"{}\" instead of \"{}\"", info(result).name, info(expected).name));
 }
 
-/// The chip starts anew while it writes: it holds what was stored before, or what was to be stored.
+/// The chip restarts during a write. The board then has the previous or the new stored parameters.
 bool cut_off(Bench& bench) {
   const auto wanted = bench.accepted;
   bench.board.command(Command::store_parameters);

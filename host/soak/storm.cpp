@@ -15,10 +15,10 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// What careful use takes of a range: around the default, or between two values.
+/// Range for careful use: relative to the default, or between two values.
 struct Careful {
   Parameter parameter;
-  float below_default, above_default;  ///< parts of the default where `by_parts`
+  float below_default, above_default;  ///< fractions of the default if `by_parts`
   bool by_parts;
 };
 
@@ -45,7 +45,7 @@ constexpr auto between = std::to_array<Between>({
     {Parameter::voltage_limit_V, 4.0f, 24.0f},
     {Parameter::speed_limit_m_per_s, 2.0f, 10.0f},
     {Parameter::host_timeout_s, 0.05f, 2.0f},
-    // Less current than a wall asks for, or less time, heats a winding beyond the fault before it is held back.
+    // With lower values, a wall would trip the heat fault before the current limit acts.
     {Parameter::continuous_current_1_A, 0.5f, 3.0f},
     {Parameter::continuous_current_2_A, 0.5f, 3.0f},
     {Parameter::continuous_current_3_A, 0.5f, 3.0f},
@@ -55,7 +55,7 @@ constexpr auto between = std::to_array<Between>({
 
 float random_value(Random& random, Parameter parameter, Reach reach) {
   const auto [minimum, maximum] = range_of(parameter, reach);
-  if (random.chance(0.1)) return random.chance(0.5) ? minimum : maximum;  // the ends of a range are part of it
+  if (random.chance(0.1)) return random.chance(0.5) ? minimum : maximum;  // includes the limits of the range
   const float value = std::clamp(
       static_cast<float>(random.from(static_cast<double>(minimum), static_cast<double>(maximum))), minimum, maximum);
   return info(parameter).kind == ParameterKind::real ? value : std::clamp(std::round(value), minimum, maximum);
@@ -69,7 +69,7 @@ void put(Changes& changes, Parameter parameter, float value) {
     same->second = value;
 }
 
-/// Gives both of a pair a value where they contradict each other.
+/// Changes both parameters of a contradictory pair.
 void reconcile(Random& random, Changes& changes, const ParameterSet& now, const Bounds& pair, Reach reach) {
   constexpr float gap = 0.001f;
   const ParameterSet set = with(now, changes);
@@ -91,7 +91,7 @@ Parameter random_parameter(Random& random, auto condition) {
   return random.pick(some);
 }
 
-/// The entry that makes a transaction illegal; none where one of its own entries is to be said twice.
+/// The entry that makes a transaction illegal; std::nullopt for a duplicated entry.
 std::optional<device::ParameterChange> illegal_entry(Random& random, const ParameterSet& now, Refusal refusal) {
   const auto any = [](const auto&) { return true; };
   const auto with_choices = [](const auto& row) { return row.kind != ParameterKind::real; };
@@ -117,8 +117,8 @@ std::optional<device::ParameterChange> illegal_entry(Random& random, const Param
       return device::ParameterChange{parameter, now[parameter] == row.minimum ? row.maximum : row.minimum};
     }
     case Refusal::inconsistent: {
-      const Bounds& pair =
-          protocol::parameter_bounds[random.below(3)];  // of the box: stops do not change under a force
+      const Bounds& pair = protocol::parameter_bounds[random.below(3)];  // bounds of the box, which may change with the
+                                                                         // force on
       return device::ParameterChange{pair.lower, now[pair.upper]};
     }
     default: return std::nullopt;
@@ -174,7 +174,7 @@ Illegal illegal_changes(Random& random, const ParameterSet& now, bool force_is_o
   if (!entry) entry = random.pick(illegal.changes);
   const bool twice = illegal.refusal == Refusal::given_twice;
   if (!twice) std::erase_if(illegal.changes, [&](const auto& change) { return change.first == entry->first; });
-  if (illegal.refusal == Refusal::inconsistent)  // nothing else may bring the pair together again
+  if (illegal.refusal == Refusal::inconsistent)  // no other entry may make the pair consistent
     for (const Bounds& pair : protocol::parameter_bounds)
       if (pair.lower == entry->first)
         std::erase_if(illegal.changes, [&](const auto& change) { return change.first == pair.upper; });

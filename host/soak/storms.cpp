@@ -1,4 +1,4 @@
-// Parameters at random with the force off.
+// Random parameters with the force off.
 #include <fmt/format.h>
 
 #include "bench.hpp"

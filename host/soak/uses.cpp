@@ -1,4 +1,4 @@
-// What a user does with a sound arm.
+// Normal use of the arm.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -24,14 +24,14 @@ using protocol::ForceMode;
 using protocol::Signal;
 
 constexpr double step_s = 0.01;
-// Of a minimum jerk from place to place, the fastest is 1.875 times the mean.
+// Mean speeds; the peak speed of a minimum-jerk motion is 1.875 times the mean.
 constexpr double slow_m_per_s = 0.15, fast_m_per_s = 0.8;
-/// In motion the probe swings beyond the hand's way; the limit is 3 m/s by default, and 2 m/s in a storm.
+/// The probe overshoots the path of the hand. The speed limit is 3 m/s by default, and 2 m/s in a storm.
 constexpr double fastest_way_m_per_s = 1.0;
 
 double distance_m(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// From one point to the next at about this speed, for the whole time, with `each` after every step.
+/// Moves from point to point at about this speed for the full time, with a call of `each` after every step.
 void wander(Bench& bench, double time_s, double speed_m_per_s, const std::function<Vector3()>& next_m,
             const std::function<void()>& each = {}) {
   Vector3 here_m = bench.board.true_position_m();
@@ -55,12 +55,12 @@ void wander(Bench& bench, double time_s, double speed_m_per_s, const std::functi
 
 double limit_N(const Bench& bench) { return static_cast<double>(bench.accepted[protocol::Parameter::force_limit_N]); }
 
-/// Where the hand may be: free, or pressed with up to the force limit.
+/// A random hand position: free, or pressed into a wall with up to the force limit.
 Vector3 anywhere_m(Bench& bench) {
   return bench.random.chance(0.5) ? bench.free_point_m() : bench.wall_point_m(bench.random.from(0.0, limit_N(bench)));
 }
 
-// ---- a program -----------------------------------------------------------------------------------------------
+// ---- program -------------------------------------------------------------------------------------------------
 
 float some(Random& random, double low, double high) { return static_cast<float>(random.from(low, high)); }
 
@@ -88,16 +88,16 @@ device::Shapes random_shapes(Bench& bench) {
   return shapes;
 }
 
-/// A program for a while: a spring to a point, a push, or a buzz, with a rate of its own.
+/// A force program: a spring to a point, a push, or a vibration, with a random rate.
 class Program {
  public:
   explicit Program(Bench& bench) : bench_(bench) {
     choose();
-    // A silence of more than a second has ended the claim.
+    // A silence of more than one second has ended the claim.
     if (!bench.board.device().drives()) bench.board.device().claim();
   }
 
-  /// One force and its interval.
+  /// Sends one force and lets its interval pass.
   void step() {
     if (left_s_ <= 0) choose();
     const double interval_s = 1e-3 * interval_ms_;
@@ -110,7 +110,7 @@ class Program {
     }
     bench_.board.device().send_force(request);
     ++sent_;
-    bench_.pass(interval_s, false);  // a force is a sign of life
+    bench_.pass(interval_s, false);  // a force counts as a heartbeat
     left_s_ -= interval_s;
   }
   void end() {
@@ -126,7 +126,7 @@ class Program {
     mode_ = random.chance(0.6) ? ForceMode::beside_walls : ForceMode::instead_of_walls;
     interval_ms_ = random.chance(0.6) ? 1 : static_cast<int>(1 + random.below(20));
     point_m_ = bench_.free_point_m();
-    // A spring over a slow line is none that a hand damps.
+    // With a long interval the hand cannot damp a stiff spring.
     stiffness_N_per_m_ = random.chance(0.5) ? random.from(0, 200.0 / interval_ms_) : 0.0;
     const double push_N = random.chance(0.1) ? 20.0 : 2.0;
     for (double& along_N : push_N_) along_N = random.from(-push_N, push_N);
@@ -142,7 +142,7 @@ class Program {
   unsigned long sent_ = 0;
 };
 
-// ---- the scope -----------------------------------------------------------------------------------------------
+// ---- scope ---------------------------------------------------------------------------------------------------
 
 std::vector<Signal> random_signals(Random& random) {
   std::vector<Signal> signals;
@@ -159,7 +159,7 @@ bool the_bus_carries(const std::vector<Signal>& signals) {
   return protocol::encoding_for(selection) == protocol::ScopeEncoding::full;
 }
 
-/// What came since, and what of it is missing.
+/// Samples since the last call, and the number of lost ones.
 struct ScopeCount {
   unsigned long samples = 0, lost = 0;
 };
@@ -182,7 +182,7 @@ void note_lost(Bench& bench, const std::vector<Signal>& signals, unsigned long l
     bench.oracle.complain(Complaint::lost_packets, fmt::format("{} samples of {} signals", lost, signals.size()));
 }
 
-/// A file that does not outlive its phase, however that ends.
+/// A file that is removed at the end of its phase.
 struct RemovedAtTheEnd {
   std::filesystem::path file;
   ~RemovedAtTheEnd() {
@@ -316,7 +316,7 @@ std::string use_recording(Bench& bench, double time_s) {
   }
   note_lost(bench, signals, lost);
   stop_scope(bench);
-  // What the recorder says tells more than what a reader makes of the file.
+  // The recorder's error is more informative than an error of the reader.
   if (!status.error.empty()) bench.fail(Complaint::lost_packets, status.error);
   const auto read_back = recording::read(file);
   bench.sitting.lost.recorded_samples += samples - read_back.size();

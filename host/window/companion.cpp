@@ -80,7 +80,7 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (io.WantTextInput) return;
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
-  // A key that is held acts once: what each step changes may move a motor, and a frame can take longer than a finger.
+  // A held key acts once, because a step may move a motor and a frame can last longer than a key press.
   const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(key_index(key), false); };
   if (is_tapped(ImGuiKey_Z)) {
     if (io.KeyShift) {
@@ -116,13 +116,13 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   move_borders(layout, size);
   keyboard_.end_frame(style_);
   judge_motion();
-  carry_out(outcome);  // what it changes shows in the next frame
+  carry_out(outcome);  // the changes become visible in the next frame
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
 }
 
 void Companion::follow_device(double now_s) {
   if (desk_.has_choice()) {
-    column_.cancel();  // while its device is still there to take back what was on trial
+    column_.cancel();  // before the device changes, because trial values have to be restored on the old device
     desk_.follow_choice();
   }
   follow_parameters(desk_.refresh(), now_s);

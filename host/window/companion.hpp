@@ -1,4 +1,4 @@
-// The window's rooms put together: one frame of the companion.
+// The companion's window: one frame from all its parts.
 #pragma once
 
 #include <optional>
@@ -27,15 +27,15 @@ namespace inkwell::window {
 
 class Companion final : public FrameContent {
  public:
-  /// `problem`: why no virtual board could be started when it was asked for; empty if none was.
+  /// `problem`: why a requested virtual board could not be started; empty: no problem.
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
-  /// Escape, F12 and the space bar stop at once; the space bar not while a text is typed.
+  /// Escape, F12 and the space bar stop immediately; the space bar has no effect while the user types text.
   void key(const KeyEvent& event) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
-  /// The user asks for a virtual board, with which the window begins anew.
+  /// True once the user asks for a virtual board; the window then restarts with the virtual board.
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
@@ -44,27 +44,28 @@ class Companion final : public FrameContent {
   nlohmann::json inspect() const override;
   std::optional<double> pose_age_s() const override;
 
-  /// As they stand now, to be remembered.
+  /// Returns the current settings, which are saved.
   WindowSettings settings() const;
 
  private:
   void follow_device(double now_s);
   void follow_parameters(const DeviceView& view, double now_s);
   void take_keyboard_shortcuts(double now_s);
-  /// Alt with the arrows: what a mouse does with the lines between the parts.
+  /// Alt with the arrow keys moves the splitters.
   void move_borders(const WindowLayout& layout, ImVec2 window);
 
-  /// The room that the layout leaves a banner: what somebody holds with the mouse stays where it is.
+  /// Returns the height that the layout reserves for the banner. The height does not change while a mouse button is
+  /// down, so that a dragged item does not move.
   float banner_room(float banner_height);
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
-  /// True if the user asks there for the force.
+  /// Returns true if the user asks for the force.
   bool draw_scene(const WindowLayout& layout, double now_s);
   void draw_returned_values(const WindowLayout& layout, double now_s);
   void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
 
-  /// In the middle of the scene: no device, or an update.
+  /// True if a card about a missing device or an update is shown in the middle of the scene.
   bool has_card() const;
   void draw_card(const WindowLayout& layout);
   void update_firmware();
@@ -72,7 +73,7 @@ class Companion final : public FrameContent {
   void use_theme(Theme theme);
   void stop();
 
-  /// Of the device, or of the recording that is replayed in its place.
+  /// Parameters of the replayed recording if one is open, of the device otherwise.
   ParameterEditor& shown_parameters() { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
   const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
 
@@ -97,11 +98,11 @@ class Companion final : public FrameContent {
 
   std::uint64_t seen_revision_ = 0;
   std::string seen_refusal_;
-  float banner_room_ = 0.0f;                ///< in the frame before
-  Rectangle scene_;                         ///< where it was laid out last
-  std::optional<device::Pose> arrived_;     ///< the device's newest when the frame began
-  std::optional<device::Pose> pose_;        ///< that the frame shows: the device's, or the recording's
-  std::optional<device::Pose> drawn_pose_;  ///< the last one that looked different from the one before
+  float banner_room_ = 0.0f;                ///< value of the previous frame
+  Rectangle scene_;                         ///< position in the last layout
+  std::optional<device::Pose> arrived_;     ///< the device's newest pose at the start of the frame
+  std::optional<device::Pose> pose_;        ///< pose that the frame shows, from the device or from the recording
+  std::optional<device::Pose> drawn_pose_;  ///< last pose that differed visibly from the previous pose
   bool is_moving_ = true;
   bool button_1_ = false;
   bool button_2_ = false;

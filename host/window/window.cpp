@@ -40,7 +40,7 @@ void keep(const WindowSettings& settings) {
   if (const std::string problem = write_settings(settings, file); !problem.empty()) fmt::print(stderr, "{}\n", problem);
 }
 
-/// A sentence about why there is none; empty if there is.
+/// Returns an error message; empty on success.
 std::string start_virtual_board(WindowOptions& options) {
   try {
     options.start_virtual_board(options);
@@ -54,7 +54,7 @@ void run(WindowOptions options) {
   WindowSettings settings = settings_at_start(options);
   end_loop_at_signals();
   Display display({options.width, options.height}, options.scale, "Inkwell");
-  std::optional<Inspection> inspection;  // outlives the loops, so that no question is lost between them
+  std::optional<Inspection> inspection;  // outlives both loops, so that no request is lost between them
   if (options.inspect) inspection.emplace(&Display::wake);
   for (std::string problem;;) {
     ImGuiFrames imgui(display.handle());
@@ -72,8 +72,8 @@ void run(WindowOptions options) {
   if (options.persist_settings) keep(settings);
 }
 
-/// Each frame takes some megabytes and gives them back. Returned to the system every time, they would cost a page
-/// fault for each of their pages, a third of the time in which a frame is prepared.
+/// Each frame allocates and frees some megabytes. If the memory were returned to the system, page faults would take a
+/// third of the preparation time of a frame.
 void keep_memory_between_frames() {
   constexpr int kept_bytes = 64 << 20;
   mallopt(M_TRIM_THRESHOLD, kept_bytes);

@@ -11,8 +11,8 @@ constexpr float splitter_points = 5.0f;
 constexpr float scene_minimum_points = 240.0f;
 constexpr float column_part_maximum = 0.5f;  // of the window's width
 
-/// Of the room under the bars, in screen coordinates. Scene and scope share it in proportion, as long as each can be
-/// used.
+/// Height of the scope within the room below the bars, in screen coordinates. Scene and scope share the room in
+/// proportion, above their minimum heights.
 float scope_height_of(float room, const WindowSettings& settings, float scale) {
   const float minimum = WindowSettings::scope_height_minimum * scale;
   return std::floor(
@@ -49,7 +49,7 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
 }
 
 void drag_column_splitter(float dragged_points, ImVec2 window, float scale, WindowSettings& settings) {
-  if (dragged_points == 0.0f) return;  // a window that is small for a while leaves the column's width as it was
+  if (dragged_points == 0.0f) return;  // a temporarily small window does not change the saved column width
   settings.column_width =
       std::max(WindowSettings::column_width_minimum,
                std::min(settings.column_width - dragged_points, column_part_maximum * window.x / scale));
@@ -57,7 +57,7 @@ void drag_column_splitter(float dragged_points, ImVec2 window, float scale, Wind
 
 void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings) {
   if (dragged_points == 0.0f) return;
-  // From what is shown, so that a part that has no room does not have to be dragged back first.
+  // Starts from the displayed height, so that a drag has an immediate effect even if the height is limited.
   const float shown = scope_height_of(layout.room, settings, scale);
   settings.scope_part = std::clamp((shown - dragged_points * scale) / layout.room, WindowSettings::scope_part_minimum,
                                    WindowSettings::scope_part_maximum);

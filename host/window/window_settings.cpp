@@ -15,7 +15,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float points_maximum = 10'000.0f;  // more than any display has
+constexpr float points_maximum = 10'000.0f;  // larger than any display
 constexpr std::array<std::string_view, 2> theme_names{"dark", "light"};
 constexpr auto plot_kind_names = std::to_array<std::string_view>({"time", "spectrum", "xy"});
 static_assert(plot_kind_names.size() == plot_kind_count);
@@ -57,7 +57,7 @@ toml::array to_toml(const std::vector<Formula>& formulas) {
   return array;
 }
 
-/// Those that can be drawn.
+/// Returns the valid formulas.
 std::vector<Formula> formulas_from(const toml::array* array) {
   std::vector<Formula> formulas;
   if (array == nullptr) return formulas;
@@ -121,7 +121,7 @@ WindowSettings read_settings(const std::filesystem::path& file) {
 }
 
 std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file) {
-  // A new file first, so that a full disk leaves the old one whole.
+  // Writes a new file first, so that a full disk does not damage the old file.
   const std::filesystem::path unfinished = file.string() + ".new";
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);

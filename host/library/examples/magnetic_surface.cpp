@@ -1,6 +1,6 @@
-// A plane at x = 0 that draws the stylus to itself, from 10 mm away on; who pulls hard enough gets free.
+// A plane at x = 0 that attracts the stylus within 10 mm. A stronger pull releases it.
 //
-//   magnetic_surface [ADDRESS]     of the arm, as inkwell_open() takes it
+//   magnetic_surface [ADDRESS]     address of the arm for inkwell_open()
 #include <cmath>
 #include <cstdio>
 
@@ -8,7 +8,7 @@
 
 constexpr double stiffness_N_per_m = 200, reach_m = 0.010;
 
-/// Grows as a spring's up to half of the reach, then falls to nothing, so that it never jumps.
+/// Increases like a spring up to half of the reach, then decreases to zero, so that the force never jumps.
 double attraction_N(double distance_m) {
   return stiffness_N_per_m * std::fmax(0.0, std::fmin(distance_m, reach_m - distance_m));
 }

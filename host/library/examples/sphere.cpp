@@ -1,7 +1,7 @@
-// A sphere in the middle of the box. The board renders it at its full rate; this program only places it anew before
-// its life is over, so that it goes when the program goes.
+// A sphere in the middle of the box. The board renders the sphere at its full rate. This program only renews it before
+// its life ends, so that the sphere disappears after the program exits.
 //
-//   sphere [ADDRESS]     of the arm, as inkwell_open() takes it
+//   sphere [ADDRESS]     address of the arm for inkwell_open()
 #include <chrono>
 #include <cstdio>
 #include <future>

@@ -1,6 +1,6 @@
-// A spring between the hands of two arms: what one does, the other feels.
+// A spring between two arms: each hand feels the motion of the other.
 //
-//   two_arms ADDRESS ADDRESS     of the arms, as inkwell_open() takes them
+//   two_arms ADDRESS ADDRESS     addresses of the arms for inkwell_open()
 #include <cstdio>
 
 #include <inkwell/inkwell.hpp>

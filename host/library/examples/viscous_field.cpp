@@ -1,6 +1,6 @@
-// The stylus moves as if through honey: the force is against the velocity and in proportion to it.
+// A viscous field: the force is opposite to the velocity and proportional to it.
 //
-//   viscous_field [ADDRESS]     of the arm, as inkwell_open() takes it
+//   viscous_field [ADDRESS]     address of the arm for inkwell_open()
 #include <cstdio>
 
 #include <inkwell/inkwell.hpp>

@@ -20,7 +20,7 @@ float banner_text_width(float width, const Style& style, const Banner& banner) {
                                                                         : banner_margin_points));
 }
 
-/// Both can talk to each other; an update may wait.
+/// A device with a different firmware version that speaks the same protocol version. The update is optional.
 std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpdater::Sight& firmware) {
   const std::string& version = view.status.information->firmware_version;
   if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||

@@ -35,7 +35,7 @@ bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer
   return asks;
 }
 
-/// The number of the one that was chosen.
+/// Returns the serial number that the user chose.
 std::optional<std::string> draw_choice(const Style& style, const DeviceView& view) {
   std::optional<std::string> chosen;
   for (const device::Endpoint& endpoint : view.listed) {
@@ -64,7 +64,7 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     outcome.firmware = draw_firmware_part(style, firmware);
   } else {
     text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
-    // Why nobody could be looked for tells more than that nobody was found.
+    // An error of the search is more useful than the message that no device was found.
     const std::string& message = view.list_error.empty() ? view.status.message : view.list_error;
     wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
     if (view.status.connection == Connection::incompatible)

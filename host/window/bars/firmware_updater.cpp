@@ -27,7 +27,7 @@ void FirmwareUpdater::meet(const std::string& board_name) {
   if (board_name.empty() || board_name == met_ || sight_.phase == Phase::runs) return;
   met_ = board_name;
   is_offer_read_ = false;
-  sight_.board.clear();  // nothing is offered before it is the right one
+  sight_.board.clear();  // no image is offered until the right one is known
   sight_.brings.clear();
   sight_.version.clear();
   changed_.notify_one();
@@ -96,7 +96,7 @@ void FirmwareUpdater::read_offer() {
       offer.brings = firmware_update::describe(*identity);
       offer.version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
     }
-  } catch (const device::Error&) {  // then nothing is offered
+  } catch (const device::Error&) {  // no image is offered
   }
   const std::scoped_lock lock(mutex_);
   sight_.board = board;
@@ -108,7 +108,7 @@ void FirmwareUpdater::look() {
   bool is_there = false;
   try {
     is_there = !device::find_boot_loaders(address_).empty();
-  } catch (const device::Error&) {  // the session says what is wrong
+  } catch (const device::Error&) {  // the session reports the error
   }
   const std::scoped_lock lock(mutex_);
   sight_.sees_boot_loader = is_there && looks_;

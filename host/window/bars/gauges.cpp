@@ -21,7 +21,7 @@ Colour colour_of(const device::Pose& pose, const Palette& palette) {
   }
 }
 
-/// While a program takes part, it stands where the state does: the hand should know whose force it feels.
+/// Shows the force source in place of the state while a program or shapes act on the hand.
 std::string state_text(const device::Pose& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);

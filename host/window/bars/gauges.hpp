@@ -1,4 +1,4 @@
-// The numbers of the status bar, each with its caption above.
+// The values of the status bar, each with its caption above it.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ struct Gauge {
   std::string value;
   Colour colour;
   std::string help;
-  bool warns = false;  ///< told by a sign as well as by the colour
+  bool warns = false;  ///< shown by a symbol and by the color
 };
 
-/// State, servo load, supply, motor heat, rate of poses, what was lost.
+/// State, control load, supply, motor heat, pose rate and losses.
 std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette);
 
 void draw_gauge(const Gauge& gauge, ImVec2 corner, ImVec2 size, const Style& style);

@@ -15,7 +15,7 @@ namespace {
 
 struct Row {
   std::string_view what_one_does;
-  std::string_view what_happens;  ///< empty: what stands before is a heading
+  std::string_view what_happens;  ///< empty: the row is a heading
 };
 
 constexpr auto left_rows = std::to_array<Row>({
@@ -60,7 +60,7 @@ constexpr float keys_points = 172.0f;
 constexpr float column_points = 400.0f;
 constexpr float gap_points = 24.0f;
 
-// The cursor is where it begins; where it ends is the end of the group.
+// Draws one group of rows from the cursor position, and leaves the cursor below the group.
 void draw_rows(std::span<const Row> rows, const Style& style) {
   const Palette& palette = *style.palette;
   const float left = ImGui::GetCursorPosX();
@@ -94,7 +94,7 @@ void KeyHelp::draw(const Style& style) {
   if (std::exchange(is_to_be_opened_, false) && !is_dialog_open()) ImGui::OpenPopup(title);
   const ImGuiViewport& viewport = *ImGui::GetMainViewport();
   const ImVec2 middle = viewport.GetCenter();
-  ImGui::SetNextWindowSizeConstraints({0, 0}, viewport.Size);  // what has no room is scrolled to
+  ImGui::SetNextWindowSizeConstraints({0, 0}, viewport.Size);  // a page that is too tall scrolls
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(20), style.points(16)});
   if (ImGui::BeginPopupModal(title, nullptr,

@@ -43,7 +43,7 @@ void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& m
   over_.emplace(std::move(over), replay_->recording(), mark);
   name_ = std::move(name);
   aligned_at_ = mark;
-  replay_->seek(replay_->position_s());  // so that the scope is filled with both
+  replay_->seek(replay_->position_s());  // fills the scope with both recordings
 }
 
 void ReplayBar::align_at(const std::string& mark) {
@@ -124,7 +124,7 @@ void ReplayBar::draw_controls(const Style& style) {
     help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
 }
 
-/// The recording that is laid over: which, where it is aligned, and how it gets there and goes.
+/// Draws the controls of the overlaid recording: name, alignment, open and close.
 void ReplayBar::draw_over(const Style& style) {
   if (!over_) {
     if (button("Lay over", {style.points(74), 0}))
@@ -170,7 +170,7 @@ void ReplayBar::draw_over(const Style& style) {
     }
 }
 
-/// The whole recording as a line with its marks; a click or drag goes there.
+/// Draws the whole recording as a line with its marks. A click or a drag changes the position.
 void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   const Palette& palette = *style.palette;
   const auto& recording = replay_->recording();

@@ -17,8 +17,8 @@ namespace {
 constexpr float card_points = 340.0f;
 constexpr float card_margin_points = 12.0f;
 constexpr float padding_points = 14.0f;
-constexpr float top_points = 48.0f;  // below the scene's buttons
-/// The half row tells that there are more. Where the scene is low there are fewer, but never less than one and a half.
+constexpr float top_points = 48.0f;  // below the buttons of the scene
+/// The half row shows that the list scrolls. A low scene reduces the number of rows to the minimum.
 constexpr float rows_maximum = 5.5f, rows_minimum = 1.5f;
 constexpr float around_rows_points = 150.0f;
 
@@ -46,7 +46,6 @@ void draw_rows(const ReturnedValues& values, float room, const Style& style) {
   ImGui::EndChild();
 }
 
-/// `room`: height that its rows may take.
 ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_is_on, const Style& style) {
   const Palette& palette = *style.palette;
   const std::size_t count = values.rows().size();

@@ -13,7 +13,7 @@ std::optional<device::Endpoint> ArmChoice::pick(const std::vector<device::Endpoi
     return match == found.end() ? std::nullopt : std::optional(*match);
   };
   if (!wanted_.empty()) return named(wanted_);
-  // Arms of a server tell their numbers only when they are opened.
+  // Arms on a server report their serial numbers only after they have been opened.
   const bool have_numbers = std::ranges::none_of(found, &std::string::empty, &device::Endpoint::serial_number);
   if (!have_numbers) return found.front();
   saw_several_ |= found.size() > 1;

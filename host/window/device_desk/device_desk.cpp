@@ -8,7 +8,7 @@
 namespace inkwell::window {
 
 namespace {
-constexpr std::size_t scope_frames_maximum = 20'000;  // some ten seconds in which the window drew nothing
+constexpr std::size_t scope_frames_maximum = 20'000;  // about ten seconds without a drawn frame
 }
 
 DeviceDesk::DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number)
@@ -61,7 +61,7 @@ void DeviceDesk::open_session() {
 }
 
 const DeviceView& DeviceDesk::refresh() {
-  view_.reconnection = session_->reconnection();  // first: what is read after it is at least as new
+  view_.reconnection = session_->reconnection();  // read first, so that all later reads are at least as new
   events_.add(session_->take_events());
   view_.status = session_->status();
   view_.pose = view_.connected() ? session_->newest_pose() : std::nullopt;
@@ -85,7 +85,7 @@ void DeviceDesk::follow_choice() {
   events_.add(session_->take_events());
   if (view_.connected())
     events_.add(device::event_now(device::EventKind::connection, "The device was left for another one.", std::nullopt));
-  session_.reset();  // the old one lets go of the device before the new one asks for it
+  session_.reset();  // the old session releases the device before the new session opens it
   view_ = DeviceView{};
   {
     const std::scoped_lock lock(mutex_);

@@ -15,7 +15,7 @@ namespace inkwell::window {
 
 namespace {
 
-/// Of the main display: 2 for one of 192 dots per inch.
+/// Scale of the main display: 2 for 192 dots per inch.
 float monitor_scale() {
   if (!has_pixel_units()) return 1.0f;
   float x = 1.0f;
@@ -24,7 +24,7 @@ float monitor_scale() {
   return std::clamp(std::max(x, y), 1.0f, 4.0f);
 }
 
-/// What the desktop leaves of the main display; none if it does not tell.
+/// Usable area of the main display; none if the desktop does not report it.
 std::optional<ScreenSize> monitor_room() {
   int x = 0, y = 0;
   ScreenSize room{0, 0};
@@ -74,7 +74,7 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
     display->had_input_ = true;
     if (display->on_key_) display->on_key_({key, scancode, action, modifiers});
   });
-  // ImGui's back end calls these before its own.
+  // ImGui's back end chains these callbacks and calls them first.
   static constexpr auto note_input = [](GLFWwindow* window) {
     static_cast<Display*>(glfwGetWindowUserPointer(window))->had_input_ = true;
   };
@@ -103,7 +103,7 @@ double Display::refresh_rate_Hz() const {
 }
 
 bool Display::draws_in_software() const {
-  // Mesa's rasterisers (GL_RENDERER of llvmpipe and softpipe).
+  // Mesa's software renderers (GL_RENDERER of llvmpipe and softpipe).
   const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
 }
@@ -137,7 +137,7 @@ void write_screenshot(const std::filesystem::path& path, int width, int height) 
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGB;
-  // OpenGL's first row is the lowest one; a negative stride turns the picture over.
+  // OpenGL's first row is the lowest one; a negative stride flips the picture.
   if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
     throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
 }

@@ -42,7 +42,7 @@ FolderListing list_folder(const fs::path& folder, std::span<const std::string> e
   fs::directory_iterator entry(folder, error);
   if (error) return {{}, folder_problem(folder, error)};
   for (; entry != fs::directory_iterator(); entry.increment(error)) {
-    // What vanishes or is refused between listing and asking is left out.
+    // Entries that disappear or deny access meanwhile are omitted.
     std::error_code of_entry;
     const std::string name = entry->path().filename().string();
     const bool is_folder = entry->is_directory(of_entry);

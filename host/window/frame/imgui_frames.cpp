@@ -23,7 +23,7 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
   const std::span corners(list.VtxBuffer.Data + command.VtxOffset + first, static_cast<std::size_t>(last - first) + 1);
   PictureDigest digest;
   digest.add_bytes(corners.data(), corners.size_bytes());
-  // Counted from its first corner: what is drawn before it may have more or fewer of them.
+  // Relative to the first corner, because the number of corners drawn earlier may change.
   std::uint64_t order = 0;
   for (const ImDrawIdx index : indices) order = order * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(index - first);
   digest.add(order);
@@ -39,7 +39,7 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
 
 ImGuiFrames::Context::Context() {
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // the layout is ours, and so is the file of settings
+  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed, and the program has a separate settings file
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
 }
 
@@ -70,7 +70,7 @@ std::vector<DrawnPane> ImGuiFrames::panes() const {
 }
 
 void ImGuiFrames::draw(const Box& box) const {
-  // The back end draws what lies in a command's rectangle; those that have nothing in the box are not even uploaded.
+  // The back end draws the content of a command's rectangle. Commands without content in the box are not uploaded.
   const ImDrawData& data = *ImGui::GetDrawData();
   std::vector<ImDrawList*> lists;
   std::vector<ImVec4> rectangles;

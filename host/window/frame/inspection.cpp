@@ -28,9 +28,9 @@ struct Notes {
   ImVec2 origin{0, 0};
 };
 
-Notes* notes = nullptr;  // of the frame that is being drawn, if somebody asked
+Notes* notes = nullptr;  // for the current frame; null without a request
 
-// What ImGui shows of a label, or what makes it unique if it shows nothing.
+// The visible part of an ImGui label, or its identifier if nothing is visible.
 std::string_view name_in(std::string_view label) {
   return label.starts_with("##") ? label.substr(2) : label.substr(0, label.find("##"));
 }
@@ -89,9 +89,9 @@ struct Inspection::Implementation {
 
   std::mutex mutex;
   std::vector<std::string> asked;
-  std::vector<std::string> due;  ///< to be answered at the end of the frame
+  std::vector<std::string> due;  ///< requests to answer at the end of the frame
   Notes noted;
-  std::jthread reader;  ///< last: it uses all of the above
+  std::jthread reader;  ///< last: the thread uses all other members
 };
 
 Inspection::Inspection(void (*wake)()) : implementation_(std::make_unique<Implementation>(wake)) {}

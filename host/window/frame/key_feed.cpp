@@ -22,7 +22,7 @@ bool can_cancel() {
 
 #if INKWELL_IMGUI_HAS_KEY_EVENTS
 
-// The back end queues key events, so that short keystrokes last for a frame, and follows the keyboard layout.
+// This back end queues key events, so that short keystrokes last one frame, and follows the keyboard layout.
 void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
 void apply_keys(KeyTaps&) {}
@@ -39,13 +39,13 @@ void follow_keyboard_layout(ImGuiIO& io) {
 }
 
 void set_up_keys() {
-  // This version activates a control by Space alone.
+  // This ImGui version activates controls only by Space.
   ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
 }
 
 void note_tap(KeyTaps& taps, int key) {
   taps.note(key);
-  // With the modifiers held at that moment, which may be released as well before the next frame.
+  // The current modifiers are recorded as well, because they may be released before the next frame.
   const bool* down = ImGui::GetIO().KeysDown;
   for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
                              GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
@@ -66,7 +66,7 @@ void apply_keys(KeyTaps& taps) {
 }  // namespace
 
 KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
-  // Without this the back end would chain itself before the window's callback and see every key.
+  // Otherwise the back end would install its callback in front of the window's callback and receive every key.
   const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   glfwSetKeyCallback(window_, callback);

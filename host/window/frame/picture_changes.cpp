@@ -26,7 +26,7 @@ std::vector<Box> without_overlap(std::vector<Box> boxes) {
     if (overlapping == boxes.end()) continue;
     boxes[i] = enclosing(boxes[i], *overlapping);
     boxes.erase(overlapping);
-    i = static_cast<std::size_t>(-1);  // what has grown may now overlap those before it
+    i = static_cast<std::size_t>(-1);  // the enlarged box may overlap boxes before it
   }
   return boxes;
 }
@@ -56,7 +56,7 @@ std::vector<Box> changes_between(const DrawnPicture& before, const DrawnPicture&
   for (std::size_t i = 0; i < now.panes.size(); ++i) {
     const Box change = change_of(before.panes[i], now.panes[i]);
     if (change.is_empty()) continue;
-    // A pixel more for the edges of triangles.
+    // One extra pixel for antialiased edges of triangles.
     const Box whole_pixels{std::floor(change.left) - 1, std::floor(change.top) - 1, std::ceil(change.right) + 1,
                            std::ceil(change.bottom) + 1};
     boxes.push_back(common(whole_pixels, now.window));

@@ -8,7 +8,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr std::uint8_t opaque = 255;  // what a buffer without alpha reads as
+constexpr std::uint8_t opaque = 255;  // the value that a buffer without alpha returns
 
 }  // namespace
 

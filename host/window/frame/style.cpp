@@ -33,7 +33,7 @@ ImFont* add_font(const char* file, float pixels) {
   return ImGui::GetIO().Fonts->AddFontFromFileTTF(file, pixels, &configuration, glyph_ranges);
 }
 
-// Digits of one width, so that a number that changes does not make its neighbours tremble.
+// Gives all digits the same width, so that a changing number does not move its neighbors.
 void make_digits_tabular(ImFont* font) {
   float widest = 0.0f;
   for (ImWchar digit = '0'; digit <= '9'; ++digit)

@@ -16,7 +16,7 @@ constexpr float handle_points = 15.0f;
 constexpr float fast = 10.0f;
 constexpr float fine = 0.1f;
 
-// Six dots, as on anything that can be taken and moved.
+// Draws six dots, the usual symbol of a drag handle.
 void draw_grip(ImVec2 corner, ImVec2 size, Colour colour, const Style& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 centre{corner.x + 0.5f * size.x, corner.y + 0.5f * size.y};
@@ -43,7 +43,7 @@ void draw_ground(ImVec2 corner, ImVec2 end, float part, bool is_typed_in, const 
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  // Low, so that it does not cross the number.
+  // At the bottom, so that the line does not cross the number.
   list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
 }
 
@@ -88,7 +88,8 @@ ValueEdit ValueFields::draw(const char* id, const std::string& name, float value
   ValueEdit edit;
   const ImVec2 handle{style.points(handle_points), height};
   ImGui::PushID(id);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoNav | ImGuiItemFlags_NoNavDefaultFocus, true);  // the keyboard types the number
+  ImGui::PushItemFlag(ImGuiItemFlags_NoNav | ImGuiItemFlags_NoNavDefaultFocus, true);  // the keyboard focus goes to the
+                                                                                       // number instead
   ImGui::InvisibleButton("handle", handle);
   ImGui::PopItemFlag();
   ImGui::PopID();

@@ -34,11 +34,12 @@ bool prefers_wayland() {
 #if GLFW_VERSION_MAJOR > 3 || (GLFW_VERSION_MAJOR == 3 && GLFW_VERSION_MINOR >= 4)
 
 bool start_window_system() {
-  // X11 first, also inside a Wayland desktop: there GLFW has neither an icon nor, without a plugin, a title bar.
+  // X11 has priority also in a Wayland session: on Wayland GLFW has no icon and, without a plugin, no title bar.
   std::array order{GLFW_PLATFORM_X11, GLFW_PLATFORM_WAYLAND};
   if (prefers_wayland()) std::swap(order[0], order[1]);
   for (const int platform : order) {
-    // Without the variable the Wayland library would connect to a desktop that this program was not started from.
+    // Without the variable, the Wayland library would connect to a default session, which may belong to another
+    // desktop.
     if (platform == GLFW_PLATFORM_WAYLAND && variable("WAYLAND_DISPLAY").empty()) continue;
     if (glfwPlatformSupported(platform) != GLFW_TRUE) continue;
     glfwInitHint(GLFW_PLATFORM, platform);
@@ -58,7 +59,7 @@ bool has_pixel_units() { return glfwGetPlatform() != GLFW_PLATFORM_WAYLAND; }
 #else
 
 bool start_window_system() {
-  prefers_wayland();  // reports a wrong value here, too
+  prefers_wayland();  // also reports an invalid value
   return glfwInit() == GLFW_TRUE;
 }
 

@@ -12,14 +12,14 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto asked_every = 200ms;
-constexpr auto answer_limit = 2s;  // of a board that a debugger has stopped; closing the window waits as long
+constexpr auto answer_limit = 2s;  // for a board that a debugger has stopped; closing the window waits equally long
 
 }  // namespace
 
 BoardFaults::BoardFaults(device::SocketAddress control)
     : control_(std::move(control)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-BoardFaults::~BoardFaults() = default;  // std::jthread asks its thread to stop and waits
+BoardFaults::~BoardFaults() = default;  // std::jthread requests its thread to stop and joins it
 
 void BoardFaults::inject(const protocol::InjectionRequest& request) {
   ask([this, request](device::ControlClient& board) { tell(board.inject(request)); });

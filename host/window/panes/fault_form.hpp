@@ -1,4 +1,4 @@
-// The fields of one fault: its place, amount and times, and the button that puts it in.
+// The input fields of one fault (location, amount, times) and the button that injects it.
 #pragma once
 
 #include <span>
@@ -16,20 +16,20 @@ class FaultForm {
   FaultForm(protocol::InjectedFault fault, std::string of) : typed_{fault, std::move(of), {}, {}, {}} {}
 
   const TypedFault& typed() const { return typed_; }
-  /// The first field gets the keyboard when it is drawn next.
+  /// Sets the keyboard focus to the first field when it is drawn next.
   void take_keyboard() { takes_keyboard_ = true; }
-  /// True if the user wants it to be put in now.
+  /// Returns true if the user wants the fault to be injected now.
   bool draw(const Style& style);
 
  private:
   struct Field {
     const char* label;
-    const char* name;  ///< for inspections
+    const char* name;  ///< name in inspections
     std::string hint;
-    float beside;  ///< room that it leaves at its right
+    float beside;  ///< free width to the right of the field
   };
 
-  // True if Enter ended one of them.
+  // Each returns true if Enter was pressed in one of the fields.
   bool draw_place(const Style& style);
   bool draw_field(const Field& field, std::string& typed, const Style& style);
   bool draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,

@@ -11,14 +11,14 @@ namespace {
 
 using Phase = LoggedFault::Phase;
 
-/// A fault that was told by an earlier run of the firmware lies ahead of all answers of this one.
+/// A fault from an earlier firmware run has a period count that the answers do not reach. After this number of answers,
+/// such a fault is recorded without a time.
 constexpr int patience_answers = 8;
 
-/// One that may keep the core from its control interrupt, so that the firmware counts too few of them until it starts
-/// anew.
+/// True for a fault that may stop the control interrupt. The firmware then counts too few periods until it restarts.
 bool stops_the_count(const device::PutInFault& put_in) {
   const auto fault = protocol::find_injection(put_in.fault);
-  if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts go on
+  if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts continue
   return !fault || protocol::info(*fault).part == protocol::InjectionPart::core;
 }
 
@@ -48,7 +48,7 @@ void FaultLog::end_those_gone(const device::Injections& now) {
   for (LoggedFault& each : faults_)
     if (std::ranges::find(now.faults, each.put_in.number, &device::PutInFault::number) == now.faults.end())
       each.phase = Phase::over;
-  // Healed before it came.
+  // Removes faults that were healed before their start time.
   std::erase_if(faults_, [&](const LoggedFault& each) {
     return each.phase == Phase::over && each.put_in.at_s > now.board_time_s;
   });
@@ -71,7 +71,8 @@ bool FaultLog::Pending::was_in(unsigned number) const { return std::ranges::find
 double FaultLog::period_s(const device::Injections& now) const {
   constexpr double nominal_s = 1.0 / protocol::servo_rate_Hz, drift_maximum = 0.02;
   if (!newest_ || newest_->period >= now.period) return nominal_s;
-  // As long as they were, because a crystal can be made to drift; unless the board was reset in between.
+  // Uses the measured period, because an injected fault can change the crystal frequency. After a board reset the
+  // nominal period is used.
   const double measured_s =
       (now.period_at_s - newest_->period_at_s) / static_cast<double>(now.period - newest_->period);
   return std::abs(measured_s / nominal_s - 1.0) < drift_maximum ? measured_s : nominal_s;
@@ -79,7 +80,7 @@ double FaultLog::period_s(const device::Injections& now) const {
 
 void FaultLog::place_pending(const device::Injections& now) {
   if (!pending_) return;
-  // The board counts all periods since its reset, and the fault perhaps those since the counter last wrapped.
+  // The board counts all periods since its reset in 64 bits. The fault's count may have wrapped at 32 bits.
   const auto at_periods = static_cast<std::uint32_t>(pending_->fault.at_periods);
   const auto periods_ago = static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - at_periods);
   const double length_s = period_s(now);

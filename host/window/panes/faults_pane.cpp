@@ -1,4 +1,4 @@
-// The pane that puts faults into a virtual board, and shows what its firmware noticed of them. Simulation only.
+// The pane that injects faults into a virtual board and shows the faults that its firmware detects. Simulation only.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -30,9 +30,10 @@ using FaultPhase = LoggedFault::Phase;
 
 constexpr const char* heading = "Fault injection";
 constexpr float log_part_maximum = 0.42f;  // of the pane's height
-constexpr float low_points = 440.0f;       // of a pane that has no room for parts that scroll by themselves
+constexpr float low_points = 440.0f;       // height below which the pane scrolls as a whole instead of each part
+                                           // separately
 
-// A frame around small letters, as on a label.
+// Draws a word in small letters inside a frame.
 void draw_badge(std::string_view word, const Style& style) {
   ImGui::PushFont(style.fonts.caption);
   const ImVec2 size = ImGui::CalcTextSize(word.data(), word.data() + word.size());
@@ -80,7 +81,7 @@ class FaultsPane final : public Pane {
   void draw_noticed(const LoggedFault& fault, const Style& style);
   void draw_search(const Style& style);
   void draw_table(const Style& style);
-  /// Whether the rows under it are to be seen.
+  /// Returns true if the rows below the title are visible.
   bool draw_title(protocol::InjectionPart part, const Style& style);
   void draw_row(InjectedFault fault, const Style& style);
   void choose(InjectedFault fault);
@@ -97,7 +98,7 @@ class FaultsPane final : public Pane {
   std::optional<FaultForm> chosen_;
   bool search_takes_keyboard_ = false, chosen_is_to_be_seen_ = false;
   bool is_low_ = false;
-  float log_height_ = 0.0f;  ///< of all of it, when it was drawn last
+  float log_height_ = 0.0f;  ///< total height in the last frame
 };
 
 void FaultsPane::take(const BoardFaults::News& news) {
@@ -146,7 +147,7 @@ void FaultsPane::draw(const PaneFrame& frame) {
   ImGui::BeginDisabled(!gone_.empty());
   is_low_ = ImGui::GetContentRegionAvail().y < style.points(low_points);
   if (is_low_) {
-    ImGui::Separator();  // what is scrolled goes under it
+    ImGui::Separator();  // scrolled rows disappear below this line
     ImGui::BeginChild("all", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   }
   draw_log(style);

@@ -1,5 +1,4 @@
-// The pane that leads through a guide: what will happen, the numbers as they are measured, the step response, and the
-// buttons Confirm, Cancel and Apply.
+// The pane that runs a guide: the next step, measured values, step response, and the buttons Confirm, Cancel and Apply.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -41,15 +40,15 @@ class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
       : desk_(around.desk), control_(around.control), simulated_arm_(around.simulated_arm) {}
-  /// Closing the window in the middle of a guide leaves neither force nor parameters on trial on the device.
+  /// Cancels a running guide, so that neither force nor trial parameters remain on the device.
   ~GuidesPane() override { GuidesPane::cancel(); }
 
   std::string_view title() const override { return "Guides"; }
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
-  /// Ends a guide that runs, motors off.
+  /// Stops a running guide and switches the motors off.
   void cancel() override;
-  /// The scope belongs to the guide while it wants signals.
+  /// The guide has exclusive use of the scope stream while it needs signals.
   PaneStream stream() const override { return {signals_, false}; }
   bool is_moving() const override { return is_running(); }
 
@@ -62,7 +61,7 @@ class GuidesPane final : public Pane {
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
   void draw_what_lasts(const Style& style) const;
-  /// A line for each, the reasons under the mouse.
+  /// Draws one line per proposal. The reason of a proposal is shown while the mouse hovers over the line.
   void draw_proposals(const Style& style);
   void draw_curves(const Style& style);
   void draw_buttons(const Style& style);
@@ -76,7 +75,7 @@ class GuidesPane final : public Pane {
   ValueFields fields_;
   float bandwidth_Hz_ = static_cast<float>(guides::bandwidth_default_Hz);
   std::optional<guides::Guide> guide_;
-  guides::Applied shown_applied_{};  ///< in the frame before
+  guides::Applied shown_applied_{};  ///< in the previous frame
   std::optional<guides::SimulatedUser> user_;
   std::string user_problem_;
   std::vector<protocol::Signal> signals_;
@@ -135,7 +134,7 @@ void GuidesPane::draw(const PaneFrame& frame) {
     const float room = ImGui::GetFrameHeightWithSpacing() + style.points(6);
     if (ImGui::BeginChild("guide", {0, -room}, false, ImGuiWindowFlags_NavFlattened)) {
       if (const auto applied = guide_->applied(); std::exchange(shown_applied_, applied) != applied)
-        ImGui::SetScrollY(0.0f);  // what became of it stands on top
+        ImGui::SetScrollY(0.0f);  // the result is shown at the top
       scroll_by_page_keys();
       if (guide_->is_over()) {
         draw_result(style);
@@ -217,7 +216,7 @@ void GuidesPane::draw_checks(const Style& style) {
     right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
                0.42f * width);
     if (check.expected.empty()) continue;
-    // Told in words as well, not by colour alone.
+    // The result is shown in words in addition to the color.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
          fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
   }
@@ -230,7 +229,7 @@ void GuidesPane::draw_result(const Style& style) {
                applied ? "Finished, and the device holds the proposals." : guide_->outcome());
   if (applied) draw_what_lasts(style);
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
-  // What is to be decided first, then the picture of it; how it was found comes last.
+  // Order: decisions first, then the curves, then the log of the measurement.
   if (guide_->phase() == Phase::finished && !guide_->findings().proposals.empty()) draw_proposals(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});
@@ -263,7 +262,7 @@ void GuidesPane::draw_proposals(const Style& style) {
   ImGui::PopStyleVar();
 }
 
-/// Of what was applied.
+/// Shows whether the applied parameters are stored.
 void GuidesPane::draw_what_lasts(const Style& style) const {
   const Palette& palette = *style.palette;
   const DeviceView& view = desk_.view();

@@ -1,5 +1,5 @@
-// The pane with what has happened to the device since the window was opened, or in the recording that is replayed: the
-// newest on top, with the clock and the board's time.
+// The pane that lists the events of the device since the window was opened, or of the replayed recording. The newest
+// event is at the top, with UTC time and board time.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -26,15 +26,15 @@ using device::EventKind;
 constexpr std::array<const char*, device::event_kind_count + 1> shown_kinds{
     "Everything", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
 
-/// One row, from the log of the desk or from a recording.
+/// One row, from the log of the device or of a recording.
 struct LogRow {
   EventKind kind;
   const std::string& text;
   const std::string& clock_utc;
-  std::optional<double> board_s;  ///< none: the device was not there
+  std::optional<double> board_s;  ///< empty: no device was connected
 };
 
-/// "22:15:34.123" of "2026-11-23T22:15:34.123Z"; empty for what does not look like it.
+/// Extracts "22:15:34.123" from "2026-11-23T22:15:34.123Z"; empty for any other format.
 std::string_view time_of_day(std::string_view clock_utc) {
   constexpr std::size_t date_length = 11, time_length = 12;
   return clock_utc.size() < date_length + time_length ? std::string_view{} : clock_utc.substr(date_length, time_length);
@@ -59,10 +59,10 @@ class LogPane final : public Pane {
   DeviceDesk& desk_;
   std::function<const recording::Recording*()> replayed_;
   std::function<void(double)> seek_;
-  int shown_ = 0;  ///< of shown_kinds
+  int shown_ = 0;  ///< index into shown_kinds
   FileChooser chooser_;
-  std::string saved_;    ///< a sentence
-  std::string problem_;  ///< likewise
+  std::string saved_;  ///< message about the saved file
+  std::string problem_;
 };
 
 Colour colour_of(EventKind kind, const Palette& palette) {
@@ -101,7 +101,7 @@ void LogPane::draw_rows(const Style& style) {
     draw_row(row, style);
   };
   if (const recording::Recording* recording = replayed_()) {
-    for (const recording::Mark& mark : recording->marks)  // in the order of time, as it is played
+    for (const recording::Mark& mark : recording->marks)  // in order of time, as in the replay
       draw({mark.kind, mark.text, mark.clock_utc, recording->elapsed_s_at(mark.period)});
   } else {
     const device::EventLog& events = desk_.events();

@@ -20,14 +20,14 @@ namespace {
 
 constexpr float tabs_points = 40.0f;
 
-// "Tuning" -> "tuning"
+// Converts "Tuning" to "tuning".
 std::string name_of(const Pane& pane) {
   std::string name{pane.title()};
   std::ranges::transform(name, name.begin(), [](unsigned char letter) { return std::tolower(letter); });
   return name;
 }
 
-constexpr float dot_points = 12.0f;  // beside what a pane has running
+constexpr float dot_points = 12.0f;  // width of the dot next to the state text
 
 float title_width(const Pane& pane, const Style& style) {
   const std::string_view title = pane.title();
@@ -37,7 +37,7 @@ float title_width(const Pane& pane, const Style& style) {
                          : std::max(title_taken, style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x);
 }
 
-// In the title's place, so that it is seen whichever pane is shown.
+// Replaces the title, so that the state is visible whichever pane is shown.
 void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is_shown, const Style& style) {
   const Palette& palette = *style.palette;
   const float width = style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x;
@@ -63,7 +63,7 @@ bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) 
   return pressed;
 }
 
-/// In the corner of the tab that was drawn last.
+/// Draws the mark into the corner of the last drawn tab.
 void mark_values_to_store(const Style& style) {
   const ImVec2 corner{ImGui::GetItemRectMax().x, ImGui::GetItemRectMin().y};
   not_stored_mark({corner.x - style.points(7), corner.y + style.points(7)}, style);
@@ -107,8 +107,7 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
   begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  // Each as wide as its title, and the room that is left over for all alike: a further pane leaves the long ones
-  // legible.
+  // Each tab is as wide as its title plus an equal share of the spare width, so that long titles remain legible.
   const auto count = static_cast<float>(panes_.size());
   float spare = ImGui::GetContentRegionAvail().x - (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
   for (const auto& pane : panes_) spare -= title_width(*pane, style);

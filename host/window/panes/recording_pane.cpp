@@ -1,5 +1,5 @@
-// The pane that records: what, where to, start, stop and marks, with progress, size, free space and errors; and that
-// opens a recording to be replayed.
+// The pane that records: signals, file, start, stop and marks, with progress, size, free space and errors. The pane
+// also opens a recording for replay.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -41,7 +41,7 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
   right_text(colour, value, 0.55f * width);
 }
 
-/// How long a recording can go on until its disk is full, in words; empty while that cannot be told.
+/// Time until the disk is full, in words; empty while it is not known.
 std::string time_left(const RecorderStatus& status) {
   if (status.duration_s < 1 || status.bytes == 0) return {};
   const double left_s =
@@ -51,7 +51,7 @@ std::string time_left(const RecorderStatus& status) {
   return left_s < 48 * 3600.0 ? fmt::format("room for {:.0f} h", left_s / 3600) : "room for days";
 }
 
-// Red means STOP in this window, so the button is not red, and only its dot says what it does.
+// Red is reserved for STOP in this window, so only the dot of the button is red.
 bool record_button(const Style& style) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float height = style.points(34);
@@ -62,7 +62,7 @@ bool record_button(const Style& style) {
   return pressed;
 }
 
-/// "2:05"
+/// Formats a duration as "2:05".
 std::string clock_text(double seconds) {
   const auto whole = static_cast<int>(seconds);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
@@ -74,10 +74,10 @@ class RecordingPane final : public Pane {
       : desk_(around.desk), replay_(around.replay), starts_with_replay_(around.starts_with_replay) {}
 
   std::string_view title() const override { return "Recording"; }
-  /// Ends the recording when the device goes away, and notes in it what happens to the device.
+  /// Stops the recording when the device is disconnected, and writes the device's events to the recording.
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
-  /// What the scope shows goes on being streamed, and is recorded with the rest.
+  /// The scope's signals remain in the stream and are recorded with the other signals.
   PaneStream stream() const override { return recorder_ ? PaneStream{signals_, true} : PaneStream{}; }
   std::string running() const override {
     return recorder_ ? clock_text(recorder_->status().duration_s) : std::string();
@@ -96,19 +96,19 @@ class RecordingPane final : public Pane {
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
   bool force_is_on() const { return protocol::force_is_on(desk_.view().state()); }
-  /// Asks whether the force may go before a recording takes the arm's place.
+  /// Asks for permission to switch the force off before a replay starts.
   void draw_question(const Style& style);
 
   DeviceDesk& desk_;
   std::function<void(const std::filesystem::path&)> replay_;
   bool starts_with_replay_;
-  std::string file_;  ///< empty: a name made from the time
+  std::string file_;  ///< empty: a name derived from the time
   Choice choice_ = Choice::standard;
   std::string mark_text_;
-  std::unique_ptr<recording::Recorder> recorder_;  ///< while it records
-  std::vector<protocol::Signal> signals_;          ///< that are recorded
-  std::uint64_t next_event_ = 0;                   ///< of the desk's log, the first that the recording lacks
-  std::string written_file_;                       ///< the recording that runs, or ran last
+  std::unique_ptr<recording::Recorder> recorder_;  ///< null while not recording
+  std::vector<protocol::Signal> signals_;
+  std::uint64_t next_event_ = 0;  ///< first event of the device's log that is not yet in the recording
+  std::string written_file_;      ///< file of the current or last recording
   std::optional<RecorderStatus> last_status_;
   std::string start_error_;
   enum class FileTask : std::uint8_t { record, replay } task_ = FileTask::replay;
@@ -117,9 +117,9 @@ class RecordingPane final : public Pane {
   std::string replay_error_;
   struct ReplayWish {
     std::filesystem::path file;
-    bool asks;  ///< whether the force may go for it; the user has not answered yet
+    bool asks;  ///< waiting for the user's permission to switch the force off
   };
-  std::optional<ReplayWish> replay_wish_;  ///< until it is followed
+  std::optional<ReplayWish> replay_wish_;  ///< empty once the replay has started
 };
 
 void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
@@ -134,7 +134,7 @@ void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
   if (!std::filesystem::path(written_file_).has_extension()) written_file_ += ".h5";
   try {
     if (may_be_replaced_ == written_file_) {
-      std::error_code error;  // if it cannot be removed, the recorder says that it exists
+      std::error_code error;  // if the file cannot be removed, the recorder reports that it exists
       std::filesystem::remove(written_file_, error);
     }
     may_be_replaced_.reset();
@@ -294,7 +294,7 @@ void RecordingPane::draw_replay(const Style& style) {
   if (!chosen) return;
   if (task_ == FileTask::replay) return replay(*chosen);
   file_ = chosen->string();
-  may_be_replaced_ = *chosen;  // the chooser asked, if there is such a file
+  may_be_replaced_ = *chosen;  // the file dialog has already asked about an existing file
 }
 
 void RecordingPane::draw_question(const Style& style) {

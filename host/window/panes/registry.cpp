@@ -1,6 +1,7 @@
 #include "registry.hpp"
 
-// One line for each pane, in the order of their tabs: the function in the .cpp file of the same name that makes it.
+// One line per pane in the order of the tabs: the function that creates the pane. The function has the name of its .cpp
+// file.
 #define INKWELL_PANES(PANE) \
   PANE(tuning_pane)         \
   PANE(guides_pane)         \

@@ -1,4 +1,4 @@
-// Which panes there are.
+// List of all panes.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace inkwell::window {
 
-/// One of each, in the order of their tabs.
+/// Creates all panes, in the order of the tabs.
 std::vector<std::unique_ptr<Pane>> make_panes(const PaneSurroundings& around);
 
 }  // namespace inkwell::window

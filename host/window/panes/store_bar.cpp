@@ -21,7 +21,7 @@ constexpr std::size_t listed_maximum = 12;
 constexpr const char* restore_question = "restore stored values";
 constexpr const char* reset_question = "factory reset";
 
-/// "Wall stiffness: 1500 N/m, stored is 800", a line each.
+/// Lists values line by line, such as "Wall stiffness: 1500 N/m, stored is 800".
 std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& view) {
   std::string lines;
   for (std::size_t i = 0; i < std::min(waiting.size(), listed_maximum); ++i) {
@@ -40,11 +40,11 @@ struct Question {
   const char* name;
   std::string title;
   std::string explanation;
-  const char* agree;  ///< the button's words
+  const char* agree;  ///< text of the confirming button
   bool is_grave;
 };
 
-/// While it is open, which it is no longer than there is a device to ask about.
+/// Draws the question while it is open. The question closes when the device is disconnected.
 Answer draw_question(const Question& question, bool has_device, const Style& style) {
   const Palette& palette = *style.palette;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
@@ -60,7 +60,7 @@ Answer draw_question(const Question& question, bool has_device, const Style& sty
     answer = Answer::yes;
   ImGui::SameLine();
   const bool cancels = button("Cancel", {style.points(100), 0});
-  if (question.is_grave) ImGui::SetItemDefaultFocus();  // Enter twice must not lose a calibration
+  if (question.is_grave) ImGui::SetItemDefaultFocus();  // pressing Enter twice must not lose a calibration
   if (cancels || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) answer = Answer::no;
   if (!has_device) answer = Answer::no;
   if (answer != Answer::none) ImGui::CloseCurrentPopup();

@@ -1,4 +1,4 @@
-// What of the device's values outlives its power, and the buttons that store, restore and forget them.
+// State of the stored values, and the buttons that store, restore and erase them.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace inkwell::window {
 
-/// Has the board store its values when it is pressed; where that cannot be now, its help says why.
+/// Stores the board's values when pressed. The help of the button shows why storing is currently impossible.
 void store_button(DeviceDesk& desk, ImVec2 size, const Style& style);
 
-/// A hollow dot, which stands for a value that is not stored.
+/// Draws a hollow dot, the mark of a value that is not stored.
 void not_stored_mark(ImVec2 centre, const Style& style);
 
-/// At the foot of a pane.
+/// The bar at the bottom of a pane.
 class StoreBar {
  public:
   explicit StoreBar(DeviceDesk& desk) : desk_(desk) {}
@@ -25,7 +25,7 @@ class StoreBar {
   void draw(ParameterEditor& editor, const Style& style, double now_s);
 
  private:
-  /// The line below the title: what went wrong, what keeps the user from storing, or what it is about.
+  /// Text below the title: the last error, the reason why storing is impossible, or a description.
   std::string caption() const;
   void draw_title(const std::vector<protocol::Parameter>& waiting, const Style& style) const;
   void draw_buttons(const std::vector<protocol::Parameter>& waiting, const Style& style);

@@ -1,4 +1,4 @@
-// The pane with a slider for every parameter of the table.
+// The pane with one slider per parameter.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr float unit_points = 46.0f;
 constexpr float reset_points = 20.0f;
-constexpr float rows_indent_points = 20.0f;  // as far as a title behind its arrow
+constexpr float rows_indent_points = 20.0f;  // aligns a row with the title to the right of the arrow
 
 std::array<const char*, 2> choice_names(Parameter parameter) {
   if (parameter == Parameter::transmission) return {"serial", "parallelogram"};
@@ -54,7 +54,7 @@ ValueRange range_of(const protocol::ParameterInfo& info) {
           .logarithmic = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f};
 }
 
-// Two arrows that turn back: drawn, because not every font has them.
+// Draws the symbol, two reversing arrows, because not every font contains it.
 bool reset_button(const Style& style) {
   const float size = style.points(reset_points - 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -95,23 +95,23 @@ class TuningPane final : public Pane {
   void draw_row(Parameter parameter, const PaneFrame& frame);
   void draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
   void draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
-  /// Sends what was typed, or says why not.
+  /// Sends the typed value, or shows an error.
   void take_typed(Parameter parameter, const std::string& label, const std::string& typed, const PaneFrame& frame);
   void draw_file_dialog(const PaneFrame& frame);
   void ask_for_file(FileTask task);
-  /// Loads a file as one undo step; says in the pane what became of it.
+  /// Loads a file as one undo step and shows the result in the pane.
   void load(const std::filesystem::path& file, ParameterEditor& editor, double now_s);
   void save(const std::filesystem::path& file, const ParameterEditor& editor);
 
   DeviceDesk& desk_;
   StoreBar store_bar_;
   std::vector<Parameter> not_stored_;  ///< in this frame
-  std::filesystem::path& file_;        ///< loaded or saved last
-  std::filesystem::path to_send_;      ///< once a device is connected; empty: none any more
+  std::filesystem::path& file_;        ///< last file that was loaded or saved
+  std::filesystem::path to_send_;      ///< sent once a device is connected; empty: none or already sent
   ValueFields fields_;
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
-  std::vector<std::string> messages_;  ///< about the file loaded or saved, or the value typed last
+  std::vector<std::string> messages_;  ///< about the last file or the last typed value
   bool message_is_error_ = false;
 };
 
@@ -307,7 +307,7 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
       ++changed;
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
-  // A title begins left of its rows, as close to its arrow as can be.
+  // A title starts to the left of its rows, directly after its arrow.
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(5)});
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);

@@ -12,7 +12,7 @@ namespace {
 constexpr float y_ticks_every_points = 34.0f;
 constexpr float x_ticks_every_points = 84.0f;
 
-// 3 -> "1k"
+// Converts the exponent 3 to "1k".
 std::string power_label(double exponent) {
   return exponent < 3.0 ? fmt::format("{:g}", std::pow(10.0, exponent))
                         : fmt::format("{:g}k", std::pow(10.0, exponent - 3.0));

@@ -8,7 +8,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float nearest_w = 0.02f;  // what lies nearer to the eye has no place in the picture
+constexpr float nearest_w = 0.02f;  // lines are clipped nearer to the eye than this
 constexpr float soft_edge_pixels = 0.5f;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Smooth lines of a fixed width in pixels, as flat bands with soft edges: all of them in one draw call, and
-// without multisampling, which a processor without a graphics card could not afford.
+// Antialiased lines of a fixed pixel width, drawn as flat bands with soft edges in one draw call. Multisampling would
+// be too slow without a graphics card.
 #pragma once
 
 #include <vector>
@@ -18,9 +18,9 @@ class LineBatch {
   LineBatch(const LineBatch&) = delete;
   LineBatch& operator=(const LineBatch&) = delete;
 
-  /// From one point to the other in view space; colours with alpha at both ends.
+  /// Adds a line between two points in view space. Both end colors have an alpha.
   void add(glm::vec3 from, glm::vec3 to, glm::vec4 from_colour, glm::vec4 to_colour, float width_pixels);
-  /// Draws what was added, in that order, and forgets it.
+  /// Draws the lines in the order of their addition and clears the batch.
   void draw(const glm::mat4& to_clip, glm::vec2 viewport_pixels);
 
  private:
@@ -32,7 +32,7 @@ class LineBatch {
   struct Corner {
     glm::vec4 place;  // in clip space
     glm::vec4 colour;
-    glm::vec2 across;  // distance from the middle and half the width, pixels
+    glm::vec2 across;  // distance from the center line, and half the width, in pixels
   };
 
   std::vector<Segment> segments_;

@@ -17,7 +17,7 @@ glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m) {
 MouseHand::MouseHand(device::SocketAddress control)
     : control_(std::move(control)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-MouseHand::~MouseHand() = default;  // std::jthread asks its thread to stop and waits
+MouseHand::~MouseHand() = default;  // std::jthread requests its thread to stop and joins it
 
 void MouseHand::change(const Wish& wish) {
   wish_ = wish;

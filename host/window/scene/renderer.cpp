@@ -14,12 +14,12 @@ constexpr float floor_radius_m = 0.8f;
 constexpr float floor_grid_m = 0.1f;
 constexpr float wall_grid_m = 0.04f;
 
-// A wall and what of it has to be drawn, in view space.
+// A wall and its drawing attributes, in view space.
 struct WallPicture {
   const WallView* wall;
-  int u, v;            // the axes along it
+  int u, v;            // axes along the wall
   glm::vec3 corner_m;  // in workspace axes
-  glm::vec4 colour;    // without its alpha
+  glm::vec4 colour;    // without alpha
   float frame_alpha, grid_alpha, face_alpha;
 };
 
@@ -71,7 +71,7 @@ void Renderer::draw_sky(const Palette& palette) const {
 }
 
 void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
-  // Lines that fade with their distance from the middle.
+  // The lines fade with their distance from the middle.
   const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
   const glm::vec4 colour = to_vector(look.palette.floor_line);
   const int count = static_cast<int>(floor_radius_m / floor_grid_m);
@@ -83,7 +83,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
     const float distance = std::hypot(static_cast<float>(i), static_cast<float>(j)) / static_cast<float>(count);
     return glm::vec4{glm::vec3{colour}, 0.85f * std::clamp(1.15f * (1.0f - distance), 0.0f, 1.0f)};
   };
-  constexpr int step = 2;  // cells for one piece of line
+  constexpr int step = 2;  // cells per line segment
   for (int i = -count; i <= count; ++i) {
     for (int j = -count; j < count; j += step) {
       if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count))
@@ -96,8 +96,8 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
 }
 
 void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) const {
-  // Straight down: what lies under the sphere on the floor tells its depth in the picture. The stencil lets each
-  // pixel be darkened once only, however many bodies lie over it.
+  // A vertical shadow on the floor shows the depth of the sphere. The stencil buffer darkens each pixel only once, even
+  // where bodies overlap.
   glm::mat4 flattened{1.0f};
   flattened[1][1] = 0.0f;
   flattened[3][1] = scene.floor_height_m + 0.0005f;
@@ -119,7 +119,7 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     const WallView& wall = scene.walls[i];
     WallPicture picture{&wall, (wall.axis + 1) % 3, (wall.axis + 2) % 3, scene.box_minimum_m, {}, 0, 0, 0};
     if (wall.upper) picture.corner_m[wall.axis] = scene.box_maximum_m[wall.axis];
-    // Walls between the eye and the free space stay see-through.
+    // Walls between the eye and the free space remain transparent.
     const bool is_near = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * picture.corner_m) < 0.0f;
     const bool is_marked = look.marked_wall == static_cast<int>(i);
     const bool touched = wall.pushes_back;
@@ -129,7 +129,7 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     picture.face_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
     pictures.push_back(picture);
   }
-  // A wall that pushes back comes last, for its frame has edges in common with its neighbours.
+  // A wall in contact is drawn last, because its frame shares edges with adjacent walls.
   std::stable_partition(pictures.begin(), pictures.end(),
                         [](const WallPicture& each) { return !each.wall->pushes_back; });
 
@@ -137,7 +137,7 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
   wall_.set("to_clip", to_clip_);
   glBindVertexArray(no_vertices_);
   for (const WallPicture& picture : pictures) {
-    // Clang 14 cannot capture these names as such.
+    // Clang 14 cannot capture structured bindings in lambdas.
     const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, face_alpha] = picture;
     glm::vec3 edge_u{0.0f};
     glm::vec3 edge_v{0.0f};
@@ -204,7 +204,7 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   glEnable(GL_DEPTH_TEST);
   prepare_solids(camera, look);
   solids_.draw_opaque();
-  // What is see-through is tested against the bodies' depth, and leaves none of its own.
+  // Transparent parts are tested against the depth of the bodies and do not write depth.
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
   draw_floor(scene, look);

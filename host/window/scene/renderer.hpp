@@ -25,13 +25,13 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws into the part of the window's framebuffer, whose depth and stencil have been cleared.
+  /// Draws into a part of the window's framebuffer, whose depth and stencil buffers have been cleared.
   void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
             const Viewport& viewport);
 
  private:
   void show_target(const Viewport& viewport) const;
-  /// False if the target had that size, and so its picture, before.
+  /// Returns false if the target already had this size and its picture is still valid.
   bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;
@@ -41,7 +41,7 @@ class Renderer {
 
   GLuint no_vertices_ = 0;
   GLuint target_ = 0;
-  std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
+  std::array<GLuint, 2> target_buffers_{};  // color; depth with stencil
   int target_width_ = 0;
   int target_height_ = 0;
   bool target_is_drawn_ = false;

@@ -33,7 +33,7 @@ class Builder {
   std::vector<Solid> solids_;
 };
 
-// Thicknesses are the eye's, lengths and angles the arm's.
+// Lengths and angles are those of the arm; thicknesses are chosen for appearance.
 void add_arm(Builder& builder, const SceneModel& scene, glm::vec3 up, const Palette& palette) {
   const glm::vec3 foot = scene.shoulder_m + up * (scene.floor_height_m - glm::dot(scene.shoulder_m, up));
   const glm::vec3 link_3 = glm::normalize(scene.probe_m - scene.elbow_m);
@@ -56,7 +56,7 @@ void add_arm(Builder& builder, const SceneModel& scene, glm::vec3 up, const Pale
   builder.rod(Shape::tapered, scene.elbow_m, scene.probe_m - 0.006f * link_3, 0.0085f, palette.metal, 0.4f);
 
   if (scene.parallelogram) {
-    // Motor 3 turns a crank at the shoulder; a rod parallel to link 2 carries its angle to link 3.
+    // Motor 3 rotates a crank at the shoulder. A rod parallel to link 2 transmits the crank angle to link 3.
     const float crank_m = 0.030f;
     const glm::vec3 aside = 0.018f * side;
     const glm::vec3 crank = scene.shoulder_m - crank_m * link_3 + aside;

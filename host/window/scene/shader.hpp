@@ -13,7 +13,7 @@ namespace inkwell::window {
 
 class ShaderProgram {
  public:
-  /// Throws std::runtime_error with the driver's log if it does not compile.
+  /// Throws std::runtime_error with the driver's log if compilation fails.
   ShaderProgram(const char* vertex_source, const char* fragment_source);
   ~ShaderProgram();
   ShaderProgram(const ShaderProgram&) = delete;

@@ -1,9 +1,9 @@
-// The shaders of the scene. Cheap on purpose: they also run on a processor without a graphics card.
+// Shaders of the scene. The shaders are simple because they also run on a CPU without a graphics card.
 #pragma once
 
 namespace inkwell::window::shaders {
 
-/// The ground of the picture, lighter at one end, over the whole viewport.
+/// Background gradient over the whole viewport.
 inline constexpr char sky_vertex[] = R"(#version 330 core
 uniform vec4 top;
 uniform vec4 bottom;
@@ -19,7 +19,7 @@ in vec3 shade;
 out vec4 colour;
 void main() { colour = vec4(shade, 1.0); })";
 
-/// All bodies in one batch: places, normals and colours come ready for the scene.
+/// All bodies in one batch: positions, normals and colors are already in scene coordinates.
 inline constexpr char solid_vertex[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -71,7 +71,7 @@ uniform vec4 base_colour;
 out vec4 colour;
 void main() { colour = base_colour; })";
 
-/// A rectangle given by a corner and two edges; `place` is in metres along the edges.
+/// A rectangle with a corner and two edges; `place` is in meters along the edges.
 inline constexpr char wall_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
@@ -84,7 +84,7 @@ void main() {
   gl_Position = to_clip * vec4(corner + part.x * edge_u + part.y * edge_v, 1.0);
 })";
 
-/// The pane of a wall, with a glow around the place where it pushes back.
+/// The surface of a wall, with a glow around the contact point.
 inline constexpr char wall_fragment[] = R"(#version 330 core
 in vec2 place;
 uniform vec4 base_colour;
@@ -97,8 +97,8 @@ void main() {
   colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
 
-/// Lines come as bands that are already in clip space. Across a band the distance is in pixels, so it must not
-/// be bent by the perspective.
+/// Lines are bands that are already in clip space. The distance across a band is in pixels, so its interpolation must
+/// not be perspective-corrected.
 inline constexpr char line_vertex[] = R"(#version 330 core
 layout(location = 0) in vec4 place;
 layout(location = 1) in vec4 end_colour;

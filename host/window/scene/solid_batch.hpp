@@ -1,5 +1,5 @@
-// The solid bodies of a frame in one vertex buffer. Placing a few thousand vertices on the processor costs less
-// than a draw call for each body does.
+// The solid bodies of a frame in one vertex buffer. Transforming a few thousand vertices on the CPU costs less than one
+// draw call per body.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ class SolidBatch {
   SolidBatch(const SolidBatch&) = delete;
   SolidBatch& operator=(const SolidBatch&) = delete;
 
-  /// Takes the bodies of this frame: those that cast a shadow, other opaque ones, see-through ones.
-  /// With `all_opaque` there are no see-through ones.
+  /// Sets the bodies of this frame in three groups: shadow casters, other opaque bodies and transparent bodies. With
+  /// `all_opaque` the third group is empty.
   void fill(const std::vector<Solid>& solids, bool all_opaque);
 
   void draw_shadow_casters() const { draw(0, shadow_casters_end_); }
@@ -45,7 +45,7 @@ class SolidBatch {
   GLsizei shadow_casters_end_ = 0;
   GLsizei opaque_end_ = 0;
   GLuint vertex_array_ = 0;
-  std::array<GLuint, 2> buffers_{};  // corners, indices
+  std::array<GLuint, 2> buffers_{};  // vertices, indices
 };
 
 }  // namespace inkwell::window

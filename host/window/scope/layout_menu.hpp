@@ -1,4 +1,4 @@
-// The scope's layouts: choosing one, and saving, renaming and deleting the user's own.
+// Menu of the scope's layouts: selection, and saving, renaming and deleting user layouts.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class LayoutMenu {
  public:
   explicit LayoutMenu(const OwnLayouts& own) : own_(own) {}
 
-  /// Draws the menu, and does to the layout what is chosen in it.
+  /// Draws the menu and applies the selected action to the layout.
   void draw(ScopeLayout& layout, const Style& style);
   const OwnLayouts& own_layouts() const { return own_; }
 
@@ -22,14 +22,13 @@ class LayoutMenu {
 
   void draw_choices(ScopeLayout& layout);
   void ask_for_name(NameTask task, const std::string& suggestion);
-  /// The dialog that asks for a name.
   void draw_name(ScopeLayout& layout, const Style& style);
-  /// False, with the reason shown, if the name cannot be given.
+  /// Returns false and shows the reason if the name is refused.
   bool give_name(ScopeLayout& layout);
 
   OwnLayouts own_;
   NameTask task_ = NameTask::none;
-  std::string name_;  ///< that is typed
+  std::string name_;
   std::string refusal_;
 };
 

@@ -1,4 +1,4 @@
-// The menu that opens at a plot's title: what kind of plot it is, and what it shows.
+// The menu of a plot's title: kind and signals of the plot.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace inkwell::window {
 
-/// Draws the menu while it is open. True if the plot is to be removed.
+/// Draws the menu while it is open. Returns true if the plot is to be removed.
 bool draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed, const Style& style);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// A plot of the scope on the screen: one kind of view for each kind of plot.
+// A plot of the scope on the screen, with one view class per kind of plot.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace inkwell::window {
 
-/// What all plots of the scope have in common in a frame.
+/// Data that all plots of the scope share in a frame.
 struct ScopeFrame {
   const Style& style;
-  Timeline& timeline;  ///< the mouse moves it
-  Stretch stretch;     ///< that is shown
+  Timeline& timeline;  ///< the mouse moves its stretch
+  Stretch stretch;     ///< displayed stretch
   Cursors& cursors;
   bool with_statistics;
-  std::uint64_t judged_end;  ///< end of the history in the frame before
-  bool& has_motion;          ///< becomes true if a signal leaves its range, rather than only scrolls
+  std::uint64_t judged_end;  ///< end of the history in the previous frame
+  bool& has_motion;          ///< set to true if a signal leaves its range; scrolling alone does not count
 };
 
-/// Draws a plot, and remembers what it needs from frame to frame.
+/// Draws a plot and stores its state between frames.
 class PlotView {
  public:
   explicit PlotView(ScopePlot plot) : plot_(std::move(plot)) {}
@@ -34,23 +34,22 @@ class PlotView {
 
   const ScopePlot& plot() const { return plot_; }
 
-  /// Height of the numbers that stand above the plot.
+  /// Height of the numbers above the plot.
   virtual float numbers_height(const ScopeFrame&) const { return 0.0f; }
-  /// Fills the area, whose ranges it finds itself. The last item of ImGui's lies over it.
+  /// Draws into the area and determines its axis ranges. ImGui's last item covers the area.
   virtual void draw(PlotArea area, ScopeFrame& frame) = 0;
 
  protected:
   const ScopePlot plot_;
 };
 
-/// The view of a plot, by its kind.
 std::unique_ptr<PlotView> view_of(const ScopePlot& plot);
 
 std::unique_ptr<PlotView> time_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> spectrum_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> xy_view(const ScopePlot& plot);
 
-/// Statistics and spectra are computed anew after so long, at which numbers can still be read.
+/// Period for recomputing statistics and spectra, chosen so that the numbers remain readable.
 inline constexpr double computed_every_s = 0.2;
 
 }  // namespace inkwell::window

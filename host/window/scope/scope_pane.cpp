@@ -94,7 +94,7 @@ void ScopePane::follow_layout() {
 }
 
 void ScopePane::draw_plots(ScopeFrame& frame) {
-  // Where there is too little room for all rows, as many as can be read fill it, and the pane scrolls.
+  // If the rows do not fit, as many legible rows as possible are shown, and the pane scrolls.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -12,7 +12,7 @@ using protocol::Signal;
 
 namespace {
 
-/// From one row of the table up to before the next group's first.
+/// A group extends from its first signal to the signal before the next group's first.
 struct GroupBegin {
   Signal first;
   std::string_view title;

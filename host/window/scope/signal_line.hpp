@@ -1,4 +1,4 @@
-// Lines of signals in a plot, from single samples to minutes of them.
+// Lines of signals in a plot, from single samples to minutes.
 #pragma once
 
 #include <plot/plot.hpp>
@@ -6,8 +6,8 @@
 
 namespace inkwell::window {
 
-/// A signal over [first, last) of its samples, which the whole width shows. Columns with many samples are drawn
-/// from their smallest to their largest value, so no spike is lost.
+/// Draws the samples [first, last) of a signal over the whole width. Columns with many samples are drawn from minimum
+/// to maximum, so that no spike is lost.
 void draw_signal(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
                  Colour colour, const Style& style);
 

@@ -1,4 +1,4 @@
-// The list of all signals beside the plots: searched, dragged into a plot, and with formulas at its end.
+// The signal list next to the plots, with search, drag and drop, and formulas.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,9 @@ namespace inkwell::window {
 
 inline constexpr std::string_view nothing_found = "No signal is called so. Try one word, such as force.";
 
-/// The field in which one types what to look for.
 void draw_search(std::string& search, const Style& style);
 
-/// The name of the signal that was dragged onto the last item and let go there, if one was.
+/// Returns the name of the signal that was dropped onto the last item, if any.
 std::optional<std::string> dropped_signal();
 
 class SignalList {
@@ -23,7 +22,7 @@ class SignalList {
   bool is_shown() const { return is_shown_; }
   void toggle() { is_shown_ = !is_shown_; }
 
-  /// Draws it at the left of what follows, while it is shown, and the dialog about a formula while that is open.
+  /// Draws the list to the left of the following item while it is shown, and the formula dialog while it is open.
   void draw(ScopeLayout& layout, const Style& style);
 
  private:
@@ -32,13 +31,13 @@ class SignalList {
   void ask_about(const Formula& formula);
   void draw_dialog(ScopeLayout& layout, const Style& style);
   void draw_fields(const Style& style);
-  /// What stands in the fields.
+  /// Returns the contents of the fields.
   Formula typed() const;
 
   bool is_shown_ = false;
   std::string search_;
-  std::optional<Formula> asked_about_;  ///< as it was; its name is empty if it is a new one
-  Formula typed_;                       ///< name, text and unit as they stand in the fields
+  std::optional<Formula> asked_about_;  ///< the formula before editing; its name is empty for a new formula
+  Formula typed_;                       ///< name, text and unit in the fields
   std::string typed_low_pass_;
 };
 

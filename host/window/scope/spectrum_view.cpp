@@ -1,4 +1,4 @@
-// Amplitude against frequency, both as logarithms.
+// Amplitude over frequency, both logarithmic.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -55,7 +55,7 @@ class SpectrumView final : public PlotView {
     return largest;
   }
 
-  // The largest line of each pixel's column.
+  // Returns the maximum amplitude per pixel column.
   static std::vector<std::pair<double, double>> points_of(const Spectrum& spectrum, const PlotArea& area) {
     std::vector<std::pair<double, double>> points;
     float column = -1.0f;

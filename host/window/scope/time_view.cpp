@@ -1,4 +1,4 @@
-// Signals against time, with the trigger's level, cursors, statistics, and the mouse that moves the time.
+// Signals over time, with trigger level, cursors and statistics. The mouse moves the time range.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,7 +18,7 @@ namespace inkwell::window {
 namespace {
 
 constexpr double rate_Hz = protocol::servo_rate_Hz;
-constexpr double range_remembered_s = 1.0;  // for telling motion from noise
+constexpr double range_remembered_s = 1.0;  // used to distinguish motion from noise
 constexpr float statistics_line_points = 15.0f;
 
 class TimeView final : public PlotView {
@@ -89,7 +89,7 @@ class TimeView final : public PlotView {
                  frame.style.points(1));
   }
 
-  // Wheel: zoom. Drag: into the past. Double click: back to now.
+  // Wheel: zoom. Drag: move into the past. Double click: return to the newest samples.
   static void take_mouse(const PlotArea& area, ScopeFrame& frame) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
@@ -100,7 +100,7 @@ class TimeView final : public PlotView {
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) frame.timeline.pause(false);
   }
 
-  // Above the plot, where they hide nothing of it.
+  // Draws the statistics above the plot, where they cover no data.
   void draw_statistics(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame) {
     if (const double now_s = ImGui::GetTime(); now_s - computed_at_s_ > computed_every_s) {
       computed_at_s_ = now_s;

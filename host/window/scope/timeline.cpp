@@ -11,7 +11,7 @@ namespace {
 
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double zoom_per_step = 0.15;
-constexpr double parts_of_span = 2048.0;  // the right end moves by whole ones
+constexpr double parts_of_span = 2048.0;  // the right end moves in whole multiples of span / parts_of_span
 
 }  // namespace
 
@@ -30,14 +30,14 @@ void Timeline::pause(bool paused) {
   if (paused) {
     paused_last_ = stretch().last;
   } else {
-    start_anew();  // what came during the pause was let go
+    start_anew();  // the samples during the pause were discarded
   }
   paused_ = paused;
 }
 
 void Timeline::set_trigger(const TriggerSettings& settings) {
   TriggerSettings same_place = settings;
-  same_place.pre_trigger = trigger_settings_.pre_trigger;  // which moves the event only
+  same_place.pre_trigger = trigger_settings_.pre_trigger;  // pre_trigger only moves the event within the picture
   if (same_place != trigger_settings_) trigger_.arm();
   trigger_settings_ = settings;
 }
@@ -54,8 +54,7 @@ Stretch Timeline::stretch() {
       return {first, first + span, static_cast<double>(*event)};
     }
   }
-  // In whole parts of the span the same samples fall into the same column in every frame, and the picture rolls
-  // without shimmering.
+  // With steps of whole parts of the span, each sample stays in its column, and the scrolling picture does not shimmer.
   const double part = std::max(1.0, std::floor(span / parts_of_span));
   const double last = std::floor(end / part) * part;
   return {last - span, last, last};

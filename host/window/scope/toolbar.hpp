@@ -1,4 +1,4 @@
-// The scope's controls: pause, time shown, cursors, statistics, trigger.
+// The scope's controls: pause, displayed time, cursors, statistics, trigger.
 #pragma once
 
 #include <frame/style.hpp>
@@ -9,7 +9,7 @@
 
 namespace inkwell::window {
 
-/// Continues the row of what was drawn last.
+/// Draws the controls in the same row as the last item.
 void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals, const Style& style);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Signals against the first one.
+// Signals over the first signal.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,7 +35,7 @@ class XyView final : public PlotView {
   }
 
  private:
-  /// What is laid over is drawn below, and paler.
+  /// An overlaid recording is drawn below and in paler colors.
   void draw_lane(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame, bool over, std::uint64_t first,
                  std::uint64_t last) const {
     const SignalHistory& history = frame.timeline.history();
@@ -52,7 +52,7 @@ class XyView final : public PlotView {
     }
   }
 
-  /// Above the end of its axis.
+  /// Draws the name above the end of the x axis.
   void draw_name_of_x(ImDrawList& list, const PlotArea& area, const Style& style) const {
     ImFont* font = style.fonts.caption;
     const std::string name = fitted(short_name(plot_.signals.front()), area.width() - style.points(8), font);

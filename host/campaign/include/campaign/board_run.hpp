@@ -1,4 +1,4 @@
-// A virtual board of its own with an arm, a hand and a host that bears whatever becomes of the device.
+// A separate virtual board with an arm, a hand and a host that tolerates disconnections of the device.
 #pragma once
 
 #include <functional>
@@ -16,43 +16,42 @@ namespace inkwell::campaign {
 
 class BoardRun {
  public:
-  /// Board time stands still. Throws device::Error if the board does not start.
+  /// Board time is initially stopped. Throws device::Error if the board does not start.
   explicit BoardRun(const device::VirtualBoardOptions& options);
 
-  /// Waits until the board shows its device and opens it; false if it does not in that time.
+  /// Waits for the device and opens it; false if it does not appear within the limit.
   bool connect(double limit_s);
-  /// The same for a board that has started anew, until it had time to tell why.
+  /// Like connect(), for a restarted board. The function also waits until the board can report the cause of the
+  /// restart.
   bool connect_after_restart();
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }
   void set(std::initializer_list<device::ParameterChange> changes);
-  /// Lets go of the device without a word, as a program does that is killed, and waits until the board's USB knows it.
+  /// Closes the device abruptly, like a killed program, and waits until the board's USB detects it.
   void drop_device();
-  /// Called with every pose that is read from now on.
+  /// Sets a function that is called with every pose from now on.
   void watch_poses(std::function<void(const device::Pose&)> watch) { watch_ = std::move(watch); }
 
-  /// Lets board time pass, with the host's signs of life or without, and reads every pose. A device that is gone is
-  /// let go of.
+  /// Lets board time pass, with or without heartbeats, and reads every pose. Closes a device that has disconnected.
   void run(double time_s, bool gives_sign_of_life = true);
-  /// The same to the instant, without a pose in between.
+  /// Lets exactly this time pass, without reading poses.
   void run_exactly(double time_s) { pass(time_s); }
-  /// False if the condition does not come true in time.
+  /// Returns false if the condition does not become true in time.
   bool wait_for(const std::function<bool(const device::Pose&)>& condition, double limit_s);
   bool wait_for(protocol::State state, double limit_s);
   void command(protocol::Command command);
 
-  /// The newest; none before the first, and after a connection was lost.
+  /// The newest pose; std::nullopt before the first pose and after a disconnection.
   const std::optional<device::Pose>& pose() const { return pose_; }
   bool is(protocol::State state) const { return pose_ && pose_->state == state; }
   bool force_is_on() const { return pose_ && protocol::force_is_on(pose_->state); }
   bool is_locked_up();
-  /// How often the chip was reset since the power came, also by its watchdog.
+  /// Number of chip resets since power-on, including watchdog resets.
   unsigned resets();
   void reset();
-  /// Asks the firmware to start the chip's boot loader.
   void ask_for_boot_loader();
   bool is_in_boot_loader() const;
-  /// Has the boot loader start the firmware; false if it does not do so.
+  /// Commands the boot loader to start the firmware; false on failure.
   bool start_from_boot_loader();
   device::ControlClient& control() { return control_; }
   device::Vector3 true_position_m();

@@ -1,4 +1,4 @@
-// The fault campaign as a list of jobs: every fault, in every situation of the arm, at random instants.
+// The fault campaign as a list of cases: every fault in every situation of the arm, at random instants.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,29 @@
 
 namespace inkwell::campaign {
 
-/// What the arm does when the fault comes.
+/// Situation of the arm at the injection of the fault.
 enum class CaseSituation : std::uint8_t {
-  unreferenced,  ///< out of the inkwell since the start: no force
-  ready,         ///< the hand holds it, the force is off
-  rest,          ///< the same with the force on, in free space
-  wall,          ///< pressed into a wall of the highest stiffness
-  motion,        ///< the force on, swung fast through free space
-  ramping,       ///< pressed into that wall while the force rises
-  limited,       ///< pressed into it so far that the force limit holds back
-  landing,       ///< pressed into it while the force falls
-  testing,       ///< ready, while the self-test makes its pulses
-  fault,         ///< another fault took the force away and is still told
-  update,        ///< on its way to the boot loader, and in it
-  starting,      ///< out of the inkwell, from before the power comes and while the board starts
+  unreferenced,  ///< out of the inkwell since power-on: no force
+  ready,         ///< the hand holds the stylus, the force is off
+  rest,          ///< like `ready` with the force on, in free space
+  wall,          ///< pressed into a wall with the highest stiffness
+  motion,        ///< the force is on, during a fast swing through free space
+  ramping,       ///< pressed into the wall while the force increases
+  limited,       ///< pressed into the wall until the force limit acts
+  landing,       ///< pressed into the wall while the force decreases
+  testing,       ///< like `ready`, during the pulses of the self-test
+  fault,         ///< another fault has switched the force off and is still reported
+  update,        ///< during the transition to the boot loader, and in the boot loader
+  starting,      ///< out of the inkwell, before power-on and during start-up
 };
 inline constexpr CaseSituation situations[] = {
     CaseSituation::unreferenced, CaseSituation::ready,   CaseSituation::rest,    CaseSituation::wall,
     CaseSituation::motion,       CaseSituation::ramping, CaseSituation::limited, CaseSituation::landing,
     CaseSituation::testing,      CaseSituation::fault,   CaseSituation::update,  CaseSituation::starting};
 std::string_view name_of(CaseSituation situation);
-/// A sentence with its figures.
+/// Description in one sentence with figures.
 std::string meaning_of(CaseSituation situation);
-/// The hand feels a force. The self-test's pulses are none.
+/// Whether the hand feels a force. Self-test pulses do not count.
 constexpr bool is_active(CaseSituation situation) {
   return situation >= CaseSituation::rest && situation <= CaseSituation::landing;
 }
@@ -40,23 +40,23 @@ constexpr bool is_pressed(CaseSituation situation) {
   return is_active(situation) && situation != CaseSituation::rest && situation != CaseSituation::motion;
 }
 
-/// The swing of `motion`: to either side, along all axes; from one side to the other.
+/// Swing of `motion`: amplitude along all axes, and time from one side to the other.
 inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
-/// The fling of `fast_hand`: so far along x, within this time.
+/// Fling of `fast_hand`: distance along x, and its duration.
 inline constexpr double fling_m = 0.14, fling_s = 0.085;
 
-/// How many instants. Of `starting` the first is before the power comes.
+/// Number of instants. The first instant of `starting` is before power-on.
 inline constexpr unsigned phases = 3;
 
-/// What is done to a board and an arm that are sound.
+/// Events other than injected faults.
 enum class Deed : std::uint8_t {
   nothing,
-  fast_hand,      ///< the hand flings the arm
-  bus_suspended,  ///< the PC goes to sleep, or over USB/IP the last program that uses the board is killed
+  fast_hand,
+  bus_suspended,  ///< the PC suspends, or the last program that uses the board through USB/IP is killed
 };
 
-/// A fault at a place, or a deed; neither is the control, in which nothing is put in.
+/// A fault at a position, or a deed. A case without fault and deed is the control case.
 struct CaseFault {
   std::optional<protocol::InjectedFault> fault;
   std::string of;
@@ -65,11 +65,11 @@ struct CaseFault {
   Deed deed = Deed::nothing;
 
   bool is_none() const { return !fault && deed == Deed::nothing; }
-  std::string name() const;  ///< as --inject writes it, `none`, `bus_suspended` or `fast_hand`
+  std::string name() const;  ///< in the format of --inject, or `none`, `bus_suspended` or `fast_hand`
 };
 
 struct Case {
-  unsigned number;  ///< from 1 on; the same as long as situations, the table of faults and their places are
+  unsigned number;  ///< from 1; constant for the same situations and the same table of faults and positions
   CaseFault fault;
   CaseSituation situation;
   unsigned phase;  ///< 1 to phases
@@ -77,17 +77,17 @@ struct Case {
   std::string name() const;
 };
 
-/// The control first, the deeds last. What there are three of is listed at the second motor, which bears the load at
-/// the wall.
+/// Returns the control case first and the deeds last. Faults of three equivalent parts are listed for motor 2, which
+/// carries the load at the wall.
 std::vector<CaseFault> case_faults();
-/// One of these faults as it is at another of three that are alike (1 to 3): motor, leg, encoder, current sensor,
-/// potentiometer of the gimbal. What there is only one of stays as it is.
+/// The same fault at another of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or gimbal
+/// potentiometer. Faults of single parts are returned unchanged.
 CaseFault at_another(CaseFault fault, unsigned number);
 bool is_of_three(const CaseFault& fault);
-/// In each situation each listed fault at each instant; after these, of what there are three of, the first and the
-/// third at one.
+/// Each listed fault in each situation at each instant. After these, the faults of the first and third equivalent parts
+/// at one instant.
 std::vector<Case> all_cases();
-/// Under which name the list has a fault that is at another of three; else the name as it is.
+/// Listed name of a fault at another equivalent part; other names are returned unchanged.
 std::string listed_name(const std::string& name);
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-// The results as a page: what each fault did in each situation, and all that was not noticed.
+// The results as a page: the effect of each fault in each situation, and all undetected faults.
 #pragma once
 
 #include <filesystem>
@@ -9,20 +9,21 @@
 
 namespace inkwell::campaign {
 
-/// What is told of the cases of a fault in a situation: the worst of them.
+/// Summary of the cases of a fault in a situation: their worst values.
 struct Summary {
-  unsigned cases = 0;       ///< that could be run
-  unsigned detected = 0;    ///< a fault was told, or the board restarted; bridges that went off alone are none
-  std::string detected_as;  ///< faults, restarts and lock-ups; empty: none of them
+  unsigned cases = 0;       ///< number of completed cases
+  unsigned detected = 0;    ///< a fault was reported, or the board restarted; switching the bridges off alone does not
+                            ///< count
+  std::string detected_as;  ///< faults, restarts and lock-ups; empty if none
   unsigned went_off = 0, were_on = 0;
   double off_after_s = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;
-  std::string recovery;  ///< all that were needed
+  std::string recovery;  ///< all required recovery actions
   double position_error_m = 0;
 };
 Summary summarise(std::span<const Result> results);
 
-/// Writes the page, and its plots beside it under its name. Throws device::Error.
+/// Writes the page, and next to the page the plots with the name of the page. Throws device::Error.
 void write_page(std::span<const Result> results, const std::filesystem::path& page);
 
 }  // namespace inkwell::campaign

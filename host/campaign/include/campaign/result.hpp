@@ -1,4 +1,4 @@
-// What came of one case, and its file.
+// Result of one case, and its file.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace inkwell::campaign {
 
-/// What became of a fault that was told before.
+/// State of a fault that was reported before the injection.
 enum class FirstFault : std::uint8_t {
-  none,       ///< there was none, or nobody could ask the board
-  told,       ///< it is still the one that is told
-  black_box,  ///< the board started anew, and its black box has it
+  none,       ///< there was no earlier fault, or the board could not be read
+  told,       ///< the fault is still reported
+  black_box,  ///< the board restarted, and its black box contains the fault
   lost,
 };
 
@@ -24,53 +24,52 @@ struct Result {
   std::string fault;  ///< CaseFault::name()
   std::string situation;
   unsigned phase = 1;
-  std::string error;  ///< why the case could not be run; the rest says nothing then
+  std::string error;  ///< reason why the case could not be run; the other members are invalid then
 
   double injected_at_s = 0;  ///< board time
-  std::string place;         ///< that the seed chose; empty: the case names it
+  std::string place;         ///< position chosen from the seed; empty if the case names it
   bool bridges_were_on = false;
-  std::optional<double> off_after_s;  ///< none: they were off, or stayed on
-  bool bridges_went_on = false;       ///< though they were off
-  std::string detected_as;            ///< name of the firmware's fault; empty: none
-  std::string fault_on_healing;       ///< that came only when the cause had gone
-  std::string told_before;            ///< the fault that was told when this one came; empty: none
+  std::optional<double> off_after_s;  ///< std::nullopt: the bridges were off, or stayed on
+  bool bridges_went_on = false;       ///< the bridges were switched on, although they were off at the injection
+  std::string detected_as;            ///< name of the firmware's fault; empty if none
+  std::string fault_on_healing;       ///< fault reported only after the cause was removed
+  std::string told_before;            ///< fault reported at the time of the injection; empty if none
   FirstFault first_fault = FirstFault::none;
-  std::string told_once_cleared;  ///< that came when the one before had been cleared, with the cause still there
-  unsigned restarts = 0;          ///< beside those that the situation brings
+  std::string told_once_cleared;  ///< fault reported after the earlier fault was cleared, with the cause still present
+  unsigned restarts = 0;          ///< in addition to the restarts of the situation
   bool locked_up = false;
-  bool missed_boot_loader = false;  ///< was not in it in the end, though it had been asked for
+  bool missed_boot_loader = false;  ///< the boot loader was requested but does not run at the end
 
   double force_limit_N = 0;
-  double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the fault came
-  /// Of a fault that was not told with the force on, what was told while the arm was used on; empty: nothing.
+  double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the injection
+  /// For a fault that was not reported with the force on: the report during continued use; empty if none.
   std::string noticed_in_use_as;
-  std::optional<double> noticed_in_use_s;     ///< since then
-  std::optional<double> peak_force_in_use_N;  ///< at the hand; none: it was not used on
-  std::optional<double> energy_in_use_J;      ///< given to the hand
-  std::string recovery;                       ///< what gave the force back; the page shows it as it is
-  std::optional<double> position_error_m;     ///< in the end, of what the device believes
+  std::optional<double> noticed_in_use_s;     ///< time since the start of the use
+  std::optional<double> peak_force_in_use_N;  ///< at the hand; std::nullopt without continued use
+  std::optional<double> energy_in_use_J;      ///< delivered to the hand
+  std::string recovery;                       ///< action that restored the force, in the wording of the page
+  std::optional<double> position_error_m;     ///< error of the device's position at the end
 
   bool operator==(const Result&) const = default;
 };
 
-/// A fault was told, or the board restarted; a lock-up is what the fault did, not what the board noticed of it.
+/// A fault was reported, or the board restarted. A lock-up is an effect of the fault and not a detection.
 bool is_detected(const Result& result);
-/// Neither that, nor did the bridges go off.
+/// The fault was not detected, and the bridges did not switch off.
 bool is_unnoticed(const Result& result);
 
-/// Faults, restarts and a lock-up; empty: none of them.
+/// Reported faults, restarts and a lock-up; empty if none.
 std::string told(const Result& result);
 
 /// A JSON object with a member for each field, and a line feed.
 std::string text_of(const Result& result);
-/// Throws device::Error if it is no result.
+/// Throws device::Error if the text is not a result.
 Result parse_result(const std::string& text);
 
-/// The file of a case in the folder.
 std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);
-/// Whole or not at all, so that a job that is killed leaves no half of a result. Throws device::Error.
+/// Writes atomically, so that a killed job leaves no partial result. Throws device::Error.
 void save(const Result& result, const std::filesystem::path& directory);
-/// By number. A file that is damaged, or of another list of cases, is an error that names it.
+/// Results by number. An error names a file that is damaged or belongs to another list of cases.
 std::vector<Result> load_all(const std::filesystem::path& directory);
 
 }  // namespace inkwell::campaign

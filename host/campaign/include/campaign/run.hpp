@@ -1,4 +1,4 @@
-// Runs one case on a virtual board of its own.
+// Runs one case on a separate virtual board.
 #pragma once
 
 #include <campaign/cases.hpp>
@@ -7,15 +7,15 @@
 
 namespace inkwell::campaign {
 
-/// So long after the fault came, bridges and hand are watched.
+/// Duration of the observation of bridges and hand after the injection.
 inline constexpr double observed_s = 0.3;
-/// What was not noticed by then with the force on is used on: as before, until a swinging hand has come to the end of
-/// its way, then pressed with the force limit so often into the wall in front and the one to the side, which together
-/// load each motor, and swung so often.
+/// If a fault is undetected with the force on, the use of the arm continues. First the situation continues, until a
+/// swinging hand has finished its path. Then the hand presses into the forward and the side wall with the force limit,
+/// which loads each motor. Finally the hand swings.
 inline constexpr double goes_on_s = 0.6;
 inline constexpr int use_presses = 2, use_swings = 4;
 
-/// The same case gives the same result on any machine. What keeps it from being run is told in Result::error.
+/// The result of a case is the same on any machine. If the case cannot be run, Result::error states the reason.
 Result run_case(const Case& the_case, device::VirtualBoardOptions board = {});
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-// A crash of the firmware in words.
+// Description of a firmware crash.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace inkwell::crash {
 
-/// What kind of fault it was and, where the processor tells, which address it was about: a sentence.
+/// A sentence with the kind of fault and, if the processor reports it, the affected address.
 std::string cause(const protocol::CrashFacts& crash);
 
-/// Where the crash was and where the calls to there came from, the innermost first; empty if the stack could not be
-/// read. Those behind the first are guesses: old return addresses on the stack look like valid ones.
+/// Address of the crash and return addresses of its callers, innermost first; empty if the stack could not be read. All
+/// addresses after the first are guesses, because old return addresses on the stack look valid.
 std::vector<std::uint32_t> chain(const protocol::CrashFacts& crash);
 
-/// Throws device::Error unless `image` is what ran when it crashed.
+/// Throws device::Error unless `image` is the image that crashed.
 void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& image);
 
-/// Some lines: the cause, the chain with names if there is an image, registers.
+/// Several lines: cause, call chain (with names if there is an image), registers.
 std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image);
 
 }  // namespace inkwell::crash

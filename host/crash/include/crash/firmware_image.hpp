@@ -1,4 +1,4 @@
-// The firmware's ELF: what lies where in it.
+// The firmware's ELF file: names and source locations of addresses.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@ namespace inkwell::crash {
 
 class FirmwareImage {
  public:
-  /// Throws device::Error if the file cannot be read or is no program for an ARM processor.
+  /// Throws device::Error if the file cannot be read or is not a program for an ARM processor.
   explicit FirmwareImage(const std::filesystem::path& elf);
   ~FirmwareImage();
   FirmwareImage(FirmwareImage&&) noexcept;
 
-  /// The checksum that the build has sealed it with; nothing if it has none.
+  /// Checksum that the build has stored in the image; std::nullopt without one.
   std::optional<std::uint32_t> check() const;
 
-  /// Function, file and line of an instruction, as far as the ELF tells; empty if no function lies there.
+  /// Function, file and line of an instruction, as far as the ELF file contains them; empty if there is no function.
   std::string place(std::uint32_t address) const;
 
  private:

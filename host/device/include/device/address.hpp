@@ -1,4 +1,4 @@
-// Where an arm is, as people and programs write it.
+// Addresses of arms, as users and programs write them.
 #pragma once
 
 #include <cstdint>
@@ -12,58 +12,58 @@
 
 namespace inkwell::device {
 
-/// A text that is no address.
+/// The text is not an address.
 class BadAddress : public Error {
  public:
   using Error::Error;
 };
 
-/// No arm is there that is meant.
+/// No arm with this address is connected.
 class NoDevice : public Error {
  public:
   using Error::Error;
 };
 
-/// More than one arm is there and none was named. `what()` lists their serial numbers.
+/// More than one arm is connected and the address names none. `what()` lists their serial numbers.
 class SeveralArms : public NoDevice {
  public:
   using NoDevice::NoDevice;
 };
 
-/// Written as one of
+/// An address is one of
 ///
 ///     (nothing)        the only arm on USB
 ///     NUMBER           the arm on USB that has this serial number
-///     usbip:HOST:PORT  the arm of a USB/IP server, such as a virtual board that runs already
-///     usbip:unix:PATH  the same at a Unix socket
-///     virtual          a virtual board that is started for it
-///     virtual:FILE     the same, with the arm that FILE describes
+///     usbip:HOST:PORT  the arm of a USB/IP server, such as a virtual board that already runs
+///     usbip:unix:PATH  the same through a Unix socket
+///     virtual          a virtual board that is started for this address
+///     virtual:FILE     the same, with the arm description FILE
 ///     virtual?seed=7&arm=FILE&elf=FILE
-///                      the same, with any of these: the seed of all noise, an arm, the firmware to run
+///                      the same, with any of: seed of the noise, arm description, firmware
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
-  std::string serial_number{};          ///< for `usb`; empty for the only one
+  std::string serial_number{};          ///< for `usb`; empty: the only arm
   SocketAddress server{};               ///< for `usbip`
-  std::filesystem::path arm{};          ///< for `own_board`; empty for the Omni
-  std::filesystem::path elf{};          ///< for `own_board`; empty for the firmware of this installation
+  std::filesystem::path arm{};          ///< for `own_board`; empty: the Omni
+  std::filesystem::path elf{};          ///< for `own_board`; empty: the firmware of this installation
   std::optional<std::uint64_t> seed{};  ///< for `own_board`
 };
 
 /// Throws BadAddress.
 Address parse_address(std::string_view text);
-/// Of a server: HOST:PORT, PORT alone on this computer, or unix:PATH. Throws BadAddress.
+/// Parses a server address: HOST:PORT, PORT on this computer, or unix:PATH. Throws BadAddress.
 SocketAddress parse_socket(std::string_view text);
-/// The arm of the USB/IP server at such an address. Throws BadAddress.
+/// The address of the arm at a USB/IP server. Throws BadAddress.
 Address parse_server(std::string_view text);
-/// Leads back to a device that was found, once it was opened.
+/// The address of an endpoint. Call it after the device was opened, because its serial number is unknown before.
 std::string address_of(const Endpoint& endpoint);
 
-/// The arms that the address may mean; none for a board that is not started yet. Throws Error if a server does not
-/// answer.
+/// The arms that match the address; empty for a virtual board that is not started yet. Throws Error if a server does
+/// not answer.
 std::vector<Endpoint> find_arms(const Address& address);
-/// The one that it means. Waits two seconds for the arm of a server that answers. Throws NoDevice, as SeveralArms if
-/// the address does not say which.
+/// The only arm that matches the address. If a server answers, waits two seconds for its arm. Throws NoDevice, or
+/// SeveralArms if several arms match.
 Endpoint find_arm(const Address& address);
 
 }  // namespace inkwell::device

@@ -1,4 +1,4 @@
-// What the board keeps in its flash, and the commands that change it.
+// The stored parameters of the board, and the commands that change them.
 #pragma once
 
 #include <vector>
@@ -10,25 +10,25 @@ namespace inkwell::device {
 
 struct BoardStore {
   protocol::StoreReport report;
-  protocol::ParameterSet at_next_start;  ///< what the board's next start gives each parameter
+  protocol::ParameterSet at_next_start;  ///< parameter values after the next start of the board
 };
 
 BoardStore read_store(Device& device);
 
-/// Those that would be lost with the board's power, in the table's order.
+/// The parameters whose current values differ from the stored ones, in the order of the table.
 std::vector<protocol::Parameter> not_stored(const protocol::ParameterSet& held, const BoardStore& store);
 
-/// The board did not store the parameters, or not forget them. What it kept before is unharmed.
+/// The board did not store or erase the parameters. The previous stored parameters are intact.
 class NotStored : public Error {
  public:
   NotStored(std::string_view what, const protocol::StoreReport& report);
   protocol::StoreReport report;
 };
 
-/// Has the board keep the parameters as it holds them now, and waits until its flash has them. Throws NotStored, with
-/// the remedy, where the board refuses, as while the force is on; and Error if it takes no command.
+/// Stores the current parameters and waits until the flash holds them. Throws NotStored with the remedy if the board
+/// refuses, for example while the force is on. Throws Error if the board does not carry out the command.
 protocol::StoreReport store_parameters(Device& device);
-/// Has it forget what it keeps and gives every parameter its default. Throws likewise.
+/// Erases the stored parameters and sets every parameter to its default. Throws the same errors.
 protocol::StoreReport factory_reset(Device& device);
 
 }  // namespace inkwell::device

@@ -1,4 +1,4 @@
-// The board's time on the clock of the USB host: a computer that follows several devices can put them on one line.
+// Converts board time to the clock of the USB host, so that a computer can align the data of several devices.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@ namespace inkwell::device {
 
 class BusClock {
  public:
-  /// `cycles_per_period`: processor cycles of a control period, by the InformationReport.
+  /// `cycles_per_period`: processor cycles per control period, from the InformationReport.
   explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
 
-  /// To be given a frame now and then, once a second for instance.
+  /// Call this with a bus frame regularly, for instance once per second.
   void note(const BusFrame& frame);
 
-  /// Time of a control period in seconds of the host's frames, since the bus runs; none before the first frame, at the
-  /// nominal rate before the second.
+  /// Time of a control period in seconds of bus frames, counted from the start of the bus. None before the first frame.
+  /// Before the second frame the nominal rate is used.
   std::optional<double> host_time_s(std::int64_t time_periods) const;
 
  private:
   struct Moment {
     std::int64_t sequence;
     std::int64_t periods;
-    double period_share;  ///< of the period that had begun, 0 to 1
+    double period_share;  ///< elapsed fraction of the current period, 0 to 1
   };
   static double periods_between(const Moment& from, const Moment& to);
 

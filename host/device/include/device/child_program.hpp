@@ -1,5 +1,4 @@
-// Other people's programs that this one runs and waits for, such as gnuplot and openocd. No shell reads their
-// arguments.
+// Runs third-party programs such as gnuplot and openocd and waits for them. No shell reads their arguments.
 #pragma once
 
 // Start every child program with run_child_program(). If the program reads a script, run it in a folder from
@@ -20,14 +19,14 @@ namespace inkwell::device {
 local::PrivateFolder make_private_folder();
 
 struct ChildProgram {
-  std::vector<std::string> words;  ///< its name, which is looked for on PATH, and its arguments
-  std::filesystem::path folder;    ///< in which it runs
-  std::string advice;              ///< sentence for a user whose computer cannot start it
+  std::vector<std::string> words;  ///< the program name, which is searched on PATH, and the arguments
+  std::filesystem::path folder;    ///< working directory
+  std::string advice;              ///< sentence for the user if the program cannot be started
 };
 
-/// Runs the program to its end, with nothing on its standard input. `on_output` gets what it prints on standard output
-/// and standard error, in pieces. Returns its exit code, or 128 and the signal that ended it. Throws Error if it cannot
-/// be started.
+/// Runs the program until it exits, with an empty standard input. `on_output` receives the standard output and standard
+/// error in pieces. Returns the exit code, or 128 plus the number of the fatal signal. Throws Error if the program
+/// cannot be started.
 int run_child_program(const ChildProgram& program, const std::function<void(std::string_view)>& on_output);
 
 }  // namespace inkwell::device

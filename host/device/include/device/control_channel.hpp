@@ -1,5 +1,5 @@
-// Control transfers to a device for firmware updates (DFU 1.1): an arm whose firmware runs, which leaves for the boot
-// loader in its chip when it is asked to, and that boot loader.
+// Control transfers for firmware updates (DFU 1.1). The device is either a running firmware, which can detach to the
+// boot loader of the chip, or that boot loader.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace inkwell::device {
 
-/// A request of the class, to the interface for firmware updates.
+/// A class request to the firmware update interface.
 struct UpdateRequest {
   std::uint8_t request;
   std::uint16_t value = 0;
 };
 
-/// Throws Stalled if the device refuses a request, Disconnected if it is gone, Error if it does not answer.
+/// Throws Stalled if the device refuses a request, Disconnected if the device is gone, Error if it does not answer.
 class ControlChannel {
  public:
   virtual ~ControlChannel() = default;
@@ -29,11 +29,11 @@ class ControlChannel {
   virtual std::string alternate_name(std::uint8_t alternate) = 0;
 };
 
-/// ST's boot loader in a chip (0483:df11), of an arm or of anything else.
+/// Finds boot loaders of ST (0483:df11). They may belong to an arm or to any other product.
 std::vector<Endpoint> find_boot_loaders(const Address& address);
 /// Throws NoPermission, InUse, Disconnected or Error.
 std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint);
-/// Asks the firmware of an arm to leave for the boot loader. Throws Stalled while the hand feels a force.
+/// Asks the firmware of an arm to start the boot loader. Throws Stalled while the force is on.
 void detach_firmware(const Endpoint& endpoint);
 
 }  // namespace inkwell::device

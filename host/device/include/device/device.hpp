@@ -1,5 +1,5 @@
-// The protocol on top of a transport: poses, commands, forces, parameters, scope. Synchronous; see session.hpp for the
-// threaded client that the window uses.
+// The protocol on top of a transport: poses, commands, forces, parameters, scope. All calls are synchronous. The
+// threaded client of the window is in session.hpp.
 #pragma once
 
 #include <chrono>
@@ -28,27 +28,27 @@ struct Information {
   std::string firmware_version;
   std::uint16_t protocol_version;
   std::string serial_number;
-  std::string board_name;  ///< empty: it tells none. The device's word, which need not be a board that is known here
+  std::string board_name;  ///< as the device reports it, possibly unknown to this program; empty: not reported
   protocol::InformationReport report;
-  std::shared_ptr<const ForceLaw> force_law;  ///< of its image; null only where no device told it
+  std::shared_ptr<const ForceLaw> force_law;  ///< of the firmware image; null only if no device has reported it
 };
 
-/// The device speaks another version of the protocol than this program.
+/// The device uses another protocol version than this program.
 class Incompatible : public Error {
  public:
   explicit Incompatible(const std::string& sentence, std::string board = {})
       : Error(sentence), board_name(std::move(board)) {}
-  std::string board_name;  ///< empty: it tells none
+  std::string board_name;  ///< empty: not reported
 };
 
-/// A transaction was refused; the device keeps its old values.
+/// A transaction was refused; the device retains its old values.
 class Refused : public Error {
  public:
   explicit Refused(const protocol::TransactionReport& refusal);
   protocol::TransactionReport report;
 };
 
-/// The board does not test itself now. `what()` says why.
+/// The board cannot run its self-test now. `what()` states the reason.
 class NotTested : public Error {
  public:
   using Error::Error;
@@ -56,12 +56,12 @@ class NotTested : public Error {
 
 /// The program that drives an arm.
 struct Driver {
-  std::string program;       ///< its name, printable ASCII
-  std::uint32_t process_id;  ///< on its computer
+  std::string program;       ///< program name, printable ASCII
+  std::uint32_t process_id;  ///< on the computer of the program
   double driven_s;           ///< board time since it claimed the arm
-  /// The object of this process that holds the claim, counted from 1 in the order of opening; none for another process.
+  /// The object of this process that holds the claim, numbered from 1 in opening order; none for another process.
   std::optional<int> object;
-  bool is_this_device;  ///< that object is this one
+  bool is_this_device;  ///< true if `object` is this device
 };
 
 /// "python3 (process 123), which claimed it 12 s ago" or "this program itself, ...".
@@ -69,27 +69,27 @@ std::string driver_text(const Driver& driver);
 
 using ParameterChange = std::pair<protocol::Parameter, float>;
 
-/// May be used by several threads, but poses are read by one of them and the scope by one.
+/// Several threads may use a device. Only one thread may read poses, and only one may read the scope.
 class Device {
  public:
-  /// Opens the device and checks the protocol version first. Throws Error with the remedy if it differs. The rows of
-  /// its force law join the tables; if those of another law are there already, it throws Error as well.
+  /// Opens the device and checks the protocol version first. Throws Error with the remedy if the version differs. The
+  /// rows of its force law are added to the tables; throws Error if the tables contain another force law.
   static std::unique_ptr<Device> open(const Endpoint& endpoint);
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
-  /// Continues on the link of `opened`, which was opened for the same board and is not used afterwards. References to
-  /// this device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board has
-  /// another force law.
+  /// Continues on the link of `opened`, which was opened for the same board and must not be used afterwards. References
+  /// to this device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board
+  /// has another force law.
   void take_link_of(Device& opened);
 
-  /// Of a device of another version only what comes before the tables' hashes; the rest is 0.
+  /// For a device of another protocol version, only the members before the table hashes are valid; the rest is 0.
   Information information();
-  /// The start of the newest bus frame; none while the bus is silent.
+  /// The start of the newest bus frame; none while no bus frames arrive.
   std::optional<BusFrame> frame();
 
-  /// The device was connected before, when its newest pose was of `before_periods`: its time goes on from there, unless
-  /// it has started again since then.
+  /// Continues the board time of an earlier connection whose newest pose was at `before_periods`, unless the board has
+  /// restarted since then.
   void continue_time(std::int64_t before_periods);
 
   /// Waits for the next pose report; none on time-out.
@@ -97,76 +97,77 @@ class Device {
 
   /// The program that drives the arm; none if no program does.
   std::optional<Driver> driver();
-  /// The same, put into `driver`. False, without waiting, if another thread has a request under way: in lock step that
-  /// thread waits for the next pose.
+  /// Writes the driver into `driver`. Returns false without waiting if another thread has a request in progress: in
+  /// lock step that thread waits for the next pose.
   bool try_driver(std::optional<Driver>& driver);
-  /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it
-  /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm. If no
-  /// such process is on this computer, it was probably killed: then its claim is waited for to end.
+  /// Makes this object the driver until release(), its destruction, or protocol::claim_expiry_s without a sign of life.
+  /// Throws InUse with the driver's name if another object or program drives the arm. If that process does not exist on
+  /// this computer, claim() first waits for its claim to expire.
   void claim();
-  /// Like claim(), but it ends the claim of the current driver. The force of that program fades.
+  /// Like claim(), but ends the claim of the current driver. The force of that program fades out.
   void take_over();
-  /// Ends the claim, and with it shapes and force. Without effect if this object does not drive, and in a forked child,
-  /// whose copy of the claim is its parent's.
+  /// Ends the claim, and with it shapes and force. It has no effect if this object does not drive the arm, or in a
+  /// forked child, whose claim belongs to the parent.
   void release();
-  /// Forgets the claim without a word to the board, as a program that is killed.
+  /// Drops the claim without informing the board, like a killed program.
   void abandon();
-  /// Whether this object drives the arm. read_pose() notices when the claim has been lost.
+  /// Whether this object drives the arm. read_pose() detects the loss of the claim.
   bool drives() const;
 
-  /// Sends a command, and returns once the control interrupt has carried it out. That says nothing of its effect: a
-  /// command that does not fit the state has none. Throws InUse if another program drives the arm, and Error if the
-  /// board does not carry it out in time.
+  /// Sends a command and returns once the control interrupt has executed it. A command that does not fit the state has
+  /// no effect and is not an error. Throws InUse if another program drives the arm, and Error if the board does not
+  /// execute the command in time.
   void carry_out(protocol::Command command);
   void carry_out(protocol::Command command, const protocol::TestPulse& pulse);
-  /// Switches the force off, and returns once it is off. stop() does so at once, whichever program drives the arm;
-  /// disable_force() lets it fall softly, and throws InUse if another program drives the arm.
+  /// Switch the force off and return once it is off. stop() acts immediately, also if another program drives the arm.
+  /// disable_force() fades the force out, and throws InUse if another program drives the arm.
   void stop();
   void disable_force();
   /// disable_force(), or stop() if another program drives the arm.
   void switch_force_off();
 
-  /// Sends a command and returns its token, which comes back in PoseReport::command_token. Whether the board accepts it
-  /// is not known yet.
+  /// Sends a command and returns its token, which PoseReport::command_token repeats. The result of the command is not
+  /// known on return.
   std::uint8_t send(protocol::Command command);
-  /// Sends a heartbeat if the poses read show that 10 ms of board time have passed since the last output report.
-  /// Belongs in the loop that reads poses.
+  /// Sends a heartbeat if, according to the poses read, 10 ms of board time have passed since the last output report.
+  /// Call this in the loop that reads poses.
   void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
-  /// None stops the scope, and another program may have it. Throws InUse if another program has it.
+  /// Selects the signals of the scope. An empty selection stops the scope and makes it available to other programs.
+  /// Throws InUse if another program uses the scope.
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
-  /// Waits until the board has every command and force that was sent; false on time-out. A force that is sent then
-  /// arrives in the next frame of the bus, and not behind others.
+  /// Waits until the board has every command and force that was sent; false on time-out. A force that is sent
+  /// afterwards does not queue and arrives in the next bus frame.
   bool wait_until_written(std::chrono::milliseconds timeout);
-  /// The force from now on, until the next one or its expiry. A sign of life. Throws Error for one that the board would
-  /// refuse.
+  /// Sets the force until the next request or its expiry. Every request is a sign of life. Throws Error if the board
+  /// would refuse the request.
   void send_force(const ForceRequest& request);
-  /// Replaces all shapes within one control period. Throws Error for shapes that the board would refuse, or if the
-  /// board stays busy, and InUse if this object does not drive the arm.
+  /// Replaces all shapes within one control period. Throws Error if the board would refuse the shapes or stays busy,
+  /// and InUse if this object does not drive the arm.
   void place_shapes(const Shapes& shapes);
 
   protocol::ParameterSet parameters();
-  /// One transaction: all take effect at one control period, or none does and Refused is thrown.
+  /// One transaction: either all changes take effect in one control period, or none and Refused is thrown.
   AcceptedTransaction set_parameters(std::span<const ParameterChange> changes);
   AcceptedTransaction restore_default_parameters();
-  /// Each gets what the board's next start would give it. Throws Refused if the board has stored nothing.
+  /// Sets every parameter to its value after the next start. Throws Refused if the board has no stored parameters.
   AcceptedTransaction restore_stored_parameters();
-  /// What the board's next start would give each parameter: what it has stored, or the default.
+  /// The parameter values after the next start: the stored values, or the defaults.
   protocol::ParameterSet stored_parameters();
-  /// What the board has stored. The commands that change it are in board_store.hpp.
+  /// The state of the stored parameters. The commands that change them are in board_store.hpp.
   protocol::StoreReport store_report();
 
-  /// What the board kept of the time around its last fault; its `fault` is none if it keeps nothing. Its counters, and
-  /// those of its rows, are those of the board's run in which the fault came, and not widened.
+  /// The black box of the last fault; its `fault` is none if the black box is empty. Its counters and those of its rows
+  /// count from the board start during which the fault occurred, and are not widened.
   protocol::BlackBoxReport black_box();
-  /// The rows of this one, in the order of time. Throws Error if the board gave it up meanwhile.
+  /// The rows of this black box in chronological order. Throws Error if the board has discarded it meanwhile.
   std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);
 
-  /// The newest result of each item of the board's self-test.
+  /// The newest result of each self-test item.
   protocol::SelfTestReport read_self_test();
-  /// Lets the board test itself, which takes a twentieth of a second, and returns what it found. Throws NotTested if
-  /// the board does not: the force is on, or a fault is shown.
+  /// Runs the self-test, which takes 0.05 s, and returns the results. Throws NotTested if the board refuses because the
+  /// force is on or a fault is shown.
   protocol::SelfTestReport self_test();
 
   /// Waits for the next scope frame; none on time-out.

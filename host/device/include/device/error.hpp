@@ -1,4 +1,4 @@
-// What can go wrong with a device, and with everything that is made of it.
+// Errors of a device and of the code that uses it.
 #pragma once
 
 #include <stdexcept>
@@ -8,32 +8,32 @@
 
 namespace inkwell::device {
 
-/// Every failure of this library: `what()` is a sentence that says what is wrong and what to do. It may quote a file, a
-/// device or another program, and is safe to print.
+/// Base class of all errors of this library. `what()` states the problem and the remedy. It may quote a file, a device
+/// or another program, and is safe to print.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
-/// The device went away (unplugged, board stopped). A Session reconnects by itself.
+/// The device is gone (unplugged, board stopped). A Session reconnects automatically.
 class Disconnected : public Error {
  public:
   using Error::Error;
 };
 
-/// The device answered a request with a stall: it does not know it, or does not accept it.
+/// The device answered a request with a stall: the request is unknown or not accepted.
 class Stalled : public Error {
  public:
   using Error::Error;
 };
 
-/// Another program has what was asked for.
+/// Another program uses the requested resource.
 class InUse : public Error {
  public:
   using Error::Error;
 };
 
-/// The device is there, but this user may not open it. `what()` holds the udev line to install.
+/// The device is connected, but this user may not open it. `what()` contains the udev rule to install.
 class NoPermission : public Error {
  public:
   using Error::Error;

@@ -1,4 +1,4 @@
-// What a fault tells its user: the words of the protocol's table with the board's figures in them.
+// Fault texts: the protocol's table with the values of the board inserted.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct FaultText {
 };
 
 FaultText fault_text(protocol::Fault fault);
-/// The same, and of self_test_failed what failed in this test, with the remedies of its items.
+/// The same; for self_test_failed with the failed items and their remedies.
 FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test);
 
 /// One line with the fault's name, its cause and its remedy.

@@ -1,4 +1,4 @@
-// The force law that an image was built with: its rows join the tables of this program.
+// The force law of a firmware image, whose rows are added to the tables of this program.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 namespace inkwell::device {
 
 struct ForceLaw {
-  /// As the device sent it, with its texts made plain. The texts of all rows lie in it.
+  /// The report of the device with its texts cleaned. The texts of all rows refer to it.
   std::shared_ptr<const std::vector<std::byte>> report;
-  std::string_view name;  ///< of its file and struct
+  std::string_view name;  ///< name of its file and struct
   std::string_view help;
   std::vector<protocol::ParameterInfo> parameters;
   std::vector<protocol::SignalInfo> signals;
@@ -24,12 +24,12 @@ struct ForceLaw {
 /// Reads a protocol::ForceLawReport. Throws Error if it is damaged.
 ForceLaw parse_force_law(std::span<const std::byte> report);
 
-/// Puts the law's rows behind those of the tables: info(), known_parameters() and known_signals() give them, as
-/// find_parameter() and find_signal() do by name. A law without rows has the tables as they are. False, and nothing
-/// changes, while another law is in use, which is as long as somebody holds a `report` with which it joined.
+/// Appends the rows of the law to the tables, so that info(), known_parameters(), known_signals(), find_parameter() and
+/// find_signal() include them. Returns false and changes nothing while another law is in use. A law is in use while a
+/// `report` that was added with it exists.
 bool join_tables(const ForceLaw& law);
 
-/// The name of the law whose rows are in the tables; empty if there is none.
+/// The name of the law in the tables; empty if there is none.
 std::string joined_force_law();
 
 }  // namespace inkwell::device

@@ -1,4 +1,4 @@
-// Finds what was probably meant by a name that is misspelt.
+// Finds the intended name of a misspelled one.
 #pragma once
 
 #include <algorithm>
@@ -11,22 +11,22 @@
 
 namespace inkwell::device {
 
-/// A name that no table has. It may be one of a device's own force law, if none was opened yet.
+/// A name that no table has. It may belong to the force law of a device that was not opened yet.
 class UnknownName : public Error {
  public:
   using Error::Error;
 };
 
-/// Levenshtein's distance: how many characters must be inserted, removed or exchanged. More than `most` are told as one
-/// more than that.
+/// Levenshtein distance: the number of insertions, removals and replacements. A distance above `most` is returned as
+/// `most` + 1.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
-/// Whether `name` was probably meant by the typed text: it has the text in it, or takes few edits, be it as a whole or
-/// as far as the text goes.
+/// Whether `name` was probably meant by the typed text. It contains the text, or few edits lead from the text to the
+/// name or to its beginning.
 bool is_near(std::string_view name, std::string_view typed);
 
-/// " Did you mean NAME?" with the name in a table of rows with a `name` that was probably meant: one that has the typed
-/// text in it, else one that takes few edits. Empty if none is near.
+/// " Did you mean NAME?" with the most similar name of the table. A name that contains the typed text has priority over
+/// a name that takes few edits. Empty if no name is similar.
 template <class Table>
 std::string suggestion(const Table& table, std::string_view typed) {
   const std::string_view* nearest = nullptr;

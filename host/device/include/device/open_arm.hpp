@@ -1,4 +1,4 @@
-// From an address to an open device, with a virtual board started for it if that is what the address says.
+// Opens the device at an address. Starts a virtual board if the address demands one.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,19 @@
 namespace inkwell::device {
 
 struct OpenArm {
-  std::unique_ptr<VirtualBoard> board;   ///< that was started for it
-  std::optional<ControlClient> control;  ///< of `board`
+  std::unique_ptr<VirtualBoard> board;   ///< the board that was started for this arm
+  std::optional<ControlClient> control;  ///< control socket of `board`
   Endpoint endpoint{};
   std::unique_ptr<Device> device;
 };
 
-/// A board of its own is started with these options and the address's arm, whose parameters its firmware gets; if it
-/// starts paused, it stands by. With a virtual board, the device is in `lock_step`, unless that is null. Throws Error,
-/// as NoDevice if no arm is there.
+/// Opens the arm at the address. For an `own_board` address, starts a virtual board with these options and the
+/// address's arm description, and sends it the parameters of that description. A board that starts paused goes to
+/// standby. With a virtual board, the device uses `lock_step` unless that is null. Throws Error, or NoDevice if no arm
+/// is found.
 OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step = nullptr);
 
-/// The rows of the parameter table that an arm description sets. Throws Error that names the line to mend.
+/// The parameters that an arm description sets. Throws Error with the line of a mistake.
 std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file);
 
 }  // namespace inkwell::device

@@ -1,5 +1,5 @@
-// Parameters as TOML files that a person can read and compare. An arm description (boards/arms/*.toml) is one too:
-// its other sections are left alone.
+// Parameters as TOML files for users to read and compare. Arm descriptions (boards/arms/*.toml) are also accepted;
+// their other sections are ignored.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@
 namespace inkwell::device {
 
 struct ParameterFile {
-  std::vector<ParameterChange> changes;  ///< in the table's order
-  std::vector<std::string> unknown;      ///< names in the file that this version does not know
+  std::vector<ParameterChange> changes;  ///< in the order of the table
+  std::vector<std::string> unknown;      ///< names that this version does not know
 };
 
 struct ParameterDifference {
@@ -24,31 +24,31 @@ struct ParameterDifference {
   float in_device;
 };
 
-/// Reads the [parameters] section. Throws Error naming the line or the key if it is not TOML, a value is no number
-/// or lies outside its range. Unknown names are returned, not refused: files of other versions stay usable.
+/// Reads the [parameters] section. Throws Error with the line or key if the file is not TOML, or a value is not a
+/// number or is out of range. Unknown names are returned, so that files of other versions remain usable.
 ParameterFile parse_parameters(std::string_view toml, const std::string& file_name);
 ParameterFile load_parameters(const std::filesystem::path& file);
 
-/// Every parameter under its group, with unit, range and help beside it.
+/// All parameters by group, each with a comment of its unit, range and help.
 std::string format_parameters(const protocol::ParameterSet& parameters);
-/// Writes beside the file first and then renames, so that a full disk does not cost the old file.
+/// Writes a temporary file first and then renames it, so that a full disk does not destroy the old file.
 void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters);
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device);
 
-/// The shortest text that reads back as exactly this value.
+/// The shortest text from which exactly this value can be read.
 std::string format_value(protocol::Parameter parameter, float value);
-/// None if the text is anything but a number, such as one with a comma.
+/// None if the text is not a number with a decimal point.
 std::optional<float> parse_number(std::string_view text);
-/// A value as a person types it, with a decimal point. Throws Error with a sentence if it is no number or not in range.
+/// Parses a value with a decimal point. Throws Error if it is not a number or is out of range.
 float parse_value(protocol::Parameter parameter, std::string_view number);
-/// "NAME=VALUE". Throws Error with the nearest name, or the range, if it cannot be meant.
+/// Parses "NAME=VALUE". Throws Error with the most similar name or with the range if this is not possible.
 ParameterChange parse_change(std::string_view text);
-/// Throws Error, with the nearest name if one is near, if there is none of this name.
+/// Throws Error, with the most similar name if any, if no parameter has this name.
 protocol::Parameter parameter_named(std::string_view name);
-/// " Did you mean NAME?" with a known name that is near; empty if none is.
+/// " Did you mean NAME?" with a similar known name; empty if there is none.
 std::string parameter_suggestion(std::string_view name);
-/// Throws Error that says the range if the value is not finite, outside it, or not whole where it must be.
+/// Throws Error with the range if the value is not finite, is out of range, or is not an integer where one is required.
 void check_value(protocol::Parameter parameter, float value);
 
 }  // namespace inkwell::device

@@ -1,4 +1,4 @@
-// JSON of another program or of a file.
+// Parses JSON from another program or a file.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace inkwell::device {
 
-/// Parses it, with texts that are safe to print. Throws nlohmann::json::exception.
+/// Returns the JSON value with texts that are safe to print. Throws nlohmann::json::exception.
 inline nlohmann::json parse_plain_json(std::string_view text) {
   return nlohmann::json::parse(text, [](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
     if (event == nlohmann::json::parse_event_t::value && parsed.is_string())

@@ -1,4 +1,4 @@
-// What a program of the user wants the hand to feel: forces, and shapes that the board renders at its full servo rate.
+// Forces of a user program, and shapes that the board renders at its full servo rate.
 #pragma once
 
 #include <array>
@@ -10,29 +10,31 @@
 
 namespace inkwell::device {
 
-/// A force for the program's next interval (protocol::ForceReport says what the board makes of it).
+/// A force for the program's next interval. protocol::ForceReport describes its effect.
 struct ForceRequest {
   std::array<float, 3> force_N{};  ///< on the hand, workspace axes
   protocol::ForceMode mode = protocol::ForceMode::beside_walls;
-  int interval_ms = 1;  ///< until the program sends the next one, 1 to protocol::force_interval_maximum_ms
-  /// Of the pose that it answers; the newest one if none is given.
+  int interval_ms = 1;  ///< interval until the next request, 1 to protocol::force_interval_maximum_ms
+  /// Sequence of the pose that this force answers; none: the newest pose.
   std::optional<std::uint32_t> pose_sequence{};
 };
 
-/// How a shape feels; ranges as in protocol::SurfaceEntry.
+/// Surface properties of a shape; the ranges are in protocol::SurfaceEntry.
 struct Surface {
   float stiffness_N_per_m = 800.0f;
   float damping_Ns_per_m = 2.0f;
-  float static_friction = 0.0f;   ///< bound of the tangential force while it sticks, as a part of the normal force
-  float dynamic_friction = 0.0f;  ///< the same while it slides
-  /// Then the board forgets the shape, unless it is placed again. By default it lasts as long as the program drives.
+  float static_friction = 0.0f;   ///< limit of the tangential force while the probe sticks, relative to the normal
+                                  ///< force
+  float dynamic_friction = 0.0f;  ///< the same while the probe slides
+  /// Time after which the board removes the shape, unless it is placed again. By default the shape exists while the
+  /// program drives.
   float life_s = std::numeric_limits<float>::infinity();
 };
 
-/// A wall for the probe, which is a point to it.
+/// A wall. The probe is a point for it.
 struct Plane {
-  std::array<float, 3> point_m{};                 ///< any point of it
-  std::array<float, 3> normal{0.0f, 0.0f, 1.0f};  ///< into the free space, of any length but 0
+  std::array<float, 3> point_m{};                 ///< any point on the plane
+  std::array<float, 3> normal{0.0f, 0.0f, 1.0f};  ///< direction into the free space, of any length except 0
   Surface surface;
 };
 
@@ -43,13 +45,13 @@ struct Sphere {
   Surface surface;
 };
 
-/// The shapes from now on. A shape that keeps its place keeps its friction's grip while it moves.
+/// All current shapes. A moving shape in the same slot keeps its friction contact with the probe.
 struct Shapes {
   std::array<std::optional<Plane>, protocol::shape_planes_maximum> planes;
   std::optional<Sphere> sphere;
 };
 
-/// As it goes over the wire. Throws Error naming the value that the board would refuse, and its range.
+/// The reports for the board. Both functions throw Error with the value that the board would refuse and its range.
 protocol::ForceReport force_report(const ForceRequest& request);
 protocol::ShapesReport shapes_report(const Shapes& shapes);
 

@@ -1,4 +1,4 @@
-// Turns scope frames back into samples. Pure: bytes in, samples out; trusts nothing that came over the wire.
+// Decodes scope frames to samples. It has no side effects and validates all received bytes.
 #pragma once
 
 #include <array>
@@ -19,33 +19,33 @@ struct ScopeSamples {
   std::int64_t first_period = 0;
   std::size_t count = 0;
   std::vector<float> values;
-  std::uint64_t lost_before = 0;  ///< control periods missing between the samples before and these
+  std::uint64_t lost_before = 0;  ///< control periods lost between the previous samples and these
 };
 
 class ScopeDecoder {
  public:
-  /// Tells what the select_signals command with this token asked for. At most scope_signals_maximum signals.
+  /// Announces the selection of the select_signals command with this token: at most scope_signals_maximum signals.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
-  /// What was sampled before this control period was for a program that ran earlier, whatever its token: an endpoint
-  /// may hold its last frame for hours.
+  /// Rejects samples from control periods before this one, whatever their token: they belong to an earlier program.
+  /// An endpoint may retain its last frame for hours.
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
-  /// Call it with the present control period before each selection. A frame that comes 29 hours after the period of
-  /// forget_before(), half of the counter's range, would seem to come before it.
+  /// Call this with the current control period before each selection. Without it, a frame more than 29 hours after
+  /// the period of forget_before() would seem to precede that period, because the 32-bit counter wraps.
   void pass_time(std::uint32_t now_period) {
     constexpr std::uint32_t recent_periods = 0x4000'0000;
     if (first_wanted_period_ && now_period - *first_wanted_period_ > recent_periods) first_wanted_period_ = now_period;
   }
 
-  /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
-  /// newest (a left-over of the one before, or of a program that ran earlier). `first_period` is not widened.
+  /// The samples of one frame. None if the frame is malformed (counted) or belongs to another selection than the newest
+  /// one. `first_period` is not widened.
   ///
-  /// `lost_before` counts the control periods between the last frame decoded and this one. If the very first
-  /// frames of a selection are missing nobody can know their samples; each then counts as one.
+  /// `lost_before` counts the control periods between the previously decoded frame and this one. If the first frames of
+  /// a selection are missing, their sample counts are unknown; each then counts as one period.
   ///
-  /// Who gives the scope up takes its transfers back, maybe amid a frame, the rest of which the device still sends to
-  /// the next reader. So one transfer without a header is none that is malformed before the first frame of a selection
-  /// that follows on none.
+  /// A program that releases the scope cancels its transfers, possibly within a frame. The device sends the rest of
+  /// that frame to the next reader. One transfer without a header is therefore not counted as malformed if it comes
+  /// before the first frame after the scope was stopped.
   std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
 
   std::uint64_t malformed_frames() const { return malformed_frames_; }
@@ -60,7 +60,7 @@ class ScopeDecoder {
   std::optional<std::uint8_t> token_;
   std::optional<std::uint32_t> next_period_;
   std::optional<std::uint32_t> first_wanted_period_;
-  bool may_begin_with_rest_ = false;  ///< of a frame whose begin went to the reader before
+  bool may_begin_with_rest_ = false;  ///< rest of a frame whose beginning went to the previous reader
   std::uint64_t malformed_frames_ = 0;
 };
 

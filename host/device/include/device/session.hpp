@@ -1,5 +1,5 @@
-// A client that looks after itself: connects and reconnects, keeps the host's sign of life, holds the
-// newest pose and the scope's history. Its own threads talk to the device; the caller never waits.
+// A client that connects and reconnects automatically, sends the sign of life, and stores the newest pose. Separate
+// threads access the device; calls never wait for it.
 #pragma once
 
 #include <cstdint>
@@ -18,31 +18,32 @@ namespace inkwell::device {
 
 enum class Connection : std::uint8_t { searching, connected, incompatible, no_permission };
 
-/// A fault that the device is in.
+/// The current fault of the device.
 struct NoticedFault {
   protocol::Fault fault;
-  /// The control period that noticed it, or, of a fault that a start tells afterwards, that of the first pose with it.
+  /// The control period in which the fault was raised. For a fault that is reported after a restart: the period of the
+  /// first pose with it.
   std::int64_t at_periods;
   bool operator==(const NoticedFault&) const = default;
 };
 
 struct SessionStatus {
   Connection connection = Connection::searching;
-  std::string message;                     ///< a sentence for the user, with the remedy where there is one
-  std::optional<Information> information;  ///< read anew every second
-  std::string board_name;                  ///< of the device, though it be incompatible; empty: it tells none
+  std::string message;                     ///< a sentence for the user, with the remedy if there is one
+  std::optional<Information> information;  ///< read every second
+  std::string board_name;                  ///< also of an incompatible device; empty: not reported
   bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::int64_t> applied_at_periods;
-  std::optional<NoticedFault> fault;                  ///< none: the device is in no fault
-  std::optional<protocol::SelfTestReport> self_test;  ///< that led to the fault self_test_failed
-  std::optional<BoardStore> store;  ///< as of the newest second, or of the newest request to change it
-  bool is_storing = false;          ///< a request to store or to forget is on its way
-  /// Why the newest request to store or to forget came to nothing; none once another was made.
+  std::optional<NoticedFault> fault;                  ///< none: the device is not in the fault state
+  std::optional<protocol::SelfTestReport> self_test;  ///< the results that led to the fault self_test_failed
+  std::optional<BoardStore> store;                    ///< read once per second and after each request to change it
+  bool is_storing = false;                            ///< a request to store or erase parameters is pending
+  /// Why the newest request to store or erase parameters failed; none after a new request.
   std::optional<std::string> store_problem;
-  /// The program that drives the arm, as of the newest second or change; none if no program does.
+  /// The driver of the arm, updated every second and on each change; none if no program drives the arm.
   std::optional<Driver> driver;
-  /// Why the newest command had no effect; none once another was carried out.
+  /// Why the newest command had no effect; none after a command was carried out.
   std::optional<std::string> command_problem;
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
@@ -52,53 +53,56 @@ struct SessionStatus {
   std::uint64_t scope_frames_malformed = 0;
 };
 
-/// The device that was lost is connected again.
+/// The lost device is connected again.
 struct Reconnection {
-  std::uint64_t number = 0;         ///< rises with each
-  protocol::ParameterSet before{};  ///< that it held when it was lost, with what was then on its way to it
-  protocol::ParameterSet after{};   ///< that it held when it came back, which is something else if it lost its power
+  std::uint64_t number = 0;         ///< increases with each reconnection
+  protocol::ParameterSet before{};  ///< values when the device was lost, including pending changes
+  protocol::ParameterSet after{};   ///< values after the reconnection; they differ if the device lost power
 };
 
 class Session {
  public:
-  /// `find` is asked again and again for the device to connect to while there is none.
+  /// While no device is connected, `find` is called repeatedly to find one.
   explicit Session(std::function<std::optional<Endpoint>()> find);
-  /// Sends what is still queued, if the device is there.
+  /// Sends the queued requests if a device is connected.
   ~Session();
 
   SessionStatus status() const;
   std::optional<Pose> newest_pose() const;
 
-  /// Queues a command; it is sent within a millisecond. Whatever may move the arm first claims it for this session,
-  /// which releases it once the force is off. A disable_force is a stop while another program drives the arm.
+  /// Queues a command; it is sent within a millisecond. A command that may move the arm first claims the arm for this
+  /// session. The session releases the arm once the force is off. While another program drives the arm, disable_force
+  /// acts as stop.
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
 
   /// Queues a takeover of the arm from the program that drives it.
   void take_over();
 
-  /// The parameters as the device holds them; `parameters_revision` rises when they were read anew.
+  /// The current parameters of the device; `parameters_revision` increases with each connection, transaction and
+  /// change.
   std::optional<protocol::ParameterSet> parameters() const;
   std::uint64_t parameters_revision() const;
-  /// Queues one transaction. Changes queued before the last one was sent are merged into it.
+  /// Queues one transaction. Changes that were queued since the last transaction are merged into it.
   void set_parameters(std::vector<ParameterChange> changes);
   void restore_default_parameters();
-  /// Has the board store its parameters, once it has those that wait. Nothing without a device, and not
-  /// repeated after a loss.
+  /// Stores the board's parameters after the pending changes were sent. It has no effect without a device and is not
+  /// repeated after a disconnection.
   void store_parameters();
-  /// Has the board forget what it has stored and hold its defaults.
+  /// Erases the stored parameters and sets every parameter to its default.
   void factory_reset();
-  /// The newest one, while the device is connected; none before the first, and for another device than the one lost.
+  /// The newest reconnection while the device is connected. None before the first reconnection, or if the connected
+  /// device is not the lost one.
   std::optional<Reconnection> reconnection() const;
-  /// The refusal of the newest transaction, if it was refused; empty once another was accepted.
+  /// The refusal of the newest transaction; empty after an accepted one.
   std::optional<std::string> refusal() const;
 
-  /// What has happened since the last call; of very much the newest.
+  /// The events since the last call. If there are too many, only the newest ones.
   std::vector<Event> take_events();
 
-  /// Asks for these signals at every control period, from now on and after each reconnection.
+  /// Selects these signals for every control period, also after each reconnection.
   void select_signals(std::vector<protocol::Signal> signals);
-  /// Called from the session's scope thread with every frame. Set before the first selection.
+  /// The session's scope thread calls `receive` with every frame. Set it before the first selection.
   void on_scope(std::function<void(const ScopeSamples&)> receive);
 
  private:

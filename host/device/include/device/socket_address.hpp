@@ -1,4 +1,4 @@
-// Where a USB/IP server or the control socket of a virtual board listens.
+// The address of a USB/IP server or of the control socket of a virtual board.
 #pragma once
 
 #include <local/socket_address.hpp>

@@ -1,4 +1,4 @@
-// The way to one USB device: to a real one through hidapi and libusb, to a virtual one through USB/IP.
+// The connection to one USB device: through hidapi and libusb to a real one, through USB/IP to a virtual one.
 #pragma once
 
 #include <chrono>
@@ -16,21 +16,21 @@
 
 namespace inkwell::device {
 
-/// The calls of a program that is in lock step with a virtual board: each report that the program reads is a turn, and
-/// the conditions of waiting calls are checked once per turn.
+/// The calls of a program that is in lock step with a virtual board. Each report that the program reads is a turn. The
+/// conditions of waiting calls are checked once per turn.
 class LockStep {
  public:
   virtual ~LockStep() = default;
-  /// Whether this thread's calls have to wait like this: another thread reads reports.
+  /// Whether calls of this thread must wait for turns, because another thread reads the reports.
   virtual bool is_in_step() const = 0;
-  /// Waits until `is_over` holds in a turn; false if no report comes for this long. Throws Disconnected.
+  /// Waits until `is_over` is true in a turn; false if no report arrives for `patience`. Throws Disconnected.
   virtual bool wait(const std::function<bool()>& is_over, std::chrono::milliseconds patience) = 0;
 };
 
-/// Of a program that uses the device in one thread.
+/// Lock step for a program that uses the device in one thread.
 LockStep& one_thread();
 
-/// Where a device is.
+/// The location of a device.
 struct Endpoint {
   enum class Kind : std::uint8_t { usb, usbip };
   Kind kind;
@@ -38,42 +38,42 @@ struct Endpoint {
   std::string product;
   std::string path;         ///< hidapi's path for `usb`, bus id for `usbip`
   SocketAddress server{};   ///< for `usbip`
-  bool is_virtual = false;  ///< a virtual board, so what comes from it is a simulation
-  /// For a virtual board: asks for one report at a time, when it is read. Outlives the transport.
+  bool is_virtual = false;  ///< true: a virtual board, so its data are simulated
+  /// For a virtual board: requests one report at a time, when it is read. It must outlive the transport.
   LockStep* lock_step = nullptr;
-  /// For a virtual board: the numbers that are random otherwise follow from this, so that a run can be repeated.
+  /// For a virtual board: the seed of the otherwise random numbers, so that a run can be repeated.
   std::optional<std::uint64_t> seed = {};
 };
 
-/// The arms on this computer's USB.
+/// The arms that are connected to this computer by USB.
 std::vector<Endpoint> find_usb_devices();
-/// The arms exported by a USB/IP server such as a virtual board. Throws Error if it does not answer. Their
-/// serial numbers are known only after open_transport, because a USB/IP list of devices does not hold them.
+/// The arms exported by a USB/IP server such as a virtual board. Throws Error if the server does not answer. Serial
+/// numbers are known only after open_transport(), because USB/IP device lists do not contain them.
 std::vector<Endpoint> find_usbip_devices(const SocketAddress& server);
 
-/// Raw reports and bulk data. Calls may come from two threads: one for reports, one for the bulk stream.
+/// Raw reports and bulk data. Two threads may call this: one for reports, one for the bulk stream.
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Waits for an input report. Returns its length with the report id in front, 0 on time-out. In lock step this asks
-  /// the board for the report, except with a time-out of 0.
+  /// Waits for an input report. Returns its length including the leading report id, or 0 on time-out. In lock step this
+  /// requests the report from the board, except with a time-out of 0.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
-  /// Returns before the device has the report, unless many are under way.
+  /// Returns without waiting for the device, unless many reports are pending.
   virtual void write_report(std::span<const std::byte> report) = 0;
-  /// Waits until the device has every report that was written; false on time-out. The next report then does not queue
-  /// behind others. The default is for a transport whose write_report() waits for this itself.
+  /// Waits until the device has every written report; false on time-out. The next report then does not queue. The
+  /// default is for a transport whose write_report() waits for the device.
   virtual bool wait_until_written([[maybe_unused]] std::chrono::milliseconds timeout) { return true; }
-  /// `report[0]` holds the report id. Returns the length received.
+  /// `report[0]` is the report id. Returns the received length.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
   virtual void set_feature(std::span<const std::byte> report) = 0;
-  /// Makes the scope's bulk stream this program's own; only one program can have it. Throws InUse if another has.
+  /// Reserves the scope's bulk stream for this program. Throws InUse if another program has reserved it.
   virtual void claim_scope() = 0;
-  /// Another program may have the stream from now on. Nothing if it is not this program's.
+  /// Releases the stream for other programs. It has no effect if this program has not reserved it.
   virtual void release_scope() = 0;
-  /// Waits for one bulk transfer of the scope; none come before it is claimed. Returns its length, 0 on time-out.
-  /// Enough transfers are kept under way that a reader who is late by 100 ms loses nothing.
+  /// Waits for one bulk transfer of the scope, which must be claimed. Returns its length, or 0 on time-out. Enough
+  /// transfers are pending that a reader which is 100 ms late loses no data.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
-  /// Where this leads, with the serial number and product name that the device told.
+  /// The endpoint, with the serial number and product name that the device reported.
   virtual const Endpoint& endpoint() const = 0;
 };
 

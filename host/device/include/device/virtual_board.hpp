@@ -1,5 +1,5 @@
-// Starts the `virtual-board` program and owns it: the board ends with this object, and with this process
-// even if it is killed.
+// Starts and owns the `virtual-board` program. The board exits with this object, and with this process even if it is
+// killed.
 #pragma once
 
 #include <cstdint>
@@ -13,51 +13,53 @@
 namespace inkwell::device {
 
 enum class SimulationMode : std::uint8_t {
-  exact,  ///< an interrupt can come at any instruction; the same seed gives the same run
+  exact,  ///< interrupts can occur at any instruction; the same seed repeats the run
   fast,
 };
 
-/// What instructions cost where the sources leave a choice (docs/cycles.md).
+/// Instruction cycle counts where the sources are ambiguous (docs/cycles.md).
 enum class CyclePricing : std::uint8_t {
   likely,
-  conservative,  ///< by which deadlines are judged
+  conservative,  ///< for checking deadlines
 };
 
 struct VirtualBoardOptions {
-  std::filesystem::path program;  ///< empty: that of this installation or build
-  std::filesystem::path elf;      ///< empty: the one that is flashed on `board`, likewise
-  std::string board;              ///< empty: the one that the ELF is for
+  std::filesystem::path program;  ///< empty: the program of this installation or build
+  std::filesystem::path elf;      ///< empty: the installed firmware for `board`
+  std::string board;              ///< empty: the board of the ELF
   std::filesystem::path arm;      ///< empty: the Omni
-  std::filesystem::path flash;    ///< file of its flash, made if it is missing; empty: it forgets all at its end
-  std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none
+  std::filesystem::path flash;    ///< flash content file, created if missing; empty: nothing is saved
+  std::filesystem::path profile;  ///< output file for the longest interrupt, written when the board exits; empty: none
   SimulationMode mode = SimulationMode::fast;
   CyclePricing pricing = CyclePricing::likely;
-  std::uint64_t seed = 1;        ///< of its noise and of its serial number
-  double host_clock_ppm = 0.0;   ///< how much faster than board time the clock of its USB host is
-  unsigned brown_out_level = 0;  ///< in its option bytes: 0 is off, as in a new chip; `inkwell flash` sets 3
-  bool real_time = true;         ///< paces board time to the wall clock
-  bool paused = false;           ///< starts with board time standing still
+  std::uint64_t seed = 1;        ///< seed of the noise and the serial number
+  double host_clock_ppm = 0.0;   ///< deviation of the USB host clock from board time; positive is faster
+  unsigned brown_out_level = 0;  ///< brown-out level in the option bytes: 0 is off, as in a new chip; `inkwell flash`
+                                 ///< sets 3
+  bool real_time = true;         ///< synchronizes board time with wall time
+  bool paused = false;           ///< starts with board time stopped
   bool lock_step = false;        ///< board time passes only while the programs that use the device wait for it
-  /// Of board time, then it ends. A processor that locks up does not stop the time then, as its watchdog may bite.
+  /// Board time in seconds after which the board exits. Board time then continues after a processor lock-up, because
+  /// the watchdog may reset the chip.
   std::optional<double> seconds = {};
-  bool from_boot_loader = false;  ///< the chip's boot loader starts the firmware, not a reset
-  bool strict = false;            ///< the board ends when the firmware does what silicon would not bear
+  bool from_boot_loader = false;  ///< the boot loader of the chip starts the firmware, instead of a reset
+  bool strict = false;            ///< the board exits when the firmware violates a rule of the chip
 };
 
-/// Make it in a thread that lives as long as the board shall: Linux ends the board when that thread ends.
+/// Create it in a thread that lives as long as the board is needed: Linux terminates the board when that thread exits.
 class VirtualBoard {
  public:
-  /// Starts the program and waits until it is ready. Throws Error with what the program said if it is not.
+  /// Starts the program and waits until it is ready. Throws Error with the program's message if it fails.
   explicit VirtualBoard(const VirtualBoardOptions& options);
   ~VirtualBoard();
   VirtualBoard(const VirtualBoard&) = delete;
   VirtualBoard& operator=(const VirtualBoard&) = delete;
 
-  /// Unix sockets in a private folder: no other user can connect. They go with the board.
+  /// Unix sockets in a private folder, so no other user can connect. They are removed with the board.
   const SocketAddress& usbip() const;
   const SocketAddress& control_socket() const;
 
-  /// The device if the board shows one on its USB, none while it starts or its cable is out.
+  /// The device, or none while the board starts or its cable is unplugged.
   std::optional<Endpoint> find() const;
   /// A new connection to the control socket.
   ControlClient control() const;

@@ -6,12 +6,11 @@
 
 namespace inkwell::device {
 
-/// A counter of which the board sends the lower 32 bits: control periods, which wrap after 59.7 hours, or bus frames,
-/// which wrap after 49.7 days.
+/// A counter of which the board sends the lower 32 bits. Control periods wrap after 59.7 hours, bus frames after 49.7
+/// days.
 ///
-/// The upper bits count the wraps since the first value that this program noted. A value that the board counted before
-/// its last wrap may therefore be negative. A value must be noted at least every 29 hours. Any thread may call any
-/// function.
+/// The upper bits count the wraps since the first value that this program noted. A value from before the board's last
+/// wrap may therefore be negative. A value must be noted at least every 29 hours. Any thread may call any function.
 class WideCounter {
  public:
   /// The wide value that is nearest to a known one.
@@ -48,8 +47,8 @@ class WideCounter {
     return wide;
   }
 
-  /// Continues the count of an earlier connection to the same board, whose newest value was `before`. A counter that
-  /// has fallen since then has started again, so it keeps its own value.
+  /// Continues the count of an earlier connection to the same board, whose newest value was `before`. If the counter
+  /// has decreased, the board has restarted and the counter keeps its value.
   void continue_from(std::int64_t before) {
     const std::int64_t newest = newest_.load();
     if (newest == nothing_noted) return;

@@ -1,4 +1,4 @@
-// Reports of the device with their counters widened: what Device returns in place of the structures of the protocol.
+// Reports of the device with widened counters. Device returns them instead of the protocol structures.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct BusFrame {
   std::uint32_t time_cycles = 0;
 };
 
-/// The TransactionReport of a transaction that the device accepted.
+/// The TransactionReport of an accepted transaction.
 struct AcceptedTransaction {
   std::uint32_t transactions = 0;
   std::int64_t applied_at_periods = 0;

@@ -1,5 +1,5 @@
-// A device whose time passes only as the experiment lets it. It is the board's time: a virtual board stands still while
-// the host works, a real one tells its time with every pose. How busy the host's computer is makes no difference.
+// A device whose time is controlled by the experiment. The time is board time: a virtual board stops while the host
+// computes, and a real board reports its time with every pose. The load of the host's computer therefore has no effect.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,15 @@ class PacedDevice {
   /// `control` is null for a real device.
   PacedDevice(device::Device& device, device::ControlClient* control) : device_(device), control_(control) {}
 
-  /// Lets time pass, reads every pose and keeps the host's sign of life. Throws device::Error with cause and remedy
-  /// when the device reports a fault or falls silent.
+  /// Lets time pass, reads every pose and sends heartbeats. Throws device::Error with cause and remedy when the device
+  /// reports a fault or becomes silent.
   void pass(double time_s);
-  /// Lets time pass until the condition is true; at once if it is. Throws device::Error with `otherwise` if it does not
-  /// come true in time.
+  /// Lets time pass until the condition is true. Throws device::Error with `otherwise` if the condition is not true in
+  /// time.
   void wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise);
   void wait_for_pose(const std::function<bool(const device::Pose&)>& condition, double limit_s,
                      const std::string& otherwise);
-  /// Sends a command and waits until it was carried out.
+  /// Sends a command and waits until the device has executed it.
   void command(protocol::Command command) { wait_for_token(device_.send(command)); }
   void test_current(const protocol::TestPulse& pulse) {
     wait_for_token(device_.send(protocol::Command::test_current, pulse));
@@ -45,7 +45,7 @@ class PacedDevice {
 
   device::Device& device_;
   device::ControlClient* control_;
-  std::chrono::nanoseconds passed_{};  ///< board time since the beginning
+  std::chrono::nanoseconds passed_{};  ///< board time since the start
   unsigned slices_ = 0;
   std::optional<device::Pose> pose_;
   std::uint64_t poses_received_ = 0;

@@ -1,4 +1,4 @@
-// What the recordings of the experiment say, in numbers. Pure: recordings in, figures out.
+// Numerical results of the experiment's recordings, without side effects.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Interval {
   double to_s = 0;
 };
 
-/// Comparison of the force that the firmware logged with F = k d + c d' of the values that it logged beside it.
+/// Comparison of the logged force with F = k d + c d', computed from the logged penetration and velocity.
 struct ForceLawError {
   std::size_t samples = 0;  ///< in contact
   double maximum_N = 0;
@@ -28,7 +28,7 @@ struct ForceLawError {
 };
 ForceLawError force_law_error(const recording::Recording& recording, const protocol::ParameterSet& parameters);
 
-/// How still the arm is while the hand holds steady against the wall.
+/// Residual motion of the arm while the hand holds it against the wall.
 struct SteadyHold {
   Interval interval;
   std::array<double, 3> encoder_spread_counts{};  ///< largest minus smallest
@@ -36,10 +36,11 @@ struct SteadyHold {
   double penetration_mean_m = 0;
 };
 SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Interval interval);
-/// The steadiest half second with at least half of the largest penetration; none if contact was shorter.
+/// The half second with the least motion and at least half of the largest penetration. std::nullopt if the contact was
+/// shorter.
 std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
 
-/// From the first touch of a wall's axis to the last; none if there was none.
+/// From the first to the last contact on a wall's axis; std::nullopt without contact.
 std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
 
 struct WallResult {
@@ -54,7 +55,7 @@ struct WallResult {
   std::optional<SteadyHold> steady_hold;
   std::optional<Interval> contact;
 };
-/// `hold`: when the hand was steady, if that is known; found by find_steady_hold without it.
+/// `hold`: interval in which the hand was steady. Without it, find_steady_hold() is used.
 WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, BoxWall wall,
                     std::optional<Interval> hold);
 

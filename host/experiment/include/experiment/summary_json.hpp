@@ -1,4 +1,4 @@
-// The summary of an experiment as it is written beside its recording.
+// The JSON summary of an experiment.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace inkwell::experiment {
 
-/// How the recordings came about.
+/// Conditions of the recordings.
 struct Circumstances {
-  recording::Information about;  ///< of the recording of the push
+  recording::Information about;  ///< metadata of the recorded push
   BoxWall wall;
-  std::optional<device::VirtualBoardOptions> virtual_board;  ///< that was started for it
+  std::optional<device::VirtualBoardOptions> virtual_board;  ///< options of the board that was started for it
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;
 };

@@ -1,4 +1,4 @@
-// The walls of the box that the sphere moves in.
+// Walls of the box around the workspace of the sphere.
 #pragma once
 
 #include <string>
@@ -8,7 +8,6 @@
 
 namespace inkwell::experiment {
 
-/// One wall of the box.
 struct BoxWall {
   int axis = 2;  ///< 0 x, 1 y, 2 z
   int side = 1;  ///< 1 the upper wall, -1 the lower one
@@ -18,14 +17,14 @@ struct BoxWall {
 /// "z+" and the like. Throws device::Error.
 BoxWall parse_wall(const std::string& name);
 std::string wall_name(BoxWall wall);
-/// The wall in the arm's plane, away from its base: pushing into it takes no torque about the waist.
+/// The wall in the arm's plane, opposite its base. A push into it requires no waist torque.
 BoxWall forward_wall(const protocol::ParameterSet& parameters);
-/// A wall that stands upright across that plane: the waist's motor bears it.
+/// A vertical wall perpendicular to the arm's plane; the waist motor supplies its force.
 BoxWall side_wall(const protocol::ParameterSet& parameters);
-/// Where the wall stands along its axis, in metres.
+/// Position of the wall along its axis, in meters.
 double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);
 char axis_letter(int axis);
-/// The wall that was pushed into deepest. Throws device::Error if there was no contact.
+/// The wall with the deepest penetration. Throws device::Error without contact.
 BoxWall pushed_wall(const recording::Recording& recording);
 
 }  // namespace inkwell::experiment

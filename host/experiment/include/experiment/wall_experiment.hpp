@@ -1,5 +1,6 @@
-// The paper's section 4.3: the sphere is taken to a wall, pressed into it, dragged along it and let go, while every
-// control period is recorded. With a virtual board a simulated hand does it, with a real one the user.
+// The experiment of the paper's section 4.3: the sphere approaches a wall, is pressed into it, moved along it and
+// released. Every control period is recorded. A virtual board uses a simulated hand; with a real board the user moves
+// the sphere.
 #pragma once
 
 #include <filesystem>
@@ -19,19 +20,18 @@ namespace inkwell::experiment {
 
 struct WallOptions {
   std::filesystem::path output_directory;
-  std::string arm;              ///< its name; if it is empty, known by the parameters where they are the default ones
-  bool simulation = false;      ///< the device is virtual
-  std::optional<BoxWall> wall;  ///< none: the forward wall of the arm
-  std::optional<device::VirtualBoardOptions> virtual_board;  ///< that was started for the experiment
+  std::string arm;  ///< if empty, recognized by default parameters
+  bool simulation = false;
+  std::optional<BoxWall> wall;                               ///< std::nullopt: the forward wall of the arm
+  std::optional<device::VirtualBoardOptions> virtual_board;  ///< of the board started for the experiment
 };
 
-/// Told about every step: what happens now, for the user to read, and how much of the whole is done (0..1).
+/// Called at every step with its description for the user and the completed fraction (0..1).
 using Progress = std::function<void(std::string_view step, double done)>;
 
-/// `hand`: of the virtual board that the device is on, whose simulated hand pushes and whose time stands by, passing
-/// only as the experiment asks; null leaves the push to the user. Writes recording.csv, current-step.csv, figure-11.png
-/// to figure-14.png and summary.json, and returns the summary. Throws device::Error; nothing is called a result that
-/// has gaps.
+/// `hand`: control client of the device's virtual board, or null if the user pushes. The simulated hand pushes, and
+/// board time passes only at the experiment's request. Writes recording.csv, current-step.csv, figure-11.png to
+/// figure-14.png and summary.json, and returns the summary. Throws device::Error, also if a recording has gaps.
 nlohmann::ordered_json run_wall_experiment(device::Device& device, device::ControlClient* hand,
                                            const WallOptions& options, const Progress& progress);
 

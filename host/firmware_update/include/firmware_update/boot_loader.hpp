@@ -1,5 +1,5 @@
-// ST's boot loader in the chip, over USB: DFU 1.1 with ST's extensions (AN3156). Every STM32F405 has it in its system
-// memory, and nothing that is written to the flash can take it away.
+// ST's USB boot loader in the chip: DFU 1.1 with ST's extensions (AN3156). Every STM32F405 has it in its system memory,
+// which flash writes cannot change.
 #pragma once
 
 #include <array>
@@ -20,33 +20,33 @@ struct Sector {
   bool operator==(const Sector&) const = default;
 };
 
-/// Sectors as the name of an alternate setting lists them (UM0424): "@Internal Flash  /0x08000000/04*016Kg,01*064Kg".
-/// Empty if it is none of these names.
+/// Parses the sectors in the name of an alternate setting (UM0424): "@Internal Flash  /0x08000000/04*016Kg,01*064Kg".
+/// Empty if the name has another format.
 std::vector<Sector> parse_memory_layout(std::string_view name);
 
-/// Those of `all` that the image has bytes in.
+/// The sectors of `all` that the image uses.
 std::vector<Sector> sectors_of(const Image& image, const std::vector<Sector>& all);
 
-/// Throws what ControlChannel throws, and Error with what the loader says of its failure.
+/// Throws the errors of ControlChannel, and Error with the failure that the boot loader reports.
 class BootLoader {
  public:
   static constexpr std::size_t block_bytes = 2048, option_bytes = 16;
 
   explicit BootLoader(device::ControlChannel& channel) : channel_(channel) {}
 
-  /// Makes it ready, whatever was done to it before, and reads its flash's sectors.
+  /// Makes the boot loader idle from any state and reads the flash sectors.
   void start();
   const std::vector<Sector>& sectors() const { return sectors_; }
 
   void erase(std::uint32_t sector_address);
-  /// At most a block, into erased flash.
+  /// Writes at most one block into erased flash.
   void write(std::uint32_t address, std::span<const std::byte> data);
   std::vector<std::byte> read(std::uint32_t address, std::size_t bytes);
 
   std::array<std::byte, option_bytes> read_options();
-  /// The loader then resets the chip, which starts its firmware.
+  /// After this the boot loader resets the chip, which starts its firmware.
   void write_options(std::span<const std::byte, option_bytes> options);
-  /// Starts the program at the begin of the flash.
+  /// Starts the program at the beginning of the flash.
   void leave();
 
  private:

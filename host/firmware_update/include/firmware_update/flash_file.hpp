@@ -1,4 +1,4 @@
-// The flash of a virtual board that does not run, in the file that `virtual-board --flash` keeps it in.
+// The flash file of a virtual board that is not running (`virtual-board --flash`).
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,13 @@
 
 namespace inkwell::firmware_update {
 
-/// Writes the image as a programmer does: its own sectors are erased, the others stay. A file that is not there becomes
-/// a new chip's flash. Throws Objected, or device::Error with the file as it was, as while a board runs on it.
+/// Writes the image like a programmer: the sectors of the image are erased, the others are retained. A missing file is
+/// created with the flash of a new chip. Throws Objected or device::Error and leaves the file unchanged, for example
+/// while a board uses it.
 struct FlashFileWritten {
-  std::optional<protocol::ImageIdentity> before;  ///< none: the file held no image that says what it is
+  std::optional<protocol::ImageIdentity> before;  ///< none: the file contained no image with an identity
   Image image;
-  std::string warning;  ///< empty, or what to take care of
+  std::string warning;  ///< a warning for the user, or empty
 };
 FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& image, Consent consent,
                                   const ImageFor& image_for = always_the_given);

@@ -1,4 +1,4 @@
-// An image of the firmware, from its ELF.
+// A firmware image, read from its ELF file.
 #pragma once
 
 #include <cstddef>
@@ -16,22 +16,21 @@
 
 namespace inkwell::firmware_update {
 
-/// A file that is no program for the flash of an STM32F405.
+/// The file is not a program for the flash of an STM32F405.
 class NoImage : public device::Error {
  public:
   using Error::Error;
 };
 
-/// What the user has agreed to.
 enum class Consent : std::uint8_t { none, to_downgrade, to_everything };
 
-/// The image should not go into this board, and the user has not agreed to it. `what()` holds the reasons.
+/// The image does not suit this board, and the user has not agreed to write it. `what()` lists the reasons.
 class Objected : public device::Error {
  public:
   using Error::Error;
 };
 
-/// The only reason is that the image is older than the board's firmware.
+/// The only objection is that the image is older than the board's firmware.
 class Downgrade : public Objected {
  public:
   using Objected::Objected;
@@ -45,37 +44,37 @@ struct Segment {
 
 struct Image {
   std::filesystem::path file;
-  std::vector<Segment> segments;                      ///< of the flash, by address, none reaching into another
-  std::optional<protocol::ImageIdentity> identity{};  ///< none: it is not Inkwell's, or older than these
-  bool is_whole = false;                              ///< the checksum at its end is that of its words
+  std::vector<Segment> segments;                      ///< in flash, by address, without overlap
+  std::optional<protocol::ImageIdentity> identity{};  ///< none: not an Inkwell image, or one without an identity
+  bool is_whole = false;                              ///< the checksum at its end is correct
 
-  /// The byte at an address, none where the image has nothing.
+  /// The byte at an address, or none where the image has no data.
   std::optional<std::byte> at(std::uint32_t address) const;
 };
 
 /// Throws NoImage.
 Image read_image(const std::filesystem::path& elf);
-/// The same of a file's content; `name` is for sentences.
+/// Reads an image from the content of a file; `name` is for error messages.
 Image read_image(std::span<const std::byte> elf, const std::filesystem::path& name);
 
-/// The firmware beside this program for the board of this name, or nothing if none is known here by it. Throws NoImage
-/// if it is missing.
+/// The installed firmware for the board with this name, or none if the board is unknown. Throws NoImage if the file is
+/// missing.
 std::optional<Image> own_image_for(std::string_view board);
 
-/// In the place of an image that nobody has named: what the board of this name gets, or nothing.
+/// Selects the image for the board with this name when the user has not named an image; may return none.
 using ImageFor = std::function<std::optional<Image>(std::string_view board)>;
 inline std::optional<Image> always_the_given(std::string_view) { return {}; }
 
-/// The identity in the first bytes of a flash, if one is there.
+/// The identity in the first bytes of a flash, if there is one.
 std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);
-/// Bytes of a flash that `identity_in` wants.
+/// Number of flash bytes that `identity_in` needs.
 inline constexpr std::size_t identity_end = protocol::image_identity_offset + sizeof(protocol::ImageIdentity);
 
 /// "firmware 0.1.0 for omni_driver, protocol 11".
 std::string describe(const protocol::ImageIdentity& identity);
 
-/// Why this image should not go into a board, a sentence each; none if it should. `there` is the identity of the image
-/// that the board has, if it has one.
+/// The reasons against writing this image to a board, one sentence each; empty if there is no reason. `there` is the
+/// identity of the board's current image, if it has one.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 /// Returns a sentence if the image is older than the installed firmware. This is a warning and not an objection.
 std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there);
@@ -83,7 +82,7 @@ std::optional<std::string> downgrade_warning(const Image& image, const std::opti
 /// Throws Objected with the objections, or Downgrade with the warning, unless the user has agreed to them.
 void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, Consent consent);
 
-/// The CRC-32 that the chip counts (RM0090, chapter CRC), of little-endian words; what is left of a word is not
+/// The CRC-32 of the chip's CRC unit (RM0090, chapter CRC), over little-endian words. An incomplete last word is not
 /// counted.
 class WordChecksum {
  public:

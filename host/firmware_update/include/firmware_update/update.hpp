@@ -1,11 +1,10 @@
-// The whole way of a new firmware into a board on USB: out of the firmware that runs, through the boot loader in the
-// chip, and back.
+// The complete firmware update over USB: from the running firmware to the boot loader of the chip and back.
 //
-// The order keeps a half-written firmware from ever running: the first sector, with the vector table, is erased before
-// anything else and its first block written after everything else was read back. Between these two the chip finds no
-// vectors, so after a power-off it does nothing at all; bridges stay off by their pull-downs. As long as its power is
-// on it stays in the boot loader, and the same command again goes on from there. After a power-off only BOOT0 leads
-// there.
+// The order of the steps ensures that an incomplete firmware never runs. The first sector, with the vector table, is
+// erased first, and its first block is written last, after all other blocks were verified. In between, the chip finds
+// no vectors, so after a power loss it runs no code and the pull-downs keep the bridges off. While the power is on, the
+// chip stays in the boot loader, and repeating the command continues the update. After a power loss the boot loader
+// starts only with BOOT0.
 #pragma once
 
 #include <chrono>
@@ -20,7 +19,8 @@
 
 namespace inkwell::firmware_update {
 
-/// Cut off with the old firmware gone and the new one not complete. `what()` says how to go on.
+/// The update stopped after the old firmware was erased and before the new one was complete. `what()` describes how to
+/// continue.
 class Interrupted : public device::Error {
  public:
   using Error::Error;
@@ -29,26 +29,26 @@ class Interrupted : public device::Error {
 struct UpdateOptions {
   Consent consent = Consent::none;
   ImageFor image_for = always_the_given;
-  /// Called with each step, and how much of all is done, from 0 to 1.
+  /// Called with each step and the completed fraction, 0 to 1.
   std::function<void(std::string_view step, double done)> on_progress = [](std::string_view, double) {};
-  /// Asked between two blocks.
+  /// Called between two blocks.
   std::function<bool()> is_cancelled = [] { return false; };
 };
 
 struct UpdateResult {
-  std::optional<protocol::ImageIdentity> before;  ///< none: the board held no image that says what it is
+  std::optional<protocol::ImageIdentity> before;  ///< none: the board had no image with an identity
   Image written;
   bool has_set_brown_out = false;
-  std::string serial_number;  ///< of the arm that came back; empty if none did in time
+  std::string serial_number;  ///< of the arm after the update; empty if no arm appeared in time
   std::string firmware_version;
   std::uint16_t protocol_version = 0;
 };
 
-/// From the board that the address means, running or in its boot loader. Throws Objected, Interrupted, or device::Error
-/// where the board is as it was.
+/// Updates the board at the address, whose firmware or boot loader is running. Throws Objected, Interrupted, or, if the
+/// board is unchanged, device::Error.
 UpdateResult update(const device::Address& address, const Image& image, const UpdateOptions& options);
 
-/// The same for a board that is in its boot loader already, up to its start.
+/// The part of an update from the boot loader to the start of the new firmware.
 struct Written {
   std::optional<protocol::ImageIdentity> before;
   Image image;
@@ -56,8 +56,8 @@ struct Written {
 };
 Written write_image(BootLoader& loader, const Image& image, const UpdateOptions& options);
 
-/// Option bytes with brown-out level 3 (RM0090, "Description of the option bytes": BOR_LEV), or nothing if they have
-/// it. Throws device::Error if they are none of a chip whose protection is off.
+/// The option bytes with brown-out level 3 (RM0090, "Description of the option bytes": BOR_LEV), or none if it is
+/// already set. Throws device::Error if the option bytes do not show a chip without read protection.
 std::optional<std::array<std::byte, BootLoader::option_bytes>> with_brown_out_level_3(
     const std::array<std::byte, BootLoader::option_bytes>& options);
 

@@ -1,4 +1,4 @@
-// What joint stops and ends of potentiometers say about the arm's parameters. Pure: angles in, numbers out.
+// Arm parameters from joint stops and potentiometer end positions, without side effects.
 #pragma once
 
 #include <span>
@@ -12,28 +12,29 @@ struct JointStops {
   double width_rad() const { return high_rad - low_rad; }
 };
 
-/// How the joint's angles must change so that its stops are found where they are expected:
+/// Correction of a joint's angles that moves its stops to the expected angles:
 /// right angle = inkwell_rad + scale (angle - old inkwell angle).
 struct StopsFit {
-  double scale;                          ///< 1 if the found travel is as wide as the expected one
-  double inkwell_rad;                    ///< the inkwell's angle that goes with the scale
-  double low_error_rad, high_error_rad;  ///< found less expected, as the angles are now
+  double scale;                          ///< 1 if the found travel equals the expected travel
+  double inkwell_rad;                    ///< inkwell angle for this scale
+  double low_error_rad, high_error_rad;  ///< found minus expected angle, before the correction
 };
 
-/// Stops yield under the hand and counts are whole, so differences up to this mean nothing.
+/// Tolerance for compliant stops and whole encoder counts.
 inline constexpr double stops_tolerance_rad = 0.03;
 
-/// With `fit_scale` the scale and the inkwell's angle are found, else only the angle (scale 1). `expected` has a width.
+/// With `fit_scale`, fits the scale and the inkwell angle; otherwise only the angle (scale 1). `expected` must have a
+/// nonzero width.
 StopsFit fit_stops(const JointStops& found, const JointStops& expected, double old_inkwell_rad, bool fit_scale);
 
-/// angle = square r^2 + slope r + offset, r the wiper's voltage as a part of its supply, 0..1.
+/// angle = square r^2 + slope r + offset, where r is the wiper voltage divided by its supply, 0..1.
 struct PotentiometerCurve {
   double square_rad = 0;
   double slope_rad = 0;
   double offset_rad = 0;
 
   double angle_rad(double ratio) const { return (square_rad * ratio + slope_rad) * ratio + offset_rad; }
-  /// The inverse on the branch that the slope's sign chooses. Throws device::Error if the curve is flat.
+  /// Inverse on the branch given by the sign of the slope. Throws device::Error if the curve is flat.
   double ratio(double angle_rad) const;
 };
 
@@ -42,8 +43,8 @@ struct PotentiometerPoint {
   double angle_rad;
 };
 
-/// Least squares through the points; a quadratic needs three, a line two. Throws device::Error if there are too few or
-/// their ratios lie so close together that the curve would be arbitrary.
+/// Least-squares fit; a quadratic curve needs three points, a line two. Throws device::Error if there are too few
+/// points, or if their ratios are too close together for a meaningful curve.
 PotentiometerCurve fit_potentiometer(std::span<const PotentiometerPoint> points, bool quadratic);
 
 }  // namespace inkwell::guides

@@ -1,5 +1,5 @@
-// What a guide sees of a device, and what it asks of it. Nothing here waits, so that the window and the command
-// line run the same guides, and tests run them without a device.
+// The interface between a guide and a device. No function waits, so that the window and the command line run the same
+// guides, and tests run them without a device.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace inkwell::guides {
 
-/// The device at one moment.
+/// State of the device at one moment.
 struct Observation {
   bool connected = false;
-  std::string message;  ///< about the connection, with the remedy where there is one
+  std::string message;  ///< state of the connection, with a remedy if available
   std::optional<device::Information> information;
-  std::optional<device::Pose> pose;  ///< the newest
+  std::optional<device::Pose> pose;  ///< the newest pose
   std::optional<protocol::ParameterSet> parameters;
-  std::uint64_t parameters_revision = 0;  ///< rises when they were read anew, after each transaction at least
-  std::optional<std::string> refusal;     ///< why the newest transaction was refused, if it was
+  std::uint64_t parameters_revision = 0;  ///< increases with each read, which follows each transaction
+  std::optional<std::string> refusal;     ///< reason for refusal of the newest transaction, if refused
 };
 
 class DevicePort {
@@ -28,9 +28,9 @@ class DevicePort {
   virtual ~DevicePort() = default;
   virtual void send(protocol::Command command) = 0;
   virtual void send(protocol::Command command, const protocol::TestPulse& pulse) = 0;
-  /// One transaction. It survives a reconnection, unlike a command.
+  /// Sends one transaction. Unlike a command, it survives a reconnection.
   virtual void set_parameters(std::vector<device::ParameterChange> changes) = 0;
-  /// The scope's signals while the guide wants them; none gives the scope back to whoever had it before.
+  /// Selects the guide's scope signals; an empty list returns the scope to its previous user.
   virtual void select_signals(std::vector<protocol::Signal> signals) = 0;
 };
 

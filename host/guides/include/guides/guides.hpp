@@ -1,4 +1,4 @@
-// The guides that there are, and what may be chosen before they start.
+// List of the guides and their options.
 #pragma once
 
 // To add a guide:
@@ -21,10 +21,10 @@
 
 namespace inkwell::guides {
 
-/// What is trusted when counts and stops disagree.
+/// Trusted reference when counts and stops disagree.
 enum class StopsTrust : std::uint8_t {
-  limits,    ///< the arm's limits: counts per turn or the inkwell's angles are wrong
-  encoders,  ///< counts and inkwell: the limits are to be moved to where the stops were found
+  limits,    ///< limits of the arm: counts per turn or inkwell angles are wrong
+  encoders,  ///< counts and inkwell: the limits must be changed to the found stops
 };
 
 struct AngleRange {
@@ -32,9 +32,9 @@ struct AngleRange {
   double maximum_rad;
 };
 struct PotentiometerOptions {
-  /// Between the gimbal's stops; none: what the arm's description says of the whole track.
+  /// Angles of the gimbal's stops; std::nullopt: the range of the full track from the arm description.
   std::array<std::optional<AngleRange>, 3> range;
-  bool quadratic = false;  ///< a third point in the middle gives the square term
+  bool quadratic = false;  ///< a third point in the middle determines the square term
 };
 
 inline constexpr double bandwidth_default_Hz = 800, bandwidth_minimum_Hz = 50, bandwidth_maximum_Hz = 2000;
@@ -43,19 +43,19 @@ struct CurrentLoopOptions {
   double bandwidth_Hz = bandwidth_default_Hz;
 };
 
-/// What a user may choose before a guide starts. Each guide reads what is its own.
+/// Options that a user may choose before a guide starts. Each guide reads only its own options.
 struct Choices {
   StopsTrust trust = StopsTrust::limits;
   PotentiometerOptions potentiometers;
   CurrentLoopOptions current_loop;
 };
 
-/// A guide as the window and the command line offer it.
+/// A guide in the window and on the command line.
 struct Offer {
-  std::string_view group;  ///< the command that it stands under
-  std::string_view name;   ///< on the command line, and in its result
+  std::string_view group;  ///< parent command
+  std::string_view name;   ///< name on the command line and in the result
   std::string_view title;
-  std::string_view help;  ///< what it does, in a sentence
+  std::string_view help;  ///< description in one sentence
   Plan (*plan)(const Choices& choices);
 
   Guide start(const Choices& choices = {}) const;

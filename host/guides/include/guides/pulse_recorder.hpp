@@ -1,4 +1,4 @@
-// Sends one test pulse and keeps what the scope shows of it.
+// Sends one test pulse and records it with the scope.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace inkwell::guides {
 
 class PulseRecorder {
  public:
-  /// `seen_in`: the signal that differs from zero while the pulse is on. It is among `signals`.
+  /// `seen_in`: the signal that is nonzero during the pulse; `signals` must contain it.
   PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse, std::vector<protocol::Signal> signals,
                 protocol::Signal seen_in);
 
   void begin(const device::Pose& pose, DevicePort& port);
   void receive(const device::ScopeSamples& samples);
-  /// True once the pulse and the rest after it are recorded without a gap. A recording with a gap is made again, three
-  /// times at most. Throws device::Error if the scope or the pulse does not come.
+  /// Returns true once the pulse and the rest after it are recorded without a gap. A recording with a gap is repeated,
+  /// at most three times. Throws device::Error if the scope or the pulse does not start.
   bool advance(const device::Pose& pose, DevicePort& port);
 
   const std::vector<float>& column(protocol::Signal signal) const { return recording_.column(signal); }
@@ -36,7 +36,7 @@ class PulseRecorder {
   protocol::Signal seen_in_;
   recording::Recording recording_;
   State state_ = State::waits_for_scope;
-  std::size_t rest_samples_;  ///< that have to show zero before a pulse is sent
+  std::size_t rest_samples_;  ///< required zero samples before a pulse
   Stopwatch since_;
   int attempts_left_ = 3;
 };

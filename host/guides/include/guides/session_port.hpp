@@ -1,4 +1,4 @@
-// Guides on a device::Session, which connects and reconnects by itself.
+// Runs guides on a device::Session, which connects and reconnects automatically.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace inkwell::guides {
 
 class SessionPort final : public DevicePort {
  public:
-  /// `select`: how signals are asked for, where others want the scope as well.
+  /// `select`: selects the scope signals if the scope has several users.
   SessionPort(device::Session& session, std::function<void(std::vector<protocol::Signal>)> select)
       : session_(session), select_(std::move(select)) {}
   explicit SessionPort(device::Session& session)

@@ -1,4 +1,4 @@
-// The user of a virtual board: does with the simulated hand what a guide asks of its user.
+// The user of a virtual board: performs the user's tasks of a guide with the simulated hand.
 #pragma once
 
 #include <deque>
@@ -11,10 +11,10 @@ namespace inkwell::guides {
 
 class SimulatedUser {
  public:
-  /// `arm`: the parameters of the arm that is simulated, which the device need not hold.
+  /// `arm`: parameters of the simulated arm, which may differ from the device's parameters.
   SimulatedUser(device::ControlClient control, const protocol::ParameterSet& arm);
 
-  /// Call again and again with the task of the guide's present step. Throws device::Error as the control socket does.
+  /// Call repeatedly with the task of the guide's present step. Throws device::Error on errors of the control socket.
   void advance(const UserTask& task);
 
  private:
@@ -34,7 +34,7 @@ class SimulatedUser {
   device::ControlClient control_;
   protocol::ParameterSet arm_;
   UserTask task_;
-  Joints joints_{};  ///< that the hand leads the arm to
+  Joints joints_{};  ///< target joint angles of the hand
   device::Vector3 gimbal_rad_{};
   std::deque<Action> planned_;
 };

@@ -1,5 +1,5 @@
-// Where the parts of Inkwell lie that its programs use at run time. A build's folder has links where an installation
-// has the parts, so that there is one way to find them (tools/cmake/places.cmake).
+// Locations of the installed parts that programs use at run time. A build folder has links at the same relative paths,
+// so the same code finds them (tools/cmake/places.cmake).
 #pragma once
 
 #include <filesystem>
@@ -7,16 +7,16 @@
 
 namespace inkwell::installation {
 
-/// The nearest folder, upwards from that of the program or shared library that this code is part of, which has arm
-/// descriptions where an installation has them: the prefix, /usr for example, or the folder of a build. The
-/// program's own folder if there is none.
+/// The installation prefix, such as /usr, or the build folder. It is found upward from the program or shared library
+/// with this code: the nearest folder with arm descriptions at the installed path. Without such a folder, the result is
+/// the program's folder.
 std::filesystem::path prefix();
 
-/// Below the prefix; whether they are there is for the caller to see.
+/// Paths below the prefix; the caller checks whether they exist.
 std::filesystem::path virtual_board();  ///< the program
-/// The ELF of an image that is flashed; board::image_name() has those of other boards than the default.
+/// ELF file of a firmware image; board::image_name() returns the names for other boards.
 std::filesystem::path firmware(const std::string& image = "inkwell.elf");
 std::filesystem::path default_arm();  ///< the description of the Omni
-std::filesystem::path dropins();      ///< the folder of the libraries under the names of others
+std::filesystem::path dropins();      ///< folder of the drop-in libraries
 
 }  // namespace inkwell::installation

@@ -1,4 +1,4 @@
-// How the stylus stands in the workspace.
+// Orientation of the stylus in the workspace.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace inkwell::kinematics {
 
-/// The side of the plane that the links lie in: a unit vector, to the right of an arm that faces the user.
+/// Unit normal of the plane of the links, pointing to the right of an arm that faces the user.
 glm::vec3 arm_side(float waist_rad, control::Frame frame);
 
-/// Rotation of the stylus: columns are its axes in the workspace. x points to its side, z along it, from its tip to its
-/// back. `gimbal_rad`: yaw about the forearm, pitch about the axis across it, roll about the stylus itself. With all
-/// three at zero the stylus stands square on the forearm, in the arm's plane, away from the base. Signs as OpenHaptics
-/// has them: right, down and clockwise are where the stylus goes for a negative, positive and positive angle.
+/// Rotation of the stylus: its columns are the stylus axes in the workspace. x points to the side of the stylus, z from
+/// its tip to its back. `gimbal_rad`: yaw about the forearm, pitch about the axis across it, roll about the stylus.
+/// With all three at zero, the stylus is perpendicular to the forearm, in the arm's plane, pointing away from the base.
+/// The signs follow OpenHaptics: negative yaw is to the right, positive pitch is down, positive roll is clockwise.
 glm::mat3 stylus_rotation(const std::array<float, 3>& joint_rad, const std::array<float, 3>& gimbal_rad,
                           const control::Arm& arm);
 

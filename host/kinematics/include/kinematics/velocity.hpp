@@ -1,4 +1,4 @@
-// Velocity from positions, for programs that have poses only.
+// Velocity from positions, for programs that have only poses.
 #pragma once
 
 #include <array>
@@ -7,15 +7,15 @@
 
 namespace inkwell::kinematics {
 
-/// The slope of the straight line that fits the newest positions best. Over 8 ms an encoder's step of 0.03 mm is a
-/// hundredth of a metre a second at most, and the velocity is 4 ms old.
+/// Slope of the least-squares line through the newest positions. With a span of 8 ms, an encoder step of 0.03 mm
+/// changes the velocity by at most 0.01 m/s. The velocity is delayed by 4 ms.
 class VelocityFit {
  public:
   static constexpr double span_s = 0.008;
 
-  /// `time_s` must not fall; after a gap longer than the span, or when it falls, the fit starts anew.
+  /// The fit restarts if `time_s` decreases, or after a gap longer than the span.
   void add(double time_s, const std::array<double, 3>& position_m);
-  /// 0 until there are two positions.
+  /// Returns 0 until there are two positions.
   std::array<double, 3> velocity_m_s() const;
 
  private:
@@ -25,7 +25,7 @@ class VelocityFit {
   };
   static constexpr std::size_t capacity = 16;
   std::array<Sample, capacity> samples_{};
-  std::size_t count_ = 0;  ///< the newest is the last
+  std::size_t count_ = 0;  ///< the newest sample is the last
 };
 
 }  // namespace inkwell::kinematics

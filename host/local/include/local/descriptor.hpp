@@ -1,4 +1,4 @@
-// An open file, closed with its object.
+// An open file that is closed with its object.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// A socket that listens for programs of this computer, and for no others.
+// A socket that listens only for local programs.
 #pragma once
 
 #include <sys/types.h>
@@ -11,15 +11,15 @@
 
 namespace inkwell::local {
 
-/// How long no client is accepted after the system refused to open another file.
+/// Pause before the next accept, after the system refused to open another file.
 inline constexpr std::chrono::milliseconds accept_rest{20};
 
-/// A TCP port listens on 127.0.0.1, where every user of this computer can connect. To a Unix socket only its own user
-/// can: its mode is 0600 before anybody can connect.
+/// A TCP port listens on 127.0.0.1, where every user of this computer can connect. Only the owner can connect to a Unix
+/// socket, because its mode is 0600 from the start.
 class Listener {
  public:
-  /// Port 0 becomes the free one that was found. A Unix socket that a program left behind is replaced, if it is this
-  /// user's and no program listens there.
+  /// Port 0 selects a free port. A Unix socket left by another program is replaced if it belongs to this user and no
+  /// program listens on it.
   /// @throws std::runtime_error with a sentence that names `option`.
   Listener(SocketAddress where, std::string_view option);
   /// Removes the Unix socket.
@@ -36,11 +36,11 @@ class Listener {
 
   SocketAddress address_;
   Descriptor socket_;
-  dev_t device_ = 0;  ///< of the Unix socket's file, like the next
+  dev_t device_ = 0;  ///< device and inode of the Unix socket's file
   ino_t inode_ = 0;
 };
 
-/// Sends all of it, or returns false.
+/// Sends the complete text, or returns false.
 bool send_all(int socket, std::string_view text);
 
 }  // namespace inkwell::local

@@ -1,4 +1,4 @@
-// A file that one program has at a time.
+// A file with one owner program at a time.
 #pragma once
 
 #include <sys/file.h>
@@ -14,32 +14,32 @@
 
 namespace inkwell::local {
 
-/// Another program has the file. `what()` is a sentence that names the program if the system reveals it.
+/// Another program owns the file. `what()` is a sentence that names the program if the system provides its name.
 class FileInUse : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The lock is on the file itself (flock): it holds for every name and link of the file, and ends with the process,
-/// however that ends. Programs that are started meanwhile do not inherit it.
+/// The lock is on the file itself (flock). It applies to every name and link of the file, and ends with the process in
+/// any case. Child processes do not inherit it.
 class OwnedFile {
  public:
   using Flock = int (*)(int descriptor, int operation);
 
-  /// A file that does not exist is owned too: no other program can create it in this way.
-  /// Tests pass another function than flock.
+  /// A missing file is owned too: no other OwnedFile can create it. Tests pass another function than flock.
   /// @throws FileInUse, or std::system_error if the file cannot be opened.
   explicit OwnedFile(const std::filesystem::path& path, Flock flock_like = &::flock);
   ~OwnedFile();
 
-  /// Empty, or a sentence where the file system has no locks: then nothing keeps other programs from the file.
+  /// Empty, or a sentence if the file system does not support locks. In this case other programs can use the file.
   std::string warning() const;
   bool exists() const { return file_.is_open(); }
-  /// The whole content if it has this size; empty if it has another, or if this is not a regular file.
+  /// The content if it has exactly this size, otherwise empty. Also empty if this is not a regular file.
   std::vector<std::byte> content(std::size_t size) const;
-  /// Replaces the content. Whoever reads the file meanwhile finds all of the old or all of the new content.
-  /// @throws FileInUse if the file was exchanged for another one, which stays as it is; std::system_error if it cannot
-  /// be written.
+  /// Replaces the content atomically: a reader finds the complete old or the complete new content.
+  /// @throws FileInUse if the file was replaced by another one, which does not change. std::system_error if the file
+  /// cannot be
+  ///         written.
   void replace(std::span<const std::byte> content);
 
  private:
@@ -52,9 +52,9 @@ class OwnedFile {
   std::filesystem::path path_, next_path_;
   Flock flock_;
   bool is_locked_ = true;
-  Descriptor file_;   ///< what `path_` names now
-  Descriptor first_;  ///< the original file: other hard links may still refer to it
-  Descriptor next_;   ///< written in full before it takes the place of the file; locked before others can see it
+  Descriptor file_;   ///< the file with the name `path_`
+  Descriptor first_;  ///< the original file, to which other hard links may refer
+  Descriptor next_;   ///< written completely before it replaces the file; locked before others can see it
 };
 
 }  // namespace inkwell::local

@@ -1,4 +1,4 @@
-// A folder that only this user can enter.
+// A folder that only this user can access.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@
 
 namespace inkwell::local {
 
-/// Has mode 0700, and is removed with the object and its files. Both functions throw std::runtime_error with a
-/// sentence.
+/// The folder has mode 0700 and is removed with its files at the end of the object. Both functions throw
+/// std::runtime_error with a sentence.
 class PrivateFolder {
  public:
   /// In the folder for temporary files.
   static PrivateFolder for_files();
-  /// In the user's runtime folder (XDG_RUNTIME_DIR) if there is one, else in the folder for temporary files. Its path
+  /// In the user's runtime folder (XDG_RUNTIME_DIR) if it exists, otherwise in the folder for temporary files. The path
   /// is short enough for sockets, and no other user can replace the folder.
   static PrivateFolder for_sockets();
   ~PrivateFolder();
@@ -24,7 +24,7 @@ class PrivateFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  /// In the first of these folders that allows it.
+  /// Creates the folder in the first suitable parent.
   explicit PrivateFolder(std::span<const std::string> parents);
 
   std::filesystem::path path_;

@@ -1,4 +1,4 @@
-// Names of other programs, for sentences.
+// Names of other programs, for error sentences.
 #pragma once
 
 #include <sys/types.h>
@@ -7,7 +7,8 @@
 
 namespace inkwell::local {
 
-/// "virtual-board (process 4711)", or "process 4711" if the system does not reveal the name. The text is safe to print.
+/// "virtual-board (process 4711)", or "process 4711" if the system does not provide the name. The text is safe to
+/// print.
 std::string name_of_process(pid_t process);
 
 }  // namespace inkwell::local

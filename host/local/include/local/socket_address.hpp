@@ -1,4 +1,4 @@
-// Where a server listens, as people and programs write it.
+// Text form of server addresses.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace inkwell::local {
 
-/// A text that names no socket. `what()` is a sentence.
+/// A text that is not a socket address. `what()` is a sentence.
 class BadSocketAddress : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,11 +31,11 @@ struct SocketAddress {
 
 inline constexpr std::string_view unix_scheme = "unix:";
 
-/// Of "unix:PATH". @throws BadSocketAddress if the system cannot use the path, or if it has a blank: a line of
-/// addresses could not be read then.
+/// Parses "unix:PATH". @throws BadSocketAddress if the system cannot use the path, or if the path contains a blank,
+/// which separates addresses in a line.
 SocketAddress unix_socket(std::string_view text);
 
-/// Connects to a Unix socket. A descriptor that is not open, and errno, if nothing answers there.
+/// Connects to a Unix socket. If no server answers, returns a closed descriptor and sets errno.
 Descriptor connect_to(const std::filesystem::path& path);
 
 }  // namespace inkwell::local

@@ -1,5 +1,5 @@
-// Threads of a program that end by pthread_cancel() while they call a library. A cancelled thread unwinds its stack
-// from within the system call in which it waits, which most of the code here does not expect.
+// Support for program threads that are canceled with pthread_cancel() during a library call. A canceled thread unwinds
+// its stack from the system call in which it waits, which most of this code does not support.
 #pragma once
 
 #include <pthread.h>
@@ -9,13 +9,13 @@
 namespace inkwell::process {
 
 namespace detail {
-/// State of the caller's thread before the outermost guard; meaningless without a guard.
+/// Cancel state of the calling thread before the outermost guard; undefined without a guard.
 inline thread_local int state_of_caller = PTHREAD_CANCEL_DISABLE;
 inline thread_local int guards = 0;
 }  // namespace detail
 
-/// While one lives, the calling thread is cancelled only where a CancellationPoint lives. Every function of an
-/// interface begins with one.
+/// During its lifetime, the calling thread is canceled only at a CancellationPoint. Every function of an interface
+/// starts with a guard.
 class CancellationGuard {
  public:
   CancellationGuard() {
@@ -33,8 +33,8 @@ class CancellationGuard {
   int state_ = PTHREAD_CANCEL_DISABLE;
 };
 
-/// Around a wait: the thread is cancelled here if its owner allows it. Every frame between this and the interface's
-/// function must unwind: none is noexcept, and each `catch (...)` rethrows a cancellation.
+/// Surrounds a wait: the thread is canceled here if its owner allows it. Every frame between this object and the
+/// interface function must unwind: none is noexcept, and each `catch (...)` rethrows a cancellation.
 class CancellationPoint {
  public:
   CancellationPoint() {
@@ -47,7 +47,7 @@ class CancellationPoint {
   CancellationPoint& operator=(const CancellationPoint&) = delete;
 };
 
-/// While one lives, no CancellationPoint lets the thread be cancelled: for destructors, which do not unwind.
+/// During its lifetime, no CancellationPoint allows cancellation. For destructors, which must not unwind.
 class NoCancellationPoints {
  public:
   NoCancellationPoints() : state_(std::exchange(detail::state_of_caller, PTHREAD_CANCEL_DISABLE)) {}
@@ -59,7 +59,7 @@ class NoCancellationPoints {
   int state_;
 };
 
-/// For a thread of a library that calls functions of the program: its stack is not the program's to unwind.
+/// For a library thread that calls functions of the program: the program must not unwind its stack.
 inline void never_cancel_this_thread() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr); }
 
 }  // namespace inkwell::process

@@ -1,5 +1,5 @@
-// A process that is forked while threads of a library run. The child has a copy of everything but of those threads:
-// mutexes that they held stay locked, and sockets, files and child processes belong to the parent.
+// Support for a process that forks while library threads run. The child has a copy of everything except these threads:
+// their mutexes stay locked, and sockets, files and child processes belong to the parent.
 #pragma once
 
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 namespace inkwell::process {
 
-/// Which process made an object. A forked child that meets it has a copy that it cannot use.
+/// The process in which an object was created. In a forked child the object is an unusable copy.
 class Origin {
  public:
   bool is_here() const { return process_ == getpid(); }
@@ -19,8 +19,9 @@ class Origin {
   pid_t process_ = getpid();
 };
 
-/// Delays a fork until no other thread holds the mutex, so that a child finds the mutex free and its data complete. The
-/// object and the mutex live until the process ends. A thread that holds such a mutex does not lock another one.
+/// Delays a fork until no other thread owns the mutex, so that the child finds the mutex free and its data complete.
+/// The object and the mutex must live until the process ends. A thread that owns this mutex must not lock another mutex
+/// of this kind.
 class HeldAtFork {
  public:
   explicit HeldAtFork(std::mutex& mutex) : HeldAtFork(&mutex, calls_of<std::mutex>) {}
@@ -33,7 +34,7 @@ class HeldAtFork {
   struct Calls {
     void (*lock)(void*);
     void (*unlock)(void*);
-    void (*make_new)(void*);  ///< in the child, whose thread is not the one that has locked it
+    void (*make_new)(void*);  ///< in the child, whose thread has not locked the mutex
   };
   template <class Mutex>
   static constexpr Calls calls_of{[](void* mutex) { static_cast<Mutex*>(mutex)->lock(); },
@@ -46,9 +47,8 @@ class HeldAtFork {
   HeldAtFork* const next_;
 };
 
-/// A descriptor that a forked child may not use. In the child it refers to /dev/null, so that the child neither keeps
-/// the parent's file open nor writes the parent's buffers. The owner of the descriptor destroys this object before it
-/// closes the descriptor.
+/// A descriptor that a forked child must not use. In the child it refers to /dev/null, so that the child does not keep
+/// the parent's file open or write the parent's buffers. Destroy this object before closing the descriptor.
 class OwnDescriptor {
  public:
   OwnDescriptor() = default;
@@ -63,7 +63,7 @@ class OwnDescriptor {
   int descriptor_ = -1;
 };
 
-/// Calls `in_child` in every forked child. Once the library that it belongs to is unloaded, no more.
+/// Calls `in_child` in every forked child, until the library is unloaded.
 void at_fork(void (*in_child)());
 
 }  // namespace inkwell::process

@@ -8,12 +8,12 @@
 
 namespace inkwell::recording {
 
-/// Every signal that is known, also of the force law: what a row of a black box holds.
+/// Every known signal, including signals of the force law: the contents of a black box row.
 std::vector<protocol::Signal> black_box_signals();
 
-/// With a mark where the fault came, called by its name. `about` is what describe() says of black_box_signals(); the
-/// parameters in it are those of now, for the board does not keep those of then. Throws device::Error if there are no
-/// rows, or if their time does not rise.
+/// Converts a black box to a recording with a mark at the fault. `about` is the result of describe() for
+/// black_box_signals(). The parameters in `about` are the present values, because the board does not store the earlier
+/// values. Throws device::Error if there are no rows, or if their time does not increase.
 Recording of_black_box(const protocol::BlackBoxReport& box, std::span<const protocol::BlackBoxRow> rows,
                        Information about);
 

@@ -12,22 +12,22 @@
 namespace inkwell::recording {
 
 struct FigureOptions {
-  std::vector<Quantity> quantities;  ///< empty: all that were recorded
+  std::vector<Quantity> quantities;  ///< empty: all recorded quantities
   double from_s = 0;                 ///< since the first sample
-  std::optional<double> to_s;        ///< without it, the last sample
-  const Overlay* over = nullptr;     ///< drawn with broken lines, as far as it holds the quantities; null: none
+  std::optional<double> to_s;        ///< std::nullopt: the last sample
+  const Overlay* over = nullptr;     ///< recording drawn with broken lines; null: none
 };
 
-/// Quantities of one unit, in the order in which they are drawn.
+/// Quantities with the same unit, in drawing order.
 struct FigurePane {
-  std::string label;  ///< of its axis: what is drawn and its unit
+  std::string label;  ///< axis label: quantities and unit
   std::vector<Quantity> quantities;
 };
 
 std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities);
 
-/// Draws a PNG by gnuplot. Throws device::Error with a sentence if a quantity was not recorded, the stretch of time
-/// holds no samples, the picture cannot be written, or gnuplot fails.
+/// Draws a PNG with gnuplot. Throws device::Error with a sentence if a quantity was not recorded, or the time range
+/// contains no samples. The function also throws if the picture cannot be written, or if gnuplot fails.
 void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture);
 
 }  // namespace inkwell::recording

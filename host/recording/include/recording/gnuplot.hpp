@@ -1,4 +1,4 @@
-// What all figures have in common: their look, the band that stands for many samples, and gnuplot itself.
+// Common parts of all figures: the style, the band that represents many samples, and gnuplot.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace inkwell::recording {
 
-/// Many samples in one point of a figure: a line is drawn through the means, a band from smallest to largest.
+/// Many samples in one point of a figure: the line shows the mean, the band the smallest and the largest value.
 struct Band {
   double mean, minimum, maximum;
 };
 
-/// Of value_at(0) to value_at(count - 1); all NaN if there are none, which leaves a gap in the figure.
+/// Band of value_at(0) to value_at(count - 1). Without values all members are NaN, which leaves a gap in the figure.
 template <class ValueAt>
 Band band_of(std::size_t count, ValueAt value_at) {
   if (count == 0) return {std::nan(""), std::nan(""), std::nan("")};
@@ -30,7 +30,7 @@ Band band_of(std::size_t count, ValueAt value_at) {
   return {sum / static_cast<double>(count), smallest, largest};
 }
 
-/// What a figure draws: bands over time.
+/// Data of a figure: bands over time.
 struct FigureData {
   struct Row {
     double time_s;
@@ -39,26 +39,27 @@ struct FigureData {
   std::vector<std::string> names;
   std::vector<Row> rows;
 
-  /// As CSV, for the script beside it. Throws device::Error if it cannot be written whole.
+  /// Writes a CSV file for the script. Throws device::Error if the file cannot be written completely.
   void write(const std::filesystem::path& file) const;
 };
 
 struct Curve {
-  std::string name;   ///< of the band in the data
-  std::string style;  ///< colour, a variable of figure_head, and what else belongs to the line
-  std::string title;  ///< in the legend; none where the axis says it
+  std::string name;   ///< name of the band in the data
+  std::string style;  ///< color (a variable of figure_head) and other line properties
+  std::string title;  ///< legend text; empty if the axis shows it
 };
 
-/// Start of a script: data file, picture size in pixels, fonts, colours and axes.
+/// Start of a script: data file, picture size in pixels, fonts, colors and axes.
 std::string figure_head(const std::string& data_file, int width, int height);
-/// Title and subtitle above the next plot. Their distance to the picture's upper edge is in pixels.
+/// Title and subtitle above the next plot. The distance of both titles to the picture's upper edge is in pixels.
 std::string figure_titles(std::string_view title, std::string_view subtitle, int height);
 /// Lines and bands against time_s.
 std::string plot_command(const std::vector<Curve>& curves);
-/// A string for gnuplot, quotes included: it prints this text, made plain, whatever is in it.
+/// Converts any text to a quoted gnuplot string. The text is converted to plain text first.
 std::string gnuplot_text(std::string_view text);
 
-/// Runs a script in its folder, without settings of the user. Throws device::Error with gnuplot's words if it fails.
+/// Runs a script in its folder, without the user's gnuplot settings. Throws device::Error with gnuplot's output if the
+/// script fails.
 void run_gnuplot(const std::filesystem::path& script);
 
 }  // namespace inkwell::recording

@@ -1,4 +1,4 @@
-// What a recording says about itself: device, firmware, arm, parameters, and what its columns hold.
+// Metadata of a recording: device, firmware, arm, parameters and columns.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace inkwell::recording {
 
-/// Rises when the layout of the files changes.
+/// Increases when the layout of the files changes.
 inline constexpr int format_version = 1;
 inline constexpr char format_name[] = "inkwell recording";
 
@@ -23,20 +23,21 @@ struct Information {
   std::string firmware_version;
   std::uint16_t protocol_version = protocol::protocol_version;
   std::string serial_number;
-  std::string arm;          ///< its name, as far as it is known
-  bool simulation = false;  ///< recorded from a virtual board
-  /// The device's protocol::ForceLawReport: rows of parameters and signals beside the tables'. Null if none is known.
+  std::string arm;  ///< name of the arm, if known
+  bool simulation = false;
+  /// The device's protocol::ForceLawReport: rows of parameters and signals in addition to the tables. Null if unknown.
   std::shared_ptr<const std::vector<std::byte>> force_law;
   protocol::ParameterSet parameters{};
   std::vector<protocol::Signal> signals;
-  /// Control periods from one sample to the next: 1 in what the scope gave, more in a black box.
+  /// Control periods from one sample to the next: 1 for the scope, more for a black box.
   std::uint32_t step_periods = 1;
-  /// What a simulation knew beside them. No device tells these, so a replay passes them over.
+  /// Simulated quantities in addition to the signals. A device does not send simulated quantities, so a replay ignores
+  /// them.
   std::vector<protocol::SimulatedQuantity> simulated;
 };
 
-/// What is to be written about a recording that starts now. An empty `arm` is recognized by the parameters if it is the
-/// one that their defaults describe.
+/// Metadata for a recording that starts now. If `arm` is empty and the parameters match the default arm, its name is
+/// used.
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
                      std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
 

@@ -1,4 +1,4 @@
-// What a column of a recording holds: a signal that the device streamed, or what a simulation knew.
+// The quantity in a column of a recording: a signal from the device or a simulated quantity.
 #pragma once
 
 #include <string>
@@ -15,8 +15,7 @@ using Quantity = std::variant<protocol::Signal, protocol::SimulatedQuantity>;
 std::string_view name_of(Quantity quantity);
 std::string_view unit_of(Quantity quantity);
 
-/// What it is in words, without axis and unit: "position" for position_x_m, "current reference" for
-/// current_reference_1_A.
+/// Description without axis and unit: "position" for position_x_m, "current reference" for current_reference_1_A.
 std::string words_of(Quantity quantity);
 
 }  // namespace inkwell::recording

@@ -1,4 +1,4 @@
-// Records a running device: takes samples from the scope's thread and writes them in its own.
+// Records a running device. Receives samples on the scope's thread and writes them on a separate thread.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,29 @@ struct RecorderStatus {
   bool running = false;
   double duration_s = 0;  ///< board time from the first sample to the last
   std::uint64_t samples = 0;
-  std::uint64_t lost = 0;        ///< on the way from the device, or because the disk was too slow
-  std::uint64_t bytes = 0;       ///< size of the file
-  std::uint64_t free_bytes = 0;  ///< left on its disk
+  std::uint64_t lost = 0;  ///< lost in transmission or because the disk was too slow
+  std::uint64_t bytes = 0;
+  std::uint64_t free_bytes = 0;  ///< free space on its disk
   std::size_t marks = 0;
-  std::string error;  ///< a sentence, empty while all is well
+  std::string error;  ///< a sentence; empty without an error
 };
 
 class Recorder {
  public:
-  /// Creates the file. Throws device::Error if it cannot.
+  /// Creates the file. Throws device::Error on failure.
   Recorder(const std::filesystem::path& file, const Information& information);
-  /// Finishes the recording if `stop` was not called.
+  /// Finishes the recording unless `stop` was called.
   ~Recorder();
 
-  /// Samples of the signals that the recording was opened with; others are passed over. A board that was restarted
-  /// ends the recording. Never waits: if the disk falls behind by more than 64 MB, samples are dropped and counted as
-  /// lost.
+  /// Adds samples of the recording's signals; other signals are ignored. A restart of the board ends the recording.
+  /// Never blocks: if more than 64 MB are queued for the disk, samples are dropped and counted as lost.
   void push(const device::ScopeSamples& samples);
-  /// Marks the newest sample; before there is one, the first.
+  /// Marks the newest sample, or the first sample before any sample exists.
   void mark(const std::string& text);
-  /// Notes what happened to the device, at its own control period; like a mark of the user if it has none.
+  /// Records an event of the device at its control period. Without a period, the event is recorded like a user's mark.
   void note(const device::Event& event);
   RecorderStatus status() const;
-  /// Writes what is left, closes the file, and tells how it went.
+  /// Writes the remaining samples, closes the file and returns the final status.
   RecorderStatus stop();
 
  private:

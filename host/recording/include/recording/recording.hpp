@@ -1,4 +1,4 @@
-// A recording in memory: read back from a file, or as it grows.
+// A recording in memory: read from a file, or growing.
 #pragma once
 
 #include <cstddef>
@@ -15,61 +15,61 @@
 
 namespace inkwell::recording {
 
-/// What the user noted, or what happened to the device.
+/// A note of the user or an event of the device.
 struct Mark {
-  std::int64_t period;  ///< control period at which it was set, or it happened
+  std::int64_t period;  ///< control period of the note or of the event
   std::string text;
   device::EventKind kind = device::EventKind::mark;
-  std::string clock_utc = {};  ///< as device::clock_utc_now() writes it; empty if it is not known
+  std::string clock_utc = {};  ///< in the format of device::clock_utc_now(); empty if unknown
 };
 
 struct Recording {
-  std::string name;  ///< of its file, without folder and ending
+  std::string name;  ///< file name without folder and extension
   Information information;
-  bool complete = true;                     ///< false: the program or the disk gave up before the end was written
-  std::vector<std::int64_t> periods;        ///< control period of each sample
-  std::vector<std::vector<float>> columns;  ///< one for each of information.signals, as long as `periods`
-  std::vector<std::vector<float>> simulated_columns;  ///< one for each of information.simulated, as long, too
-  std::vector<Mark> marks;                            ///< as read back, in the order of their periods
-  std::vector<std::string> remarks;                   ///< sentences about what this version did not understand
+  bool complete = true;  ///< false: the writer stopped before the end of the recording
+  std::vector<std::int64_t> periods;
+  std::vector<std::vector<float>> columns;  ///< one for each entry of information.signals, with the length of `periods`
+  std::vector<std::vector<float>> simulated_columns;  ///< one for each entry of information.simulated
+  std::vector<Mark> marks;                            ///< sorted by period after reading
+  std::vector<std::string> remarks;                   ///< sentences about contents that this version cannot interpret
 
   static Recording without_samples(Information information);
 
   std::size_t size() const { return periods.size(); }
   /// Board time since the first sample.
   double elapsed_s(std::size_t sample) const { return elapsed_s_at(periods[sample]); }
-  /// 0 in a recording without samples.
+  /// Returns 0 in a recording without samples.
   double elapsed_s_at(std::int64_t period) const {
     return periods.empty() ? 0.0 : device::board_time_s(period - periods.front());
   }
   /// From the first sample to the last; 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
-  /// The first sample at or after a time since the first sample; size() if there is none.
+  /// Index of the first sample at or after a time since the first sample; size() if it does not exist.
   std::size_t sample_at(double elapsed_s) const;
-  /// Signals first, then what the simulation knew.
+  /// Signals, then simulated quantities.
   std::vector<Quantity> quantities() const;
-  /// Throws device::Error, with what was recorded, if the quantity was not.
+  /// Throws device::Error with the list of recorded quantities if the quantity was not recorded.
   const std::vector<float>& column(Quantity quantity) const;
-  /// Samples between the first and the last that are missing.
+  /// Number of missing samples between the first and the last sample.
   std::uint64_t lost() const;
 
-  /// Where the stretch without a gap ends that `begin` lies in; `end` at the latest.
+  /// End of the gap-free range that contains `begin`, at most `end`.
   std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
-  /// A stretch as the scope gave it; periods that are missing before it count as lost.
+  /// Samples of a range in the format of the scope. Missing periods before the range count as lost.
   device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
-  /// The sample as the scope would have given it: its values stay until the next one is due.
+  /// One sample in the format of the scope: its values are repeated until the next sample.
   device::ScopeSamples held_sample(std::size_t sample) const;
   /// Adds samples of information.signals to a recording without simulated columns.
   void append(const device::ScopeSamples& samples);
-  /// Forgets the samples before `begin` and from `end` on.
+  /// Deletes the samples before `begin` and from `end` on.
   void keep(std::size_t begin, std::size_t end);
 };
 
-/// One line for each mark: clock, time since the first sample, kind, text.
+/// One line per mark: clock, time since the first sample, kind, text.
 std::string log_text(const Recording& recording);
 
-/// Reads an HDF5 or CSV recording, told apart by their content. A file whose end is missing is read as far as
-/// it goes. Throws device::Error with a sentence if it is missing, damaged or no recording.
+/// Reads an HDF5 or CSV recording; its content determines the format. An incomplete file is read up to its last
+/// complete sample. Throws device::Error with a sentence if the file is missing, damaged or not a recording.
 Recording read(const std::filesystem::path& file);
 
 }  // namespace inkwell::recording

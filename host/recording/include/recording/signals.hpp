@@ -1,4 +1,4 @@
-// Which signals are recorded, and how columns are named on the command line.
+// Sets of recorded signals, and the parser for signal names on the command line.
 #pragma once
 
 #include <string>
@@ -10,19 +10,20 @@
 
 namespace inkwell::recording {
 
-/// What a replay and its plots need: joints, gimbal, position, penetration, force, torques, currents, duties,
-/// and whose force it is.
+/// Signals for a replay and its plots: joints, gimbal, position, penetration, force, torques, currents, duties and
+/// force source.
 std::vector<protocol::Signal> standard_signals();
 
-/// The whole path of the paper's Figure 7, from the encoders to the duties: as much as the scope carries at once.
+/// The complete path of the paper's Figure 7, from the encoders to the duties. This set fills the capacity of the
+/// scope.
 std::vector<protocol::Signal> signal_path();
 
-/// Reads names with commas between them. Throws device::Error that names the nearest signal for one that is
-/// unknown, and one for more than the scope carries at once.
+/// Parses comma-separated names. For an unknown name, throws device::Error with the nearest signal. The function also
+/// throws if there are more signals than the scope can transmit.
 std::vector<protocol::Signal> parse_signals(std::string_view names);
 
-/// Reads names of signals and of what a simulation knows, with commas between them. Throws device::Error that names the
-/// nearest one for one that is unknown.
+/// Parses comma-separated names of signals and simulated quantities. For an unknown name, throws device::Error with the
+/// nearest name.
 std::vector<Quantity> parse_quantities(std::string_view names);
 
 }  // namespace inkwell::recording

@@ -1,4 +1,4 @@
-// Files that are written in one go.
+// Writes a complete file in one call.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace inkwell::recording {
 
-/// Throws device::Error if the text cannot be written whole.
+/// Throws device::Error if the text cannot be written completely.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace inkwell::recording

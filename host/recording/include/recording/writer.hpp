@@ -1,4 +1,4 @@
-// Writes a recording sample by sample, so that what is on the disk can be read at any moment.
+// Writes a recording sample by sample, so that the file is readable at any moment.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,31 @@
 
 namespace inkwell::recording {
 
-/// All members throw device::Error with a sentence when the disk does not take it; what was flushed before
-/// stays readable.
+/// All members throw device::Error with a sentence on a write error. Flushed data remains readable.
 class Writer {
  public:
   virtual ~Writer() = default;
-  /// Samples of the signals that the recording was opened with, and beside each of them the simulated quantities that
-  /// it was opened with: simulated[i * information.simulated.size() + j], empty if there are none.
+  /// Appends samples of the recording's signals. Element i * information.simulated.size() + j of `simulated` is the
+  /// simulated quantity j of sample i; `simulated` may be empty.
   virtual void append(const device::ScopeSamples& samples, std::span<const float> simulated) = 0;
   virtual void mark(const Mark& mark) = 0;
-  /// Afterwards everything appended so far survives the end of this process.
+  /// After this call, all appended data survives the end of the process.
   virtual void flush() = 0;
-  /// Flushes, notes that the recording is complete, and closes the file.
+  /// Flushes, marks the recording as complete, and closes the file.
   virtual void finish() = 0;
 };
 
-/// What becomes of a file of the name that was given.
+/// Treatment of an existing file with the same name.
 enum class Existing : std::uint8_t { stays, is_replaced };
 
-/// Throws device::Error with a sentence if the ending is unknown, the file exists and stays, or its folder does not.
+/// Throws device::Error with a sentence if the extension is unknown, if the file exists and must stay, or if its folder
+/// does not exist.
 void check_can_be_created(const std::filesystem::path& file, Existing existing = Existing::stays);
 
-/// The ending chooses the format: .h5 and .hdf5, or .csv. An existing file is refused, not overwritten.
+/// The extension determines the format: .h5 and .hdf5, or .csv. An existing file is not overwritten.
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information);
 
-/// Writes a whole recording. A file of that name is replaced, but only once the new one is complete.
+/// Writes a complete recording. An existing file is replaced only after the new file is complete.
 void save(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace inkwell::recording

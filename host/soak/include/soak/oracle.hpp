@@ -1,4 +1,4 @@
-// Judges what a board does by what was done to it. Pure: it is told both, and keeps what does not fit.
+// Compares the behavior of a board with the actions on it, without side effects. Records all contradictions.
 #pragma once
 
 #include <cstdint>
@@ -41,70 +41,67 @@ enum class Complaint : std::uint8_t {
 std::string_view name_of(Complaint complaint);
 
 struct Finding {
-  unsigned phase = 0;  ///< from 1 on
+  unsigned phase = 0;  ///< from 1
   std::string kind;    ///< of the phase
   double board_time_s = 0;
   std::string complaint;
   std::string text;
 };
 
-/// How hard the motors pressed, where that was the most of the force limit of its time.
+/// Largest motor force relative to the force limit at the same time.
 struct Press {
   double force_N = 0, limit_N = 0;
-  unsigned phase = 0;  ///< from 1 on
+  unsigned phase = 0;  ///< from 1
   std::string kind;    ///< of the phase
   double board_time_s = 0;
 
   double part_of_limit() const { return limit_N > 0 ? force_N / limit_N : 0.0; }
 };
 
-/// What a simulation tells at an instant.
+/// State of a simulation at an instant.
 struct Look {
   double board_time_s = 0;
-  double driven_until_s = 0;  ///< the last time that a leg was at the supply
+  double driven_until_s = 0;  ///< last time at which a leg was driven high
   unsigned restarts = 0;      ///< since the simulation's start
-  /// That the torques of the motors put on the probe since the last look, while a bridge drove, in the mean over a
-  /// control period and over a millisecond.
+  /// Peak force of the motors at the probe since the last look, while a bridge was driven. Means over a control period
+  /// and over a millisecond.
   double peak_motor_force_N = 0, peak_motor_force_over_ms_N = 0;
 };
 
-/// What was put in and not healed yet.
+/// Active disturbance.
 enum class Disturbance : std::uint8_t {
   none,
-  hardware,  ///< restarts and whether the bridges drive are not judged, and forces over a millisecond only
-  program,   ///< nor is any force, nor what the firmware says: it does not run as it was written
+  hardware,  ///< restarts and driven bridges are not judged; forces are judged only as means over a millisecond
+  program,   ///< forces and firmware reports are not judged either, because the program is corrupted
 };
 
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
-  /// Of a lower force limit the noise of the current sensors is a large part, which tells nothing.
+  /// For a lower force limit, the noise of the current sensors is too large for a judgment.
   static constexpr double telling_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
-  /// The cause is gone: nothing may be told any more in this phase.
+  /// The cause is cleared: any further report in this phase is an error.
   void allow_no_fault() { may_tell_ = 0; }
-  /// The cause is gone, but not what it did to a reference: counts that were lost may be noticed until there is
-  /// another.
+  /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
   void allow_lost_counts() { may_tell_ = lost_counts; }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
 
-  /// Asked for from now on.
+  /// Force is requested from now on.
   void ask_for_force();
-  /// Not any more; it may go on for so long.
+  /// Force is no longer requested, but may continue for this time.
   void give_up_force(double grace_s);
-  /// From now on.
   void limit_force(double force_limit_N) { force_limit_N_ = force_limit_N; }
-  /// The next restart is wanted.
   void expect_restart() { restart_expected_ = true; }
-  /// Poses of a new connection begin.
+  /// Poses of a new connection follow.
   void connected() { sequence_.reset(); }
 
   void see(const device::Pose& pose);
   void see(const Look& look);
-  /// Counts since the board's start. True if the chip started anew since the last call.
+  /// Compares the counts since the board's start. Returns true if the chip restarted since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
-  /// One of them.
+  /// At least one of these faults must have been reported.
   void must_have_told(protocol::Watches faults);
   void complain(Complaint complaint, std::string text);
 
@@ -115,19 +112,20 @@ class Oracle {
   double board_time_s() const { return now_s_; }
 
   const std::vector<Finding>& findings() const { return findings_; }
-  /// With the force on, while nothing was put in.
+  /// Peak motor force with the force on and without a disturbance.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// With the force on and a limit of telling_limit_N or more: while nothing was put in; while something was, a program
-  /// that is not the flashed one included; and then in the mean over a millisecond.
+  /// Largest forces with the force on and a limit of at least telling_limit_N: without a disturbance, with a
+  /// disturbance, and with a disturbance as a mean over a millisecond. A corrupted program also counts as a
+  /// disturbance.
   const Press& hardest_press() const { return hardest_press_; }
   const Press& hardest_press_with_fault() const { return hardest_press_with_fault_; }
   const Press& hardest_press_with_fault_over_ms() const { return hardest_press_with_fault_over_ms_; }
-  /// Of its period, while nothing was put in.
+  /// Longest control interrupt as a fraction of its period, without a disturbance.
   double longest_interrupt_part() const { return longest_interrupt_part_; }
   unsigned long poses() const { return poses_; }
-  /// Poses missing within connections, while nothing was put in: frames without one.
+  /// Missing poses within connections, without a disturbance: bus frames without a pose.
   unsigned long poses_lost() const { return poses_lost_; }
-  /// The same while something was: a core that is halted makes none, a host that is silent asks for none.
+  /// Missing poses with a disturbance: a halted core produces none, and a silent host requests none.
   unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
   const std::map<std::string, unsigned>& faults_told() const { return faults_told_; }
@@ -147,15 +145,15 @@ class Oracle {
   std::vector<protocol::Fault> told_;  ///< in this phase
   double now_s_ = 0;
   bool asked_ = false;
-  double may_drive_until_s_ = 0;  ///< without having been asked
-  bool may_test_itself_ = true;   ///< it drives for its self-test, from its start until it tells that it is past that
-  bool test_is_over_ = false;     ///< since the last look
+  double may_drive_until_s_ = 0;  ///< without a request
+  bool may_test_itself_ = true;   ///< true during the self-test, from the start until the board reports its end
+  bool test_is_over_ = false;     ///< the self-test ended since the last look
   unsigned restarts_looked_at_ = 0;
   double force_limit_N_ = 0;
   bool restart_expected_ = false;
   std::optional<std::int64_t> sequence_;
   protocol::State state_ = protocol::State::starting;
-  bool force_may_be_on_ = false;  ///< in the newest pose before the last look, or in one since
+  bool force_may_be_on_ = false;  ///< in the newest pose before the last look, or in a later one
   protocol::Fault fault_ = protocol::Fault::none;
   unsigned restarts_ = 0;
   unsigned long rules_ = 0;

@@ -1,9 +1,9 @@
-// What a soak does: the kinds of its phases, how often each comes, and which faults a board may tell in it.
+// Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
 //
-// A fault that the board tells in a phase of a kind that does not name it is a false trip. So use keeps to what a user
-// may do without one: the hand stays slower than the speed limit but where a phase is about that limit; parameters that
-// make a sound arm look like a broken one (the arm's own measures, wrong resistances, gains that ring) change only
-// while the force is off, or stay near what is right (storm.hpp).
+// A reported fault that the kind does not name is a false trip. The use therefore avoids faults: the hand stays below
+// the speed limit except in the phase about this limit. Some parameters make a fault-free arm look defective: the arm's
+// dimensions, wrong resistances, and gains that cause oscillation. These parameters change only while the force is off,
+// or stay close to the correct values (storm.hpp).
 #pragma once
 
 // To add a kind of phase:
@@ -22,16 +22,16 @@
 
 namespace inkwell::soak {
 
-/// By what a board may find out that an encoder counted wrongly.
+/// Faults by which a board can detect wrong encoder counts.
 inline constexpr protocol::Watches lost_counts =
     protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
 
-/// Of a host that goes; the one that is told is the one that is seen first.
+/// Faults of a disconnected host; the board reports the first detected one.
 inline constexpr protocol::Watches host_gone =
     protocol::watch(protocol::Fault::usb_gone) | protocol::watch(protocol::Fault::host_silent);
 
 // clang-format off
-/// X(name, cards in a deck, faults that may be told, what is done)
+/// X(name, cards in a deck, faults that may be reported, description)
 #define INKWELL_SOAK_KINDS(X)                                                                                          \
   X(docking, 1, 0, "The stylus is put into the inkwell and taken out again, then the force is switched on.")            \
   X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.")                       \
@@ -73,7 +73,7 @@ inline constexpr auto kind_table = std::to_array<KindInfo>({
 
 constexpr const KindInfo& info(Kind kind) { return kind_table[static_cast<std::size_t>(kind)]; }
 
-/// As many of each kind as it has cards, in random order: each kind comes in every deck.
+/// A deck in random order, with as many phases of each kind as the table states. Each kind occurs in every deck.
 std::vector<Kind> shuffled_deck(Random& random);
 
 }  // namespace inkwell::soak

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine, which the standard's distributions are not.
+// Random numbers that are the same on every machine, unlike the standard's distributions.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace inkwell::soak {
 
 class Random {
  public:
-  /// Of two numbers, so that each sitting of a seed has numbers of its own.
+  /// Combines two numbers, so that each sitting of a seed has separate random numbers.
   Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(seed + 0x9E3779B97F4A7C15u * (stream + 1))) {}
 
   double from(double low, double high) { return low + (high - low) * part(); }
-  /// 0 to `count` - 1; `count` is not 0.
+  /// Returns 0 to `count` - 1; `count` must not be 0.
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(part() * static_cast<double>(count)); }
   bool chance(double probability) { return part() < probability; }
   template <class Container>
@@ -28,9 +28,9 @@ class Random {
   }
 
  private:
-  /// 0 to below 1.
+  /// Returns 0 to less than 1.
   double part() { return static_cast<double>(engine_() >> 11) / 9007199254740992.0; }
-  /// Neighbouring seeds shall have nothing in common (splitmix64).
+  /// Decorrelates adjacent seeds (splitmix64).
   static std::uint64_t mixed(std::uint64_t x) {
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;

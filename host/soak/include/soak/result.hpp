@@ -1,4 +1,4 @@
-// What came of a soak: of each sitting, and of all together.
+// Results of a soak: of each sitting, and of all sittings together.
 #pragma once
 
 #include <cstdint>
@@ -15,31 +15,31 @@ struct PhaseResult {
   unsigned number = 0;
   std::string kind;
   double begin_s = 0, duration_s = 0;  ///< board time
-  std::string what;                    ///< in words: what was put in, how much was changed
+  std::string what;                    ///< description: injected fault, number of changes
 };
 
-/// What was missing in a sitting.
 struct Losses {
   unsigned long poses = 0;               ///< within a connection
-  unsigned long poses_kept_back = 0;     ///< by what was put in: no finding
-  unsigned long scope_samples = 0;       ///< of selections that the bus carries for sure
-  unsigned long wide_scope_samples = 0;  ///< of longer ones, which the bus may be too slow for: no finding
+  unsigned long poses_kept_back = 0;     ///< due to the injected fault; not a finding
+  unsigned long scope_samples = 0;       ///< of selections within the capacity of the bus
+  unsigned long wide_scope_samples = 0;  ///< of larger selections, which may exceed the capacity of the bus; not a
+                                         ///< finding
   unsigned long program_forces = 0;
   unsigned long recorded_samples = 0;
 };
 
-/// A board from its start to its end.
+/// One board from its start to its end.
 struct Sitting {
-  unsigned number = 0;  ///< from 1 on
+  unsigned number = 0;  ///< from 1
   double board_time_s = 0;
   std::vector<PhaseResult> phases;
   std::vector<Finding> findings;
   std::map<std::string, unsigned> faults_put_in,
-      faults_told;        ///< by name; told ones of the hand's and host's doing too
-  unsigned restarts = 0;  ///< wanted ones and those of faults included
+      faults_told;        ///< by name; faults_told includes faults caused by hand and host
+  unsigned restarts = 0;  ///< including intended restarts and restarts due to faults
   double peak_motor_force_N = 0;
   Press hardest_press, hardest_press_with_fault, hardest_press_with_fault_over_ms;
-  double longest_interrupt_part = 0;  ///< of its period
+  double longest_interrupt_part = 0;  ///< longest control interrupt, as a fraction of its period
   unsigned long transactions = 0, refused_transactions = 0, poses = 0;
   Losses lost;
 };
@@ -47,16 +47,16 @@ struct Sitting {
 struct Soak {
   std::uint64_t seed = 1;
   double sitting_s = 0, use_s = 0;
-  bool stopped = false;  ///< before the time was over: by the user, or as a board could not be used
+  bool stopped = false;  ///< before the end of the time: by the user, or because a board was unusable
   std::vector<Sitting> sittings;
 };
 
 std::size_t finding_count(const Soak& soak);
 unsigned false_trip_count(const Soak& soak);
-/// A line on each phase, or on all.
+/// A line for one phase, or a table for all.
 std::string line_of(const Sitting& sitting, const PhaseResult& phase);
 std::string table_of(const Soak& soak);
-/// The command that goes again through the sitting of a finding.
+/// Command that repeats the sitting of a finding.
 std::string repeat_command(const Soak& soak, unsigned sitting);
 /// A JSON object and a line feed.
 std::string json_of(const Soak& soak);

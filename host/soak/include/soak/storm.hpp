@@ -1,4 +1,4 @@
-// Random transactions of parameters, legal and illegal, by the table's own ranges and bounds. Pure.
+// Random parameter transactions, legal and illegal, from the ranges and bounds of the table. Without side effects.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,16 @@ namespace inkwell::soak {
 using Changes = std::vector<device::ParameterChange>;
 
 enum class Reach : std::uint8_t {
-  /// With the force on a sound arm stays sound: no measure of the arm; walls stay about where they are by default;
-  /// resistances within a tenth (the motors' watch judges by them), gains from half to 1.2 times what they were
-  /// (beyond,
-  /// the loops may ring), a speed limit and a host's timeout that use keeps below, and 4 V or more to drive currents.
+  /// No false faults with the force on. The dimensions of the arm do not change, and walls stay near their default
+  /// positions. Resistances stay within 10 %, because the motor check uses them. Gains are 0.5 to 1.2 times their
+  /// defaults, because higher gains may cause oscillation. Speed limit and host time-out stay above the values in use,
+  /// and at least 4 V remain to drive currents.
   careful,
-  whole,  ///< every value that the table allows
+  whole,  ///< all values that the table allows
 };
 
-/// Parameters that may be changed at all, of those that are known.
+/// Known parameters that may be changed.
 std::vector<protocol::Parameter> within(Reach reach);
-/// The smallest and the largest value.
 struct Range {
   float minimum, maximum;
 };
@@ -32,11 +31,11 @@ Range range_of(protocol::Parameter parameter, Reach reach);
 
 protocol::ParameterSet with(protocol::ParameterSet set, std::span<const device::ParameterChange> changes);
 
-/// `count` parameters at least, no bounds contradicted. `now` is what the device holds.
+/// At least `count` parameters without contradictory bounds. `now` contains the values of the device.
 Changes legal_changes(Random& random, const protocol::ParameterSet& now, Reach reach, std::size_t count);
 
 struct Illegal {
-  Changes changes;  ///< legal ones with one among them that makes the whole be refused
+  Changes changes;  ///< legal changes plus one that causes a refusal of the transaction
   protocol::Refusal refusal;
 };
 Illegal illegal_changes(Random& random, const protocol::ParameterSet& now, bool force_is_on);

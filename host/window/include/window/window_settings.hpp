@@ -1,4 +1,4 @@
-// What the window remembers from one time to the next: a TOML file in the user's configuration directory.
+// Saved settings of the window: a TOML file in the user's configuration directory.
 #pragma once
 
 #include <filesystem>
@@ -16,24 +16,25 @@ struct WindowSettings {
   static constexpr float scope_part_maximum = 0.9f;
 
   Theme theme = Theme::dark;
-  float column_width = 330.0f;  ///< of the panes at the right; in points, before scaling
-  float scope_part = 0.42f;     ///< of the height that scene and scope share
+  float column_width = 330.0f;  ///< width of the pane column, in points before scaling
+  float scope_part = 0.42f;     ///< share of the common height of scene and scope
   bool scope_is_shown = true;
   ScopeSettings scope;
-  std::filesystem::path parameters_file;  ///< the one loaded or saved last
+  std::filesystem::path parameters_file;  ///< last file that was loaded or saved
   bool operator==(const WindowSettings&) const = default;
 };
 
-/// $XDG_CONFIG_HOME/inkwell/window.toml, or the same below ~/.config; empty if neither is known.
+/// Returns $XDG_CONFIG_HOME/inkwell/window.toml or ~/.config/inkwell/window.toml; empty if neither directory is known.
 std::filesystem::path window_settings_path();
 
-/// As they were kept; the defaults if there is no such file.
+/// Returns the defaults if the file does not exist.
 WindowSettings read_settings(const std::filesystem::path& file);
-/// A sentence about why they could not be kept; empty if they were.
+/// Returns an error message; empty on success.
 std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file);
 
 std::string format_settings(const WindowSettings& settings);
-/// What cannot be read, or makes no sense, keeps its default: a damaged file of settings must not keep the window shut.
+/// Keeps the default of each setting that is unreadable or invalid, so that a damaged file does not prevent the window
+/// from opening.
 WindowSettings parse_settings(const std::string& text);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The banner under the status bar, while there is something to say.
+// The banner below the status bar.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,21 @@
 
 namespace inkwell::window {
 
-/// What has to be said over the whole width: a fault with its cause and remedy, an arm with force that is out of sight
-/// behind a replay, another program that drives the arm, a motor that is hot, or another firmware than this
-/// companion's.
+/// A message across the whole window. Reasons: a fault with cause and remedy, an arm with force on during a replay,
+/// another driver, a hot motor, or a different firmware version.
 enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
 
 struct Banner {
   std::string what;
   std::string remedy;
-  BannerAction action;  ///< of its button
+  BannerAction action;  ///< action of the banner's button
   std::string button{};
 
   bool is_fault() const { return action == BannerAction::clear_fault; }
 };
 std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
 float banner_height(float width, const Style& style, const Banner& banner);
-/// True when its button was pressed.
+/// Returns true if the button was pressed.
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// How the window says whether it is connected.
+// The card that shows the state of the connection.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,18 @@ namespace inkwell::window {
 const char* connection_title(const device::SessionStatus& status);
 Colour connection_colour(device::Connection connection, const Palette& palette);
 
-/// A virtual board in place of the device that is not there.
+/// A virtual board as a substitute for a missing device.
 struct VirtualBoardOffer {
   bool is_made;
-  const std::string& problem;  ///< why it could not be started the last time; empty: nothing is known
+  const std::string& problem;  ///< error of the last attempt to start it; empty: no error
 };
 struct ConnectionCardOutcome {
   FirmwareCardOutcome firmware;
   bool starts_virtual_board = false;
   std::optional<std::string> chosen_serial_number{};
 };
-/// A card in the middle of the scene that says why no device is connected and what to do, or how an update goes.
+/// Draws a card in the middle of the scene. The card shows the progress of an update, or why no device is connected and
+/// what to do.
 ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
                                            const FirmwareUpdater::Sight& firmware, const VirtualBoardOffer& offer);
 

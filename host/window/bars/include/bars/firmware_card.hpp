@@ -1,4 +1,4 @@
-// What the card in the middle of the scene says of a firmware update.
+// Firmware update part of the card in the middle of the scene.
 #pragma once
 
 #include <bars/firmware_updater.hpp>
@@ -11,11 +11,11 @@ struct FirmwareCardOutcome {
   bool update = false, dismiss = false;
 };
 
-/// There is an update to be told of, or a boot loader that waits for one.
+/// True while an update has something to show, or while a boot loader waits for an update.
 bool has_firmware_card(const FirmwareUpdater::Sight& sight, const DeviceView& view);
-/// The card's content then.
+/// Draws the content of the card in this case.
 FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater::Sight& sight);
-/// Below the sentence that a device speaks another version. True when its button was pressed.
+/// Draws the update offer below the message about a different protocol version. Returns true if its button was pressed.
 bool draw_firmware_offer(const Style& style, const FirmwareUpdater::Sight& sight);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Writes this companion's firmware into a board while the window goes on.
+// Writes this companion's firmware to a board in the background.
 #pragma once
 
 #include <condition_variable>
@@ -18,33 +18,33 @@ namespace inkwell::window {
 
 class FirmwareUpdater {
  public:
-  /// `asks`: the board's firmware is newer, and beginning again is the consent to replace it.
+  /// `asks`: the board's firmware is newer. A second begin() confirms that the newer firmware may be replaced.
   enum class Phase : std::uint8_t { idle, runs, asks, failed, done };
-  /// One frame's view of it.
+  /// State of the updater in one frame.
   struct Sight {
     Phase phase = Phase::idle;
-    std::string message{};  ///< the step, the question, why it failed, or what the board has now
-    double done = 0;        ///< from 0 to 1
+    std::string message{};  ///< step, question, error, or firmware version that the board now has
+    double done = 0;        ///< progress from 0 to 1
     bool sees_boot_loader = false;
-    std::string board{};    ///< that the image is for; empty: nobody knows yet which one it is
-    std::string brings{};   ///< what the image is, such as "firmware 0.1.0 for omni_driver"; empty: there is none
-    std::string version{};  ///< of the image; empty: there is none
+    std::string board{};    ///< board that the image is for; empty: not known yet
+    std::string brings{};   ///< description of the image, such as "firmware 0.1.0 for omni_driver"; empty: no image
+    std::string version{};  ///< version of the image; empty: no image
   };
 
-  /// `image` is for a board that does not say which it is. It is read anew for each update. The board is that at
-  /// `address`.
+  /// `image` is used for a board that does not report its name, and is read again for each update. `address` is the
+  /// address of the board.
   FirmwareUpdater(std::filesystem::path image, device::Address address);
-  /// Waits for an update that runs: half a firmware would be left.
+  /// Waits until a running update has finished, because an interrupted update leaves an incomplete firmware.
   ~FirmwareUpdater() = default;
 
-  /// Once a frame: a boot loader is looked for while no device is connected.
+  /// Call once per frame. Looks for a boot loader while no device is connected.
   void look_for_boot_loader(bool looks);
-  /// Once a frame: the name of the board that is there. It is remembered for an update that was cut off, after which
-  /// the board cannot tell it any more.
+  /// Call once per frame with the name of the connected board. The name is kept because a board with an incomplete
+  /// firmware cannot report its name.
   void meet(const std::string& board_name);
-  /// Begins, unless one runs. `serial_number` may be empty: the only board.
+  /// Starts an update unless one is running. An empty `serial_number` selects the only board.
   void begin(const std::string& serial_number);
-  /// The message was read.
+  /// Acknowledges the message.
   void dismiss();
   Sight sight() const;
 
@@ -52,21 +52,21 @@ class FirmwareUpdater {
   void work(const std::stop_token& stop);
   void update(const std::string& serial_number, bool allows_downgrade);
   void look();
-  /// What is brought for the board that was met.
+  /// Reads the image that is offered to the connected board.
   void read_offer();
   firmware_update::Image image_for(const std::string& board_name) const;
   void set(Phase phase, const std::string& message, double done);
 
   const std::filesystem::path image_;
   const device::Address address_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // protects the members below
   std::condition_variable_any changed_;
   Sight sight_;
   bool looks_ = false;
   std::string met_;
-  bool is_offer_read_ = false;        ///< for the board that was met
-  std::optional<std::string> begun_;  ///< for the board with this number
-  bool allows_downgrade_ = false;     ///< that update
+  bool is_offer_read_ = false;        ///< for the connected board
+  std::optional<std::string> begun_;  ///< serial number of the board that the update was started for
+  bool allows_downgrade_ = false;     ///< applies to the current update
 
   std::jthread worker_;
 };

@@ -1,4 +1,4 @@
-// The page that lists every key and what the mouse does.
+// The page that lists all keys and mouse actions.
 #pragma once
 
 #include <frame/style.hpp>
@@ -7,9 +7,9 @@ namespace inkwell::window {
 
 class KeyHelp {
  public:
-  /// At the next frame.
+  /// Opens the page in the next frame.
   void open() { is_to_be_opened_ = true; }
-  /// Over everything else, while it is open.
+  /// Draws the page over everything else while it is open.
   void draw(const Style& style);
 
  private:

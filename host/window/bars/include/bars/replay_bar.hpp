@@ -1,5 +1,4 @@
-// A recording that is replayed in place of the device, and its bar under the scene: play, pause, where in it, how fast,
-// and back to the device.
+// A recording that is replayed instead of the device, and the bar that controls the replay.
 #pragma once
 
 #include <filesystem>
@@ -19,26 +18,27 @@ inline constexpr float replay_bar_points = 46.0f;
 
 class ReplayBar {
  public:
-  /// Opens a recording and plays it. Throws device::Error with a sentence if it cannot be read.
+  /// Opens a recording and plays it. Throws device::Error if the recording cannot be read.
   void open(const std::filesystem::path& file);
-  /// Lays another recording over it in the scope, aligned at a mark or, without one, at their begins. Throws likewise.
+  /// Overlays a second recording in the scope. The recordings are aligned at `mark`, or at their starts if `mark` is
+  /// empty. Throws device::Error if the recording cannot be read.
   void lay_over(const std::filesystem::path& file, const std::string& mark);
   bool is_open() const { return replay_.has_value(); }
-  /// Null if none is open.
+  /// Returns null if no recording is open.
   const recording::Recording* recording() const { return replay_ ? &replay_->recording() : nullptr; }
   void seek(double position_s) {
     if (replay_) replay_->seek(position_s);
   }
   bool is_playing() const { return replay_ && replay_->is_playing(); }
 
-  /// Once a frame: gives the scope the samples that came by.
+  /// Call once per frame. Passes the samples of the elapsed time to the scope.
   void follow(double now_s, ScopePane& scope);
   std::optional<device::Pose> pose() const { return replay_->pose(); }
-  /// Holds the recording's parameters. What is edited in it goes nowhere.
+  /// Contains the recording's parameters. Edits of these parameters are not sent to any device.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
 
-  /// Draws the bar and does what is pressed in it, which may be to close the recording.
+  /// Draws the bar and handles its buttons, one of which closes the recording.
   void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:
@@ -49,11 +49,11 @@ class ReplayBar {
 
   std::optional<recording::Replay> replay_;
   std::filesystem::path file_;
-  std::string name_;  ///< with folders where the one that is laid over has the same
+  std::string name_;  ///< file name, with its folders if both recordings have the same file name
   std::optional<recording::Overlay> over_;
-  std::string aligned_at_;  ///< text of a mark; empty: their begins
+  std::string aligned_at_;  ///< text of the mark at which both are aligned; empty: at their starts
   FileChooser chooser_;
-  std::string problem_;  ///< of the recording that was to be laid over
+  std::string problem_;  ///< why the second recording could not be overlaid
   ParameterEditor editor_;
   std::optional<double> followed_until_s_;
 };

@@ -1,4 +1,4 @@
-// A card over the scene after a reconnection: what the device holds now, compared with what it held before.
+// A card over the scene after a reconnection. The card compares the device's values with the values before the loss.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace inkwell::window {
 
 enum class ReturnChoice : std::uint8_t {
   none,
-  send,  ///< the values of before
-  keep,  ///< those that the device holds
+  send,  ///< restore the previous values
+  keep,  ///< keep the device's current values
 };
 
-/// In the right upper corner of a scene of this place and size.
+/// Draws the card in the upper right corner of a scene with this position and size.
 ReturnChoice draw_return_card(ImVec2 place, ImVec2 size, const Style& style, const ReturnedValues& values,
                               bool force_is_on);
 

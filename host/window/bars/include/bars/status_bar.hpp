@@ -1,4 +1,4 @@
-// The bar on top: which device, how it is, force on and off, stop.
+// The bar at the top: device, gauges, force button and stop button.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace inkwell::window {
 
 struct StatusBarInput {
   bool scope_is_shown;
-  bool is_replay;  ///< a recording stands in the arm's place, which gets no force meanwhile
+  bool is_replay;  ///< a recording is replayed; the force cannot be switched on
 };
 
 struct StatusBarOutcome {
@@ -24,7 +24,7 @@ struct StatusBarOutcome {
 
 class StatusBar {
  public:
-  /// The gauges wrap where the window is narrow or its text large.
+  /// Returns the height of the bar. The gauges wrap in a narrow window or with large text.
   float height(float width, const Style& style) const;
   StatusBarOutcome draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, const StatusBarInput& input);
 
@@ -33,7 +33,7 @@ class StatusBar {
   void draw_device_list(const Style& style, DeviceDesk& desk);
   void draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
                     StatusBarOutcome& outcome) const;
-  /// The stylus' two buttons and the inkwell, as the board feels them.
+  /// Draws the state of the two stylus buttons and of the inkwell switch.
   void draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const;
 };
 

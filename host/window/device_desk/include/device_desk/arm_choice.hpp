@@ -1,5 +1,5 @@
-// Which of the arms that are there the window connects to. One that nobody has named is taken only where no other can
-// be meant: the force would come on in another hand.
+// Chooses the arm that the window connects to. An arm that the user has not chosen is used only if it is the only
+// candidate, because otherwise the force could act on the wrong hand.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@ namespace inkwell::window {
 
 class ArmChoice {
  public:
-  /// Empty: whichever is there.
+  /// An empty serial number accepts any arm.
   explicit ArmChoice(std::string wanted_serial_number) : wanted_(std::move(wanted_serial_number)) {}
 
-  /// None: it is not there. Throws device::NoDevice with a sentence if the user has to choose.
+  /// Returns an empty value if the arm is not connected. Throws device::NoDevice if the user has to choose.
   std::optional<device::Endpoint> pick(const std::vector<device::Endpoint>& found);
 
  private:
   std::string wanted_;
-  std::string taken_;         ///< the last one, if it has a number
-  bool saw_several_ = false;  ///< so that one alone need not be the one that was taken
+  std::string taken_;         ///< serial number of the last chosen arm, if it has one
+  bool saw_several_ = false;  ///< a single arm is then not necessarily the previous arm
 };
 
 }  // namespace inkwell::window

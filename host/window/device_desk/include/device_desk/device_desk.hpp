@@ -1,4 +1,4 @@
-// The window's side of the device: which one is wanted, and what is known of it in this frame.
+// Device access of the window: the chosen device and its data in the current frame.
 #pragma once
 
 #include <atomic>
@@ -14,17 +14,17 @@
 
 namespace inkwell::window {
 
-/// One frame's view of the device; it does not change while the frame is drawn.
+/// Snapshot of the device, constant while a frame is drawn.
 struct DeviceView {
   device::SessionStatus status;
-  std::optional<device::Pose> pose;  ///< the newest; none while not connected
+  std::optional<device::Pose> pose;  ///< newest pose; empty while not connected
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;
   std::optional<std::string> refusal;
-  std::optional<device::Reconnection> reconnection;  ///< the newest
-  std::vector<device::Endpoint> listed;              ///< devices found the last time one looked
+  std::optional<device::Reconnection> reconnection;  ///< newest reconnection
+  std::vector<device::Endpoint> listed;              ///< devices found in the last search
   std::string list_error;
-  bool must_choose = false;  ///< none of those listed is taken before the user chooses
+  bool must_choose = false;  ///< no listed device is opened until the user chooses one
 
   bool connected() const { return status.connection == device::Connection::connected; }
   protocol::State state() const { return pose ? pose->state : protocol::State::starting; }
@@ -39,23 +39,23 @@ class DeviceDesk {
   const DeviceView& refresh();
   const DeviceView& view() const { return view_; }
   device::Session& session() { return *session_; }
-  /// As of now, which may be newer than the view; none while not connected.
+  /// Returns the current pose, which may be newer than the view. Empty while not connected.
   std::optional<device::Pose> newest_pose() const { return session_->newest_pose(); }
 
-  /// Asks for another device, or for any with an empty number; follow_choice then connects to it.
+  /// Requests another device, or any device if the number is empty. follow_choice() then connects to the device.
   void choose(const std::string& serial_number) { choice_ = serial_number; }
   bool has_choice() const { return choice_.has_value(); }
-  /// The session with the present device ends.
+  /// Ends the session with the present device and connects to the chosen device.
   void follow_choice();
   const std::string& wanted_serial_number() const { return wanted_; }
-  /// Looks for devices while this is true, for the list that is open.
+  /// Searches for devices continuously while `looking` is true, for the open device list.
   void keep_looking(bool looking) { looking_ = looking; }
 
-  /// Signals to be streamed, and where the samples go; kept for the next device too.
+  /// Selects the streamed signals. The selection is kept for the next device.
   void select_signals(std::vector<protocol::Signal> signals);
-  /// What has happened to the devices since the window was opened.
+  /// Events of the devices since the window was opened.
   const device::EventLog& events() const { return events_; }
-  /// Frames that came since the last call.
+  /// Returns the scope frames that arrived since the last call.
   std::vector<device::ScopeSamples> take_scope();
 
  private:
@@ -69,7 +69,7 @@ class DeviceDesk {
   device::EventLog events_;
   std::vector<protocol::Signal> signals_;
 
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // protects the members below
   std::vector<device::Endpoint> listed_;
   std::string list_error_;
   std::vector<device::ScopeSamples> scope_;

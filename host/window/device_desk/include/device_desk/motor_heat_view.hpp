@@ -1,4 +1,4 @@
-// The heat of the motors, judged for the user.
+// Motor heat, evaluated for display.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@ namespace inkwell::window {
 enum class HeatLevel : std::uint8_t { cool, warm, hot };
 
 struct MotorHeatView {
-  float hottest = 0.0f;  ///< 1 is what the continuous current leads to
-  int motor = 1;         ///< the one that is hottest
+  float hottest = 0.0f;  ///< 1 is the steady-state heat at the continuous current
+  int motor = 1;
   HeatLevel level = HeatLevel::cool;
 };
 
 MotorHeatView motor_heat_view(const protocol::InformationReport& report);
 
-/// What to do about it, in a sentence; empty while there is nothing to do.
+/// Returns advice for the user in one sentence; empty if none is needed.
 std::string heat_advice(const MotorHeatView& heat);
 
 }  // namespace inkwell::window

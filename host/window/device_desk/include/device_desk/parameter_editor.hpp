@@ -1,4 +1,4 @@
-// What the user wants the parameters to be, between the sliders and the device: edits, undo and redo.
+// Requested parameter values between the controls of the window and the device: edits, undo and redo.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@
 
 namespace inkwell::window {
 
-/// Values shown are those the device holds, except for edits that are still on their way to it.
+/// The shown values are the device's values, except for edits that the device has not confirmed yet.
 class ParameterEditor {
  public:
-  /// The parameters as the device holds them; call whenever they were read anew.
+  /// Call after each read of the device's parameters.
   void device_holds(const protocol::ParameterSet& held);
-  /// The device refused the newest transaction: what was on its way is forgotten, and so is its undo step.
+  /// Call when the device has refused the newest transaction. Discards the pending edits and their undo step.
   void refused();
   void disconnected();
-  /// Edits the device has not confirmed within a second are shown no longer. Call once a frame.
+  /// Call once per frame. Discards edits that the device has not confirmed within one second.
   void forget_unconfirmed(double now_s);
 
   bool known() const { return held_.has_value(); }
@@ -29,11 +29,11 @@ class ParameterEditor {
   protocol::ParameterSet shown() const;
   bool differs_from_default(protocol::Parameter parameter) const;
 
-  /// From begin_step to end_step every edit belongs to one undo step (a slider that is dragged).
+  /// All edits from begin_step() to end_step() form one undo step, for example the drag of a slider.
   void begin_step(std::string title);
   void edit(std::span<const device::ParameterChange> changes, double now_s);
   void end_step();
-  /// One undo step of its own.
+  /// Applies all changes as a separate undo step.
   void apply(std::string title, std::span<const device::ParameterChange> changes, double now_s);
 
   bool can_undo() const { return position_ > 0; }
@@ -43,7 +43,7 @@ class ParameterEditor {
   void undo(double now_s);
   void redo(double now_s);
 
-  /// What has to be sent as one transaction; empty when there is nothing.
+  /// Returns the changes to be sent as one transaction; empty if there are none.
   std::vector<device::ParameterChange> take_changes();
 
  private:
@@ -67,20 +67,20 @@ class ParameterEditor {
   std::optional<protocol::ParameterSet> held_;
   std::array<std::optional<Wanted>, std::tuple_size_v<decltype(protocol::ParameterSet::values)>> wanted_{};
   std::vector<device::ParameterChange> outgoing_;
-  std::vector<Step> steps_;  // done: [0, position_), undone: [position_, end)
+  std::vector<Step> steps_;  // done: [0, position_); undone: [position_, end)
   std::size_t position_ = 0;
   std::optional<Step> open_step_;
 };
 
-/// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without its group and the unit it ends in.
+/// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without group and unit.
 std::string label_of(const protocol::ParameterInfo& info);
-/// The same with its group, for where no heading says that: "Box minimum x".
+/// The label with its group, for use without a heading: "Box minimum x".
 std::string full_label_of(protocol::ParameterInfo info);
 
-/// Digits after the decimal point with which a value of this parameter is shown: about a ten-thousandth of its range.
+/// Number of digits after the decimal point: a resolution of about a ten-thousandth of the parameter's range.
 int decimals_of(const protocol::ParameterInfo& info);
 
-/// A whole set of contact parameters for a feel.
+/// A complete set of contact parameters for one type of wall.
 struct Preset {
   std::string_view name;
   std::string_view help;

@@ -1,4 +1,4 @@
-// After a loss of the device: which of its values are not what they were, until the user has settled that.
+// Parameter values that differ after a reconnection, until the user has decided about them.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ class ReturnedValues {
     float now;
   };
 
-  /// Call once a frame.
+  /// Call once per frame.
   void follow(const DeviceView& view, double now_s);
-  /// Whether there is something to say: for some seconds that the values are the same, and that others are not until
-  /// they are, or the user has changed them or wants to keep them.
+  /// True while the card is shown. If the values are equal, the card is shown for some seconds. Otherwise the card is
+  /// shown until the user decides or the values change.
   bool is_shown() const { return is_shown_; }
-  /// Whether it is for the user to say which values hold.
+  /// True while the user has to decide which values are used.
   bool waits_for_user() const { return is_shown_ && !rows_.empty(); }
-  /// Empty: the device holds what it held before.
+  /// Empty if the device has the same values as before.
   const std::vector<Row>& rows() const { return rows_; }
-  /// What gives the device the values of before.
+  /// Returns the changes that restore the previous values.
   std::vector<device::ParameterChange> changes_back() const;
   void dismiss() { is_shown_ = false; }
 

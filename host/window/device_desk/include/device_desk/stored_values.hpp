@@ -1,4 +1,4 @@
-// What of the device's values outlives its power, judged for the user.
+// The device's stored values, evaluated for display.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace inkwell::window {
 
-/// The values that would be lost with the power; none while it is not known.
+/// Returns the parameters whose values would be lost on power loss; empty while this is not known.
 std::vector<protocol::Parameter> not_stored(const DeviceView& view);
 
 /// "3 values are not stored", "All values are stored", "Nothing is stored, all values are defaults".
 std::string stored_title(const DeviceView& view);
 
-/// Why the board would not store or forget anything now, with what to do; empty if it would.
+/// Returns why the board would currently refuse to store or erase values, and what to do; empty if it would not refuse.
 std::string why_storing_waits(const DeviceView& view);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The window of the operating system and its OpenGL context.
+// The operating system window and its OpenGL context.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
-/// The window cannot be opened; `what()` says why and what to do.
+/// The window cannot be opened; `what()` states the reason and the remedy.
 class DisplayError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,20 +24,21 @@ class DisplayError : public std::runtime_error {
 
 class Display {
  public:
-  /// Throws DisplayError if there is no display or no OpenGL 3.3.
-  /// A `scale` of 0 is that of the main display: pixels for one point, 1 for 96 dots per inch.
+  /// Throws DisplayError if there is no display or no OpenGL 3.3. `scale`: pixels per point, 1 for 96 dots per inch; 0
+  /// selects the scale of the main display.
   Display(ScreenSize points, float scale, const std::string& title);
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
   GLFWwindow* handle() const { return window_; }
-  float scale() const { return scale_; }  ///< pixels for one point
+  float scale() const { return scale_; }  ///< pixels per point
   double refresh_rate_Hz() const;
-  bool draws_in_software() const;  ///< OpenGL has no graphics card
-  ImVec2 corner() const;           ///< top left of what is drawn, on the screen; (0, 0) on Wayland, which hides it
+  bool draws_in_software() const;  ///< OpenGL runs without a graphics card
+  ImVec2 corner() const;           ///< top left of the drawing area on the screen; (0, 0) on Wayland, which does not
+                                   ///< report it
 
-  /// What is drawn, in pixels; 0 by 0 while it is shrunk to an icon.
+  /// Size of the drawing area in pixels; 0 by 0 while the window is minimized.
   struct Size {
     int width, height;
   };
@@ -45,16 +46,16 @@ class Display {
 
   bool is_to_be_closed() const;
   void close();
-  void take_events();                      ///< what the user and the window system did
-  void wait_for_events(double at_most_s);  ///< until there are some, and takes them
-  /// Has `wait_for_events` return; from any thread.
+  void take_events();                      ///< processes the events of the user and the window system
+  void wait_for_events(double at_most_s);  ///< waits for events and processes them
+  /// Makes `wait_for_events` return. Any thread may call this.
   static void wake();
-  /// What was drawn goes to the screen.
+  /// Shows the drawn picture on the screen.
   void show();
 
-  /// True if the user or the window system did something since the last call.
+  /// True if there was an event since the last call.
   bool take_input() { return std::exchange(had_input_, false); }
-  /// True if the screen lost the picture, so that it has to be drawn again though it stays the same.
+  /// True if the screen has lost the picture, so that an unchanged picture must be drawn again.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
   /// `take` is called with every key event of the window.
@@ -68,7 +69,7 @@ class Display {
   bool lost_picture_ = true;
 };
 
-/// Writes the whole framebuffer as it stands. Throws DisplayError.
+/// Writes the whole framebuffer to a file. Throws DisplayError.
 void write_screenshot(const std::filesystem::path& path, int width, int height);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Labels that do not fit.
+// Shortens labels that do not fit.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace inkwell::window {
 
-/// The text, or as much of its begin as fits with an ellipsis behind it; empty if not even that fits. `width_of` tells
-/// what a text takes. UTF-8; no character is cut.
+/// The text, or the longest beginning that fits with an ellipsis; empty if not even that fits. `width_of` returns the
+/// width of a text. The text is UTF-8, and no character is split.
 std::string with_ellipsis(std::string_view text, float room, const std::function<float(std::string_view)>& width_of);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The window's own dialog for files: folders, names, sizes and dates, a typed path, and a question before a file is
+// The window's file dialog: folders, names, sizes and dates, a typed path, and a confirmation before a file is
 // replaced.
 #pragma once
 
@@ -16,15 +16,16 @@ struct FileQuestion {
   std::string title;
   std::string help;
   std::string button;                ///< "Load", "Save"
-  std::vector<std::string> endings;  ///< of the files that are meant: ".toml"; a new file gets the first one
-  bool is_new_file = false;          ///< it will be written, so it need not exist
-  std::filesystem::path suggestion;  ///< where to begin: a file or a folder; empty: the working folder
+  std::vector<std::string> endings;  ///< extensions of the selectable files, such as ".toml"; a new file gets the first
+                                     ///< one
+  bool is_new_file = false;          ///< the file will be written and need not exist
+  std::filesystem::path suggestion;  ///< initial file or folder; empty: the working folder
 };
 
 class FileChooser {
  public:
   void ask(FileQuestion question);
-  /// Draws the dialog while it is open; gives the file once, when it was chosen.
+  /// Draws the dialog while it is open. Returns the file once, when the user has chosen it.
   std::optional<std::filesystem::path> draw(const Style& style);
 
  private:
@@ -44,7 +45,7 @@ class FileChooser {
   std::string typed_;
   std::string problem_;
   std::optional<std::filesystem::path> chosen_;
-  std::optional<std::filesystem::path> to_be_replaced_;  ///< waits for the answer whether it may be
+  std::optional<std::filesystem::path> to_be_replaced_;  ///< waits for the user's confirmation
 };
 
 }  // namespace inkwell::window

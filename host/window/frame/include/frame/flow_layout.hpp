@@ -1,4 +1,4 @@
-// Rows of items that wrap where a window is narrow or its text large.
+// Rows of items that wrap if the window is narrow or its text is large.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ struct FlowPlace {
   float x;  ///< from the left end of the row
 };
 
-/// Everything in one row if it fits into `first_row_width`, which other things may share. Otherwise only the first item
-/// stays there, and the others fill rows of `row_width`.
+/// Puts all items in the first row if they fit into `first_row_width`, which other items may share. Otherwise only the
+/// first item stays there, and the others fill rows of `row_width`.
 std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width, float row_width, float gap);
 
 }  // namespace inkwell::window

@@ -1,5 +1,5 @@
-// What the file chooser shows of a folder, and what a typed name means. What the file system refuses becomes a
-// sentence.
+// Folder contents for the file chooser, and the interpretation of typed names. File system errors are returned as
+// sentences.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ namespace inkwell::window {
 struct FolderEntry {
   std::string name;
   bool is_folder;
-  std::uintmax_t bytes;  ///< of a file
+  std::uintmax_t bytes;  ///< size of a file
   std::time_t changed;
 };
 
 struct FolderListing {
-  std::vector<FolderEntry> entries;  ///< folders first, each kind by name; hidden ones left out
-  std::string problem;               ///< why it could not be read; empty if it could
+  std::vector<FolderEntry> entries;  ///< folders first, each kind sorted by name, without hidden entries
+  std::string problem;               ///< reason why the folder could not be read; empty on success
 };
 
-/// Files with one of these endings (".toml"); with none given, all of them.
+/// Lists the files with one of these endings (".toml"), or all files if there are no endings.
 FolderListing list_folder(const std::filesystem::path& folder, std::span<const std::string> endings);
 
-/// Text that a user typed: relative to the folder unless it is absolute or begins with "~/".
+/// Interprets typed text: relative to the folder unless it is absolute or begins with "~/".
 std::filesystem::path typed_path(const std::filesystem::path& folder, std::string_view typed);
 
-/// With the first of the endings if it has none of them.
+/// Appends the first ending if the path has none of the endings.
 std::filesystem::path with_ending(std::filesystem::path path, std::span<const std::string> endings);
 
-/// Why this file cannot be read, or written, as far as one can tell without doing it; empty if it can be.
+/// Reason why this file cannot be read or written, as far as this is known in advance; empty if there is none.
 std::string reading_problem(const std::filesystem::path& file);
 std::string writing_problem(const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// The window's run loop: when to lay out a frame, when to draw it, and who is told of it.
+// The main loop of the window. It decides when a frame is laid out and drawn.
 #pragma once
 
 #include <cstdint>
@@ -21,63 +21,63 @@
 
 namespace inkwell::window {
 
-/// The framebuffer in which what lies under the panes is painted.
+/// The framebuffer for the scene under the panes.
 struct Canvas {
-  float pixels_per_unit;  ///< of screen coordinates
+  float pixels_per_unit;  ///< pixels per unit of screen coordinates
   int height_pixels;
-  bool smooth;        ///< there is time for a smooth picture
-  bool is_as_before;  ///< it would be the picture that was painted last
+  bool smooth;        ///< there is time for antialiasing
+  bool is_as_before;  ///< the picture would equal the previous one
 };
 
-/// What the loop shows, frame by frame.
+/// The content of the window, frame by frame.
 class FrameContent {
  public:
   virtual ~FrameContent() = default;
 
-  /// A key went down or up, whatever has the focus.
+  /// A key was pressed or released, independent of the focus.
   virtual void key(const KeyEvent& event) = 0;
-  /// Whether something has changed visibly since the last frame. Cheap: it is asked while the window rests.
+  /// Whether the content has changed visibly since the last frame. This must be fast, because the loop calls it often
+  /// while the window is at rest.
   virtual bool asks_for_frame() const = 0;
 
-  /// Lays out every pane; ImGui's frame is open.
+  /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;
-  /// Something in the frame that was laid out changes by itself, so that it has to be drawn at the full rate.
+  /// Whether the laid-out frame contains motion, so that frames must be drawn at the full rate.
   virtual bool is_moving() const = 0;
-  /// It has ended by itself, and the loop ends with it.
+  /// Whether the content has finished, which stops the loop.
   virtual bool is_over() const { return false; }
-  /// Where something is painted under the panes, in screen coordinates.
+  /// The area of the scene under the panes, in screen coordinates.
   virtual Box canvas() const = 0;
-  /// Of all that is painted there, as it was laid out: the same for the same picture.
+  /// Digest of the laid-out scene: equal digests mean equal pictures.
   virtual std::uint64_t canvas_digest() const = 0;
 
-  /// The colour of the panes' ground.
+  /// Background color of the panes.
   virtual Colour ground() const = 0;
-  /// Paints what lies under the panes into the framebuffer, whose depth and stencil have been cleared there.
+  /// Paints the scene under the panes into the framebuffer, whose depth and stencil buffers are cleared in this area.
   virtual void paint(const Canvas& canvas) = 0;
 
-  /// What is known in the frame that was laid out, for an inspection.
+  /// The state of the laid-out frame for an inspection.
   virtual nlohmann::json inspect() const = 0;
-  /// How much newer the newest pose that has arrived is than the one of this frame, in board time; none if none is
-  /// shown.
+  /// Board time between the pose of this frame and the newest received pose; none if no pose is shown.
   virtual std::optional<double> pose_age_s() const = 0;
 };
 
 struct FrameLoopOptions {
-  std::filesystem::path screenshot;  ///< with it: write the framebuffer to this PNG and end
-  double after_seconds = 3.0;        ///< when the screenshot is taken, from the start on
-  Inspection* inspection = nullptr;  ///< answers questions about the frames; null: nobody asks
-  bool frames_report = false;        ///< print the measured frames per second at the end
+  std::filesystem::path screenshot;  ///< if set: write the framebuffer to this PNG file and exit
+  double after_seconds = 3.0;        ///< time of the screenshot after the start
+  Inspection* inspection = nullptr;  ///< answers requests about the frames; null: no inspection
+  bool frames_report = false;        ///< print the measured frame rate at exit
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP end the loop as the window's own button does: force off, parameters on trial
-/// put back, settings kept.
+/// From now on SIGINT, SIGTERM and SIGHUP stop the loop like the close button. The force is switched off, trial
+/// parameters are restored and settings are saved.
 void end_loop_at_signals();
 
 class FrameLoop {
  public:
   FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options);
 
-  /// Returns once the window is closed, its content is over, a signal came or the screenshot is taken. Throws
+  /// Returns when the window is closed, the content has finished, a signal arrived or the screenshot is written. Throws
   /// DisplayError.
   void run();
 
@@ -85,8 +85,8 @@ class FrameLoop {
   struct Frame {
     double now_s;
     Display::Size size;
-    bool is_lively;  ///< one of many at the full rate
-    bool is_asked;   ///< by an inspection
+    bool is_lively;  ///< part of a sequence at the full rate
+    bool is_asked;   ///< requested by an inspection
     bool is_last;
     bool smooth;
     FrameEvidence evidence;
@@ -111,9 +111,9 @@ class FrameLoop {
   FrameRhythm rhythm_;
   FramesReport frames_report_;
   double started_s_;
-  double shown_s_;  ///< when the last frame that was shown began
+  double shown_s_;  ///< start time of the last shown frame
   DrawnPicture on_screen_;
-  PictureMark mark_;  ///< of it
+  PictureMark mark_;  ///< for `on_screen_`
 };
 
 }  // namespace inkwell::window

@@ -1,18 +1,18 @@
-// The steady rate of frames.
+// Limits the frame rate.
 #pragma once
 
 namespace inkwell::window {
 
-/// Sleeps so that frames come at a steady rate where the display does not hold them back itself.
+/// Sleeps so that frames have a steady rate if the display does not limit the rate.
 class FramePacer {
  public:
-  /// `keeps_up`: what to suppose until frames tell.
+  /// `keeps_up`: assumption until frames were measured.
   FramePacer(double frames_per_second, bool keeps_up) : period_s_(1.0 / frames_per_second), keeps_up_(keeps_up) {}
   void wait();
-  /// No frame is wanted for a while: what passes until the next `wait` is no slowness.
+  /// No frames follow for a while: the time until the next `wait` does not count as a slow frame.
   void rest() { half_second_began_s_ = 0.0; }
 
-  /// True while the frames come as they should; false once half a second of them was a fifth too slow, for good.
+  /// True while frames are on time. Permanently false once frames were a fifth too slow for half a second.
   bool keeps_up() const { return keeps_up_; }
 
  private:

@@ -1,4 +1,4 @@
-// How quickly frames came and how old their poses were, for `--frames-report`.
+// Frame rate and pose age for `--frames-report`.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace inkwell::window {
 
 class FramesReport {
  public:
-  /// `display_period_s`: a frame as the display shows it, by which poses are judged.
+  /// `display_period_s`: frame period of the display, the reference for pose ages.
   explicit FramesReport(double display_period_s) : display_period_s_(display_period_s) {}
-  /// A frame at the full rate: its period, the time to draw it, and how much newer the newest report was than the
-  /// one drawn when the frame went to the screen.
+  /// Adds a frame at the full rate. `pose_age_s`: board time between its pose and the newest received pose when the
+  /// frame was shown.
   void add(double period_s, double drawing_s, std::optional<double> pose_age_s);
   std::string text() const;
 

@@ -1,4 +1,4 @@
-// ImGui with its two back ends, for as long as the window is open, and its frames.
+// ImGui with its two back ends while the window is open, and its frames.
 #pragma once
 
 #include <vector>
@@ -19,15 +19,15 @@ class ImGuiFrames {
   ImGuiFrames(const ImGuiFrames&) = delete;
   ImGuiFrames& operator=(const ImGuiFrames&) = delete;
 
-  /// Passes a key event of the window on to ImGui, except for the keys that stop the force.
+  /// Passes a key event of the window to ImGui, except for the keys that stop the force.
   void take_key(const KeyEvent& event) { keys_.take(event); }
 
   void begin();
   ImVec2 size() const;  ///< of the window, in screen coordinates
   void end();
-  /// What the frame that has ended consists of.
+  /// The panes of the finished frame.
   std::vector<DrawnPane> panes() const;
-  /// What of it lies in the box, into the framebuffer.
+  /// Draws the part of the frame that lies in the box into the framebuffer.
   void draw(const Box& box) const;
 
  private:

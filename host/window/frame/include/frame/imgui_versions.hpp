@@ -1,5 +1,5 @@
-// One set of names for ImGui 1.86 (Debian 12) and ImGui from 1.89.8 on (Debian 13). The version is asked for here and
-// in key_feed.cpp alone.
+// Common names for ImGui 1.86 (Debian 12) and ImGui from 1.89.8 on (Debian 13). Only this file and key_feed.cpp depend
+// on the version.
 #pragma once
 
 #include <cstddef>

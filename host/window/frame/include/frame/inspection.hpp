@@ -1,8 +1,8 @@
-// What a test that plays the user asks of the window: where its parts are, what is written in it, a picture.
+// Inspection of the window for tests that simulate a user: positions of its parts, its texts, and pictures.
 //
-// With `--inspect`, each line on standard input is answered by one line of JSON on standard output, after a
-// whole frame that began when the line had come. `look` tells the named items that can be seen and the texts
-// of that frame, `picture FILE` writes it to a PNG, `close` closes the window.
+// With `--inspect`, each line on standard input gets a one-line JSON answer on standard output. The answer follows
+// after a complete frame that began after the line had arrived. `look` returns the visible named items and texts of
+// that frame, `picture FILE` writes a PNG file, `close` closes the window.
 #pragma once
 
 #include <memory>
@@ -14,29 +14,29 @@
 
 namespace inkwell::window {
 
-// These name what was drawn last, preceded by its pane, such as "status/STOP". They cost a comparison while
-// nobody inspects.
+// Record the item that was drawn last, with the name of its pane, such as "status/STOP". Without an inspection they
+// cost only a comparison.
 void note_item(std::string_view name);
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum);
 void note_text(std::string_view text);
 
 class Inspection {
  public:
-  /// Reads standard input in a thread of its own, so that the window never waits for it. `wake` is called from
-  /// that thread when a line has come.
+  /// A separate thread reads standard input, so that the window never waits for it. That thread calls `wake` when a
+  /// line has arrived.
   explicit Inspection(void (*wake)());
   ~Inspection();
   Inspection(const Inspection&) = delete;
   Inspection& operator=(const Inspection&) = delete;
 
-  /// Whether the next frame has something to answer, so that it has to be drawn.
+  /// Whether the next frame must answer a request and therefore must be drawn.
   bool is_asked();
-  /// Whether a picture is among it, which is worth more than a quick frame.
+  /// Whether a picture was requested, which justifies a slow frame.
   bool wants_picture() const;
-  /// Names are noted from here on. `origin`: the window's corner on the screen, from which places are counted.
+  /// Starts recording names. `origin`: corner of the window on the screen, the origin of the reported positions.
   void begin_frame(ImVec2 origin);
-  /// Answers what was asked before the frame began; its picture is in the bound framebuffer. `more` is added to
-  /// what `look` tells. False if the window is to be closed.
+  /// Answers the requests that arrived before the frame began. The frame is in the bound framebuffer. `more` is added
+  /// to the answer to `look`. False if the window must be closed.
   bool end_frame(const nlohmann::json& more, int width, int height);
 
  private:

@@ -1,4 +1,4 @@
-// The route of the keys from GLFW to ImGui's back end.
+// Passes keys from GLFW to ImGui's back end.
 #pragma once
 
 #include <frame/key_filter.hpp>
@@ -8,18 +8,18 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
-/// ImGui's GLFW back end with its keys: it receives only those that this class passes on.
+/// ImGui's GLFW back end. It receives only the keys that this class passes on.
 class KeyFeed {
  public:
-  /// Starts the back end. ImGui's context must exist, and the window must have its own callbacks.
+  /// Starts the back end. The ImGui context must exist, and the window's callbacks must be set.
   explicit KeyFeed(GLFWwindow* window);
   ~KeyFeed();
   KeyFeed(const KeyFeed&) = delete;
   KeyFeed& operator=(const KeyFeed&) = delete;
 
-  /// Passes an event of the window on, except for the keys that stop the force.
+  /// Passes an event of the window to ImGui, except for the keys that stop the force.
   void take(const KeyEvent& event);
-  /// Between the back end's NewFrame and ImGui's.
+  /// Call this between the back end's NewFrame() and ImGui's NewFrame().
   void begin_frame();
 
  private:

@@ -1,5 +1,5 @@
-// Keeps short keystrokes. ImGui looks once a frame at which keys are down, and would miss one that went down and up
-// between two frames.
+// Retains short keystrokes. ImGui polls the key states once per frame and would miss a key that was pressed and
+// released between two frames.
 #pragma once
 
 #include <span>
@@ -10,10 +10,11 @@ namespace inkwell::window {
 
 class KeyTaps {
  public:
-  /// A key went down.
+  /// Records that a key was pressed.
   void note(int key) { noted_.push_back(key); }
 
-  /// Before each frame: what was only tapped since the last one is down for this frame, and up again in the next.
+  /// Called before each frame: shows keys that were pressed and released since the last frame as pressed for this
+  /// frame.
   void apply(std::span<bool> keys_down) {
     for (int key : held_) keys_down[static_cast<std::size_t>(key)] = false;
     held_.clear();

@@ -1,5 +1,5 @@
-// The keyboard's way through the window: from part to part by Ctrl+Tab, inside a part by the arrows, which is ImGui's
-// own; with a modifier the arrows move what the part shows.
+// Keyboard navigation in the window. Ctrl+Tab moves between panes and the arrow keys move within a pane, which ImGui
+// implements. With a modifier the arrow keys move the content of a pane.
 #pragma once
 
 #include <string>
@@ -14,17 +14,18 @@ struct ImGuiWindow;
 
 namespace inkwell::window {
 
-/// Which part has the keyboard: Ctrl+Tab gives it to the part that is drawn after the one that has it, with Shift
-/// before it, and round; to the thing in it that had the keyboard last. Not while a dialog or a menu is open.
+/// The pane with the keyboard focus. Ctrl+Tab moves the focus to the next pane in drawing order, with Shift to the
+/// previous one, cyclically. The pane's last focused item gets the focus. Ctrl+Tab has no effect while a dialog or menu
+/// is open.
 class KeyboardTour {
  public:
-  /// To the part of that name, once it is drawn; "" leaves it where it is.
+  /// Moves the focus to the pane with this name when it is drawn. "" does not change the focus.
   void go_to(std::string part) { wanted_ = std::move(part); }
-  /// To the next part in the next frame.
+  /// Moves the focus to the next pane in the next frame.
   void go_on(bool backwards) { steps_ += backwards ? -1 : 1; }
-  /// Between ImGui's NewFrame() and the first part.
+  /// Call this between ImGui's NewFrame() and the first pane.
   void begin_frame();
-  /// After the last part: a frame around the one that has the keyboard, as long as it is the keyboard that is used.
+  /// Call this after the last pane. Draws a frame around the focused pane while the user uses the keyboard.
   void end_frame(const Style& style);
 
  private:
@@ -32,26 +33,26 @@ class KeyboardTour {
   void give_to(ImGuiWindow& part);
 
   std::string wanted_;
-  int steps_ = 0;                    ///< parts to go on, negative for backwards
-  bool last_thing_is_gone_ = false;  ///< the first one then gets the keyboard
+  int steps_ = 0;                    ///< panes to move by; negative: backwards
+  bool last_thing_is_gone_ = false;  ///< the first item then gets the focus
 };
 
-/// Whether the last item was pressed by the keyboard, not by the mouse.
+/// Whether the last item was activated by the keyboard instead of the mouse.
 bool is_pressed_by_keyboard();
 
-/// How often each way was pressed in this frame.
+/// Number of key presses in each direction in this frame.
 struct KeySteps {
-  int right = 0, up = 0, away = 0;  ///< the arrows; Page Up goes away from the user
+  int right = 0, up = 0, away = 0;  ///< arrow keys; Page Up counts as away from the user
   bool any() const { return right != 0 || up != 0 || away != 0; }
 };
-/// Of the keys that were pressed with exactly these modifiers while no text is typed and no dialog is open.
+/// Counts keys that were pressed with exactly these modifiers while no text is typed and no dialog is open.
 KeySteps key_steps(KeyModifiers modifiers);
-/// The same for the current part alone: zero unless it has the keyboard.
+/// The same for the current pane; zero unless it has the focus.
 KeySteps key_steps_in_part(KeyModifiers modifiers);
-/// An arrow that is pressed with a modifier is no step to another thing. Between NewFrame() and the first part.
+/// Arrow keys with a modifier do not move the focus. Call this between NewFrame() and the first pane.
 void keep_modified_arrows();
 
-/// Page Up and Page Down scroll the current child, in which nothing can have the keyboard, if its part has it.
+/// Page Up and Page Down scroll the current child window, which has no focusable items, if its pane has the focus.
 void scroll_by_page_keys();
 
 }  // namespace inkwell::window

@@ -1,8 +1,8 @@
-// Every colour of the window. Hues are from Okabe and Ito's palette ("Color Universal Design", 2008), which
-// people with any of the common colour deficiencies can tell apart; nothing is told by hue alone.
+// All colors of the window. The hues are from Okabe and Ito's palette ("Color Universal Design", 2008), which people
+// with the common color deficiencies can distinguish. No information is shown by hue alone.
 //
-// With WindowOptions::flat_colours the scene's solid parts (sphere, proxy, frames of the walls, force arrow)
-// have exactly these colours on the screen, so a test can look for them. They are the same in both themes.
+// With WindowOptions::flat_colours the solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly
+// these colors on the screen. Tests can therefore find the parts. Both themes use the same colors.
 #pragma once
 
 #include <algorithm>
@@ -22,10 +22,10 @@ struct Colour {
 
 namespace scene_colours {
 inline constexpr Colour probe{230, 159, 0};        ///< the sphere: orange
-inline constexpr Colour proxy{86, 180, 233};       ///< where it would be without the wall: sky blue
-inline constexpr Colour wall_touched{213, 94, 0};  ///< frame and glow of a wall that pushes back: vermilion
-inline constexpr Colour wall_idle{110, 132, 160};  ///< frame and grid of a wall that does not
-inline constexpr Colour force{213, 94, 0};         ///< the arrow belongs to the wall that pushes
+inline constexpr Colour proxy{86, 180, 233};       ///< position without penetration of the wall: sky blue
+inline constexpr Colour wall_touched{213, 94, 0};  ///< frame and glow of a wall in contact: vermilion
+inline constexpr Colour wall_idle{110, 132, 160};  ///< frame and grid of a wall without contact
+inline constexpr Colour force{213, 94, 0};         ///< the same color as the wall in contact
 inline constexpr Colour hand{0, 158, 115};         ///< the simulated hand and its spring: bluish green
 inline constexpr Colour axis_x{204, 121, 167};     ///< reddish purple
 inline constexpr Colour axis_y{0, 158, 115};
@@ -40,7 +40,7 @@ inline constexpr std::array<Colour, 6> line_colours_light{
 
 /// The surfaces, lines and texts of one theme.
 struct Palette {
-  Colour ground;  ///< behind everything
+  Colour ground;  ///< background
   Colour pane;
   Colour raised;  ///< fields, buttons
   Colour raised_hover;
@@ -48,21 +48,21 @@ struct Palette {
   Colour line;  ///< between panes, around fields
   Colour text;
   Colour text_quiet;  ///< units, captions
-  Colour accent;      ///< what is on, what is selected; text on it has the panes' colour
+  Colour accent;      ///< active or selected; text on it has the pane color
   Colour good;
   Colour on_good;  ///< text on good
   Colour caution;
   Colour on_caution;
   Colour danger;  ///< stop, faults
   Colour on_danger;
-  Colour danger_text;  ///< the same as a text on a pane
+  Colour danger_text;  ///< for text on a pane
   Colour plot_grid;
   Colour sky_top;  ///< background of the scene
   Colour sky_bottom;
   Colour floor_line;
   Colour shadow;
   Colour metal;       ///< links of the arm
-  Colour metal_dark;  ///< its base and joints
+  Colour metal_dark;  ///< base and joints of the arm
   std::array<Colour, 6> lines;
 };
 
@@ -120,7 +120,7 @@ inline constexpr Palette light_palette{
     .lines = line_colours_light,
 };
 
-/// Under the mouse a coloured button is a little lighter, pressed a little darker.
+/// Buttons under the mouse are slightly lighter, pressed buttons slightly darker.
 constexpr Colour lighter(Colour colour, int by) {
   const auto up = [by](std::uint8_t part) { return static_cast<std::uint8_t>(std::clamp(part + by, 0, 255)); };
   return {up(colour.red), up(colour.green), up(colour.blue), colour.alpha};

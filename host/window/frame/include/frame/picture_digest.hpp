@@ -1,4 +1,4 @@
-// A number that tells whether two pictures are the same, without drawing either.
+// A digest that is equal for equal pictures. No picture is drawn for it.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class PictureDigest {
     const std::string_view bytes{static_cast<const char*>(data), size};
     value_ = value_ * 0x9E3779B97F4A7C15u + std::hash<std::string_view>{}(bytes);
   }
-  /// For values without padding, whose bytes are all their own.
+  /// For values without padding bytes.
   template <class Value>
   void add(const Value& value) {
     static_assert(!std::is_pointer_v<Value>, "where something lies says nothing of what it is");

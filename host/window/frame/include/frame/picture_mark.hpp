@@ -1,18 +1,18 @@
-// Whether the window's buffer still holds what was drawn into it last. Once a picture is shown, OpenGL says nothing of
-// the buffer: it may be another one, or a fresh one.
+// Detects whether the window's buffer still contains the last picture. After a buffer swap OpenGL guarantees nothing:
+// it may be another buffer or a new one.
 #pragma once
 
 #include <cstdint>
 
 namespace inkwell::window {
 
-/// A number in a place where nobody sees it: the alpha of the buffer's first pixel. It is the buffer that is looked at
-/// and not what the driver promises. Looking waits until all is drawn, so it is for drawing in software only, where a
-/// buffer is a piece of memory that is there as a whole or not at all.
+/// Writes a number into an invisible location: the alpha value of the buffer's first pixel. This tests the actual
+/// buffer instead of relying on the driver. Reading waits for all drawing, so it is used only for software rendering,
+/// where a buffer is either complete or lost.
 class PictureMark {
  public:
   bool is_there() const;
-  /// Another one than the times before.
+  /// Writes a number that differs from the previous ones.
   void put();
 
  private:

@@ -1,4 +1,4 @@
-// Fonts, colours and spacing of ImGui.
+// Fonts, colors and spacing for ImGui.
 #pragma once
 
 #include <imgui.h>
@@ -16,12 +16,12 @@ struct Fonts {
 struct Style {
   const Palette* palette;
   Fonts fonts;
-  float scale;  ///< pixels for one point
+  float scale;  ///< pixels per point
 
   float points(float count) const { return count * scale; }
 };
 
-/// Inter if it is installed, else DejaVu, else ImGui's own font.
+/// Inter if it is installed, otherwise DejaVu, otherwise ImGui's built-in font.
 Fonts load_fonts(float scale);
 
 void apply_theme(const Palette& palette, float scale);

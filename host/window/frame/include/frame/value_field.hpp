@@ -1,4 +1,4 @@
-// A field for a number that acts on a machine: typing changes nothing until it is finished.
+// A field for a number that affects a machine: typed text has no effect until it is confirmed.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,21 @@
 
 namespace inkwell::window {
 
-/// What the user did with a field in this frame.
+/// The user's actions on a field in this frame.
 struct ValueEdit {
   bool drag_begins = false;
   std::optional<float> dragged_to;
   bool drag_ends = false;
-  std::optional<std::string> typed;  ///< another text than before, finished by Enter or by leaving the field
+  std::optional<std::string> typed;  ///< the new text, confirmed by Enter or by leaving the field
 };
 
-/// The fields of one pane, of which at most one is edited.
+/// The fields of one pane. At most one of them is edited at a time.
 class ValueFields {
  public:
-  /// A field with a handle at its left and a number that a click selects. Its ground fills up to the value's place in
-  /// the range. Dragging the handle changes the value, with Shift ten times as fast and with Ctrl a tenth; Escape gives
-  /// back what was there before typing. `name`: for inspections, which know the handle as "<name> handle".
+  /// A field with a drag handle on the left and a number that a click selects. Its background is filled up to the
+  /// position of the value in the range. Dragging the handle changes the value, with Shift ten times as fast and with
+  /// Ctrl a tenth as fast. Escape restores the text before typing. `name`: for inspections; the handle is "<name>
+  /// handle".
   ValueEdit draw(const char* id, const std::string& name, float value, const ValueRange& range, float width,
                  const Style& style);
 
@@ -39,8 +40,9 @@ class ValueFields {
   };
   bool is_typed_in(ImGuiID field) const { return typing_ && typing_->field == field; }
 
-  std::optional<Typing> typing_;  ///< in the field that has the keyboard
-  std::optional<Typing> left_;    ///< in the one that lost it to a field above in this frame, until that one is drawn
+  std::optional<Typing> typing_;  ///< in the field with the keyboard focus
+  std::optional<Typing> left_;    ///< in the field that lost the focus to a field above it in this frame; kept until
+                                  ///< that field is drawn
   float drag_start_ = 0;
   float dragged_points_ = 0;
 };

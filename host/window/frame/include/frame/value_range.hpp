@@ -1,4 +1,4 @@
-// The range of a number that is dragged or typed: where in it a value lies, how far a drag goes, how it is written.
+// The range of a number that is dragged or typed, its drag scale, and its text format.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@ namespace inkwell::window {
 struct ValueRange {
   float minimum;
   float maximum;
-  int decimals;              ///< digits after the point with which a value is shown and to which a drag rounds
-  bool logarithmic = false;  ///< equal ways are equal ratios; needs minimum > 0
+  int decimals;              ///< decimal places of the shown value, to which a drag also rounds
+  bool logarithmic = false;  ///< equal drag distances are equal ratios; needs minimum > 0
 
   bool contains(float value) const { return value >= minimum && value <= maximum; }
-  /// 0 at the minimum, 1 at the maximum.
+  /// Position in the range: 0 at the minimum, 1 at the maximum.
   float part_of(float value) const;
-  /// Where a drag by so many points of the screen leads from a value. A thousand points are the whole range.
+  /// The value after a drag over this number of screen points. A thousand points cover the whole range.
   float dragged(float from, float points) const;
   std::string text_of(float value) const;
 };

@@ -1,4 +1,4 @@
-// How big the window is opened.
+// Initial size of the window.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@ struct ScreenSize {
   bool operator==(const ScreenSize&) const = default;
 };
 
-/// Nothing overlaps in a window as big as this or bigger. In points: pixels of a display of 96 dots per inch.
+/// Smallest size at which nothing overlaps. Points are pixels of a display with 96 dots per inch.
 inline constexpr ScreenSize smallest_window_points{900, 560};
 
-/// `scale`, or what is left of it, but no less than 1, where the display has no room for the smallest window at that.
+/// `scale`, or the largest scale, at least 1, at which the smallest window fits on the display.
 float fitting_scale(float scale, std::optional<ScreenSize> room);
 
-/// In pixels, of a window that is so many points big: as big as its text. `room`: what the display has, if it tells.
+/// Size in pixels of a window with this size in points. `room`: usable area of the display, if known.
 ScreenSize window_size(ScreenSize points, float scale, std::optional<ScreenSize> room);
 
 }  // namespace inkwell::window

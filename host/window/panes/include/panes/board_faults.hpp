@@ -1,5 +1,5 @@
-// Puts faults into a virtual board, and asks it what is in. Talks to the board in a thread of its own, so that the
-// window never waits for it.
+// Injects faults into a virtual board and polls its active faults. A separate thread communicates with the board, so
+// that the window never blocks.
 #pragma once
 
 #include <condition_variable>
@@ -21,7 +21,7 @@ class BoardFaults {
   struct Refusal {
     std::string sentence;
   };
-  /// The board does not answer. What was asked for and not done yet is forgotten.
+  /// The board does not answer. Pending requests are discarded.
   struct Gone {
     std::string sentence;
   };
@@ -34,9 +34,9 @@ class BoardFaults {
   void heal(const std::string& fault, const std::string& of);
   void heal_all();
 
-  /// What has come since the last call, in its order; of answers in a row the newest.
+  /// Returns the news since the last call in order. Of consecutive answers only the newest is returned.
   std::vector<News> take_news();
-  /// Whether there is more than an answer that is like the last one.
+  /// True if there is news other than a repeated answer.
   bool has_changed() const;
 
  private:
@@ -52,9 +52,9 @@ class BoardFaults {
   std::condition_variable_any asked_;
   std::vector<Request> requests_;
   std::vector<News> news_;
-  std::vector<device::PutInFault> seen_;  ///< of the last answer that was taken
-  bool is_gone_ = false;                  ///< was told last
-  std::jthread thread_;                   ///< last: it uses all of the above
+  std::vector<device::PutInFault> seen_;  ///< faults of the last answer that was returned
+  bool is_gone_ = false;                  ///< last reported state
+  std::jthread thread_;                   ///< last member, because the thread uses all members above
 };
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// What a user types to find a fault of the table and to put it into the virtual board, and how faults are told.
+// User input for finding and injecting a fault, and texts that describe faults.
 #pragma once
 
 #include <string>
@@ -11,30 +11,29 @@
 
 namespace inkwell::window {
 
-/// Why no fault can be put in, and what to do; empty if one can.
+/// Returns why no fault can be injected and what to do; empty if faults can be injected.
 std::string_view obstacle(const device::SessionStatus& status, bool knows_control_port);
 
 /// "Bridge legs"
 std::string_view title_of(protocol::InjectionPart part);
 
-/// Whether each word of the search stands somewhere in the fault's name, part or help, in small or capital letters. An
-/// empty search finds everything.
+/// True if each word of the search occurs in the fault's name, part or help, ignoring case. An empty search matches
+/// every fault.
 bool is_found(const protocol::InjectionInfo& row, std::string_view search);
 
-/// The wires that faults can be put into, as the board's facts call them.
+/// Wires that faults can be injected into, with their names in the board's facts.
 std::vector<std::string_view> wires();
 
-/// As it stands in the fields; what is empty was not said.
+/// Contents of the input fields. An empty field is unspecified.
 struct TypedFault {
   protocol::InjectedFault fault;
   std::string of, amount, after_s, for_s;
 };
 
-/// What the board is asked for. Throws device::Error with a sentence if a field holds no number; all else is for the
-/// board to judge.
+/// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks everything else.
 protocol::InjectionRequest request_of(const TypedFault& typed);
 
-/// "motor 2, 0.01", "encoders[1].a"; empty where there is nothing to say.
+/// "motor 2, 0.01", "encoders[1].a"; empty if the fault has neither location nor amount.
 std::string place_and_amount(const device::PutInFault& put_in);
 
 /// "0.05 ms", "12.4 ms", "1.35 s"

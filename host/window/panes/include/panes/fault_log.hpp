@@ -1,4 +1,4 @@
-// What has been put into the virtual board, and what the firmware noticed since. Simulation.
+// Faults injected into the virtual board, and the faults that the firmware detected afterwards. Simulation only.
 #pragma once
 
 #include <cstdint>
@@ -14,37 +14,39 @@ struct LoggedFault {
   enum class Phase : std::uint8_t { to_come, in, over };
   struct Noticed {
     protocol::Fault fault;
-    /// Board time from when it came to the end of the control period that noticed; none if that cannot be told.
+    /// Board time from the start of the injected fault to the end of the control period that detected it; empty if
+    /// unknown.
     std::optional<double> after_s;
   };
 
   device::PutInFault put_in;
   Phase phase;
-  std::optional<Noticed> noticed;  ///< the first that the board noticed since it came
+  std::optional<Noticed> noticed;  ///< first fault that the board detected after the injection
 };
 
 class FaultLog {
  public:
-  /// How many that are over are still told.
+  /// Number of past faults that are still shown.
   static constexpr std::size_t over_maximum = 4;
 
-  /// One that was put in just now, which may be over before the board is asked again.
+  /// Adds a newly injected fault. The fault may be over before the next answer of the board.
   void add(const device::PutInFault& put_in);
-  /// What the board answered. A board whose time is behind the last answer's is another one: the log begins anew.
+  /// Processes an answer of the board. A board time before that of the last answer means another board, and the log is
+  /// cleared.
   void take(const device::Injections& now);
-  /// The device is in a fault. It is set beside those that were put in when the board has told, in a later answer, how
-  /// far its control periods are.
+  /// The device is in a fault. The fault is assigned to injected faults after a later answer has reported the board's
+  /// period count.
   void notice(const device::NoticedFault& fault);
   bool waits_for_answer() const { return pending_.has_value(); }
 
-  /// In the order in which they were put in.
+  /// Logged faults in the order of injection.
   const std::vector<LoggedFault>& faults() const { return faults_; }
 
  private:
   struct Pending {
     device::NoticedFault fault;
-    std::vector<unsigned> in = {};  ///< the numbers of those that were known to be in when it was told
-    int answers = 0;                ///< that did not reach its control period
+    std::vector<unsigned> in = {};  ///< numbers of the faults known to be active at the time of detection
+    int answers = 0;                ///< answers whose period count was below that of the fault
     bool was_in(unsigned number) const;
   };
 

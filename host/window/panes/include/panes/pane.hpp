@@ -1,4 +1,4 @@
-// A pane of the right column: what it is given, and what it can do.
+// Interface of a pane of the right column.
 #pragma once
 
 // To add a pane:
@@ -30,41 +30,40 @@
 
 namespace inkwell::window {
 
-/// What a pane is made with. All of it outlives the pane.
+/// Constructor argument of a pane. All referenced objects outlive the pane.
 struct PaneSurroundings {
   DeviceDesk& desk;
-  /// The parameter file that was loaded or saved last; remembered from one time to the next.
+  /// Saved path of the parameter file that was loaded or saved last.
   std::filesystem::path& parameters_file;
-  std::filesystem::path parameters_to_send;  ///< once a device is connected; empty: none
-  /// Control socket of the virtual board whose simulated hand can do the user's part, and which can be given faults;
-  /// none for a real device.
+  std::filesystem::path parameters_to_send;  ///< sent once a device is connected; empty: none
+  /// Control socket of the virtual board, for its simulated hand and for fault injection; empty for a real device.
   std::optional<device::SocketAddress> control;
-  /// The arm of that board, if it is known otherwise than from the device.
+  /// Arm of the virtual board, if known from a source other than the device.
   std::optional<protocol::ParameterSet> simulated_arm;
-  /// Replays a recording in place of the device; throws device::Error with a sentence if it cannot be read.
+  /// Replays a recording instead of the device. Throws device::Error if the recording cannot be read.
   std::function<void(const std::filesystem::path&)> replay;
   bool starts_with_replay = false;
-  /// The recording that is replayed; null if none is.
+  /// Returns the replayed recording; null if none is open.
   std::function<const recording::Recording*()> replayed;
-  /// Goes to a time of it since its first sample.
+  /// Moves the replay to a time since the first sample of the recording.
   std::function<void(double)> seek;
 };
 
-/// What has come since the last frame.
+/// Data that arrived since the last frame.
 struct PaneNews {
-  ParameterEditor& editor;                           ///< of the device's parameters
-  const std::vector<device::ScopeSamples>& samples;  ///< of the device, also while a recording is replayed
+  ParameterEditor& editor;                           ///< edits the device's parameters
+  const std::vector<device::ScopeSamples>& samples;  ///< from the device, also during a replay
   double now_s;
 };
 
-/// What a pane needs for drawing itself.
+/// Data with which a pane is drawn.
 struct PaneFrame {
   const Style& style;
-  ParameterEditor& editor;  ///< of the device's parameters, or of those of the recording that is replayed
+  ParameterEditor& editor;  ///< edits the parameters of the device or of the replayed recording
   bool is_replay;
-  const std::vector<protocol::Signal>& scope_signals;  ///< what the scope shows
+  const std::vector<protocol::Signal>& scope_signals;  ///< displayed in the scope
   double now_s;
-  bool scope_is_free = true;  ///< no pane has taken the stream of samples from it
+  bool scope_is_free = true;  ///< no pane has reserved the scope stream
 };
 
 class Pane {
@@ -74,29 +73,30 @@ class Pane {
   Pane(const Pane&) = delete;
   Pane& operator=(const Pane&) = delete;
 
-  /// Stands on its tab, and names it for inspections in small letters.
+  /// Text of the tab. In lower case the text is the pane's name in inspections.
   virtual std::string_view title() const = 0;
-  /// It has come to be shown by a key. True if it gives the keyboard to something in it; else its first thing gets it.
+  /// Called when a key selects the pane. Returns true if the pane sets the keyboard focus; otherwise the first control
+  /// receives it.
   virtual bool take_keyboard() { return false; }
-  /// Once a frame, whether the pane is shown or not.
+  /// Called once per frame, whether or not the pane is shown.
   virtual void follow(const PaneNews&) {}
-  /// Draws what is in it while it is shown; its ImGui window is open.
+  /// Draws the content while the pane is shown. The pane's ImGui window is open.
   virtual void draw(const PaneFrame& frame) = 0;
-  /// What it has the device do ends here: the user stops everything, or goes to another device.
+  /// Stops all device actions of the pane, on a stop by the user or before a device change.
   virtual void cancel() {}
 
-  /// Streamed beside the scope's signals while the pane is shown and no pane takes the stream. Their samples come with
-  /// the others in PaneNews.
+  /// Streamed in addition to the scope's signals while the pane is shown and no pane reserves the stream. PaneNews
+  /// contains the samples.
   virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
-  /// For a pane that takes the stream for a while, as a guide or a recording does.
+  /// Reserves the scope stream, for example during a guide or a recording.
   virtual PaneStream stream() const { return {}; }
-  /// What goes on in it, in a few characters that stand on its tab; empty: nothing.
+  /// Short state text for the tab; empty if the pane is idle.
   virtual std::string running() const { return {}; }
-  /// Values wait in it to be stored: a mark stands on its tab while another pane is shown.
+  /// True if values in the pane are not stored. The tab is marked while another pane is shown.
   virtual bool has_values_to_store() const { return false; }
-  /// Its picture changes by itself.
+  /// True if the content changes without input.
   virtual bool is_moving() const { return false; }
-  /// The first pane of which this is true is shown at the start; the first of all if it is true of none.
+  /// The first pane that returns true is shown initially. If none does, the first pane is shown.
   virtual bool is_shown_at_start() const { return false; }
 };
 

@@ -1,4 +1,4 @@
-// The right column: its panes, one of them shown, under tabs.
+// The right column: tabs and the selected pane.
 #pragma once
 
 #include <memory>
@@ -15,17 +15,17 @@ class PaneColumn {
   void follow(const PaneNews& news);
   void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
   void cancel();
-  /// Shows the pane under this tab, counted from 0 on, if there are so many. Returns the part of the window to be given
-  /// the keyboard; empty if the pane has taken it.
+  /// Shows the pane of this tab, counted from 0, if it exists. Returns the name of the part that should receive the
+  /// keyboard focus; empty if the pane has set the focus.
   std::string show(std::size_t tab);
 
-  /// Of the first pane that takes it; else the scope's signals and then what the shown pane shows, as far as a
-  /// selection has room.
+  /// Returns the stream of the first pane that reserves it. If no pane does, returns the scope's signals and the shown
+  /// pane's signals, up to the size limit of a selection.
   PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
   bool is_moving() const;
 
  private:
-  /// Returns their height.
+  /// Returns the height of the tabs.
   float draw_tabs(ImVec2 place, float width, const Style& style);
 
   std::vector<std::unique_ptr<Pane>> panes_;

@@ -1,4 +1,4 @@
-// What panes have streamed.
+// Signals that a pane requests from the scope stream.
 #pragma once
 
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace inkwell::window {
 
-/// What has to be streamed for a pane in place of the scope's signals: these, in this order, and no others.
+/// Request of a pane that replaces the scope's selection: exactly these signals, in this order.
 struct PaneStream {
-  std::vector<protocol::Signal> signals;  ///< none: the pane does not take the stream
-  bool feeds_scope = true;                ///< the scope's signals are among them, so that it goes on
+  std::vector<protocol::Signal> signals;  ///< empty: no request
+  bool feeds_scope = true;                ///< the scope's signals are included, so that the scope continues
 };
 
-/// The signals, and behind them those of `more` that are not yet there, as far as a selection has room.
+/// Appends those of `more` that are not yet in `signals`, up to the size limit of a selection.
 std::vector<protocol::Signal> joined(std::vector<protocol::Signal> signals, std::span<const protocol::Signal> more);
 
 }  // namespace inkwell::window

@@ -1,5 +1,5 @@
-// Where a line has to be drawn in pieces: ImGui joins two strokes by a mitre, which thins them to nothing where the
-// line turns back.
+// Splits a line for drawing: ImGui joins two segments with a miter, which thins them to nothing where the line
+// reverses.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace inkwell::window {
 
-/// The line's points, in order, cut wherever it turns by more than 120 degrees. Neighbouring pieces share that point.
+/// Splits the points at each turn of more than 120 degrees. Adjacent pieces share the point of the turn.
 template <class Point>
 std::vector<std::span<const Point>> pieces_between_turns(std::span<const Point> line) {
   constexpr float sharpest_cosine = -0.5f;

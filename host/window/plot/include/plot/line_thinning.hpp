@@ -1,4 +1,4 @@
-// Leaves out the points of a line that nobody could see: triangles are what a plot costs without a graphics card.
+// Removes invisible points of a line. Without a graphics card, the number of triangles determines the cost of a plot.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace inkwell::window {
 
-/// Takes the points of a line one by one, in pixels, and keeps those at which it bends: no point that was given lies
-/// farther from the line that is kept than about `invisible_pixels`. Where the line goes to the left, all are kept
-/// but those that hardly differ from the one before.
+/// Accepts points in pixels and keeps the points at which the line bends. No removed point is farther than about
+/// `invisible_pixels` from the remaining line. Where the line runs to the left, only points that almost equal the
+/// previous point are removed.
 template <class Point>
 class LineThinning {
  public:
@@ -25,7 +25,7 @@ class LineThinning {
     if (std::abs(point.x - before.x) < invisible_pixels && std::abs(point.y - before.y) < invisible_pixels) return;
     if (waits_) {
       const float slope = (point.y - kept_.back().y) / (point.x - kept_.back().x);
-      // Else a line straight to the new point would pass one of those left out too far away, or miss a turn back.
+      // A straight line to the new point would miss a removed point or a reversal.
       if (!(point.x > waiting_.x && lowest_slope_ <= slope && slope <= highest_slope_)) {
         kept_.push_back(waiting_);
         waits_ = false;
@@ -40,7 +40,7 @@ class LineThinning {
     waits_ = true;
   }
 
-  /// The points that were kept, the last one included, and starts anew.
+  /// Returns the points that were kept, including the last point, and starts a new line.
   std::vector<Point> take() {
     if (waits_) kept_.push_back(waiting_);
     waits_ = false;
@@ -49,9 +49,10 @@ class LineThinning {
 
  private:
   std::vector<Point> kept_;
-  Point waiting_{};  ///< the newest, not yet known whether the line bends there
+  Point waiting_{};  ///< newest point, whose removal is not decided yet
   bool waits_ = false;
-  float lowest_slope_ = 0, highest_slope_ = 0;  ///< from the last point kept, past all that were left out
+  float lowest_slope_ = 0, highest_slope_ = 0;  ///< range of slopes from the last kept point that passes all removed
+                                                ///< points
 };
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Drawing of plots on ImGui's draw lists: grid, numbers on the axes, lines.
+// Draws grids, axis numbers and lines on ImGui draw lists.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace inkwell::window {
 
 /// A rectangle of the screen with a range on each axis.
 struct PlotArea {
-  ImVec2 minimum;  ///< top left
-  ImVec2 maximum;  ///< bottom right
+  ImVec2 minimum;  ///< top left corner
+  ImVec2 maximum;  ///< bottom right corner
   AxisRange x;
   AxisRange y;
 
@@ -27,10 +27,10 @@ struct PlotArea {
   float to_y(double value) const { return maximum.y - static_cast<float>(y.part(value)) * height(); }
 };
 
-/// Rounded to whole pixels, which ImGui draws with a third of the triangles.
+/// Rounded to whole pixels, which needs a third of the triangles in ImGui.
 inline float line_thickness(const Style& style) { return std::round(style.points(1.5f)); }
 
-/// Collects a line's points and draws them whenever there is a gap.
+/// Collects the points of a line and draws them at each gap.
 class Polyline {
  public:
   Polyline(ImDrawList& list, ImU32 colour, float thickness) : list_(list), colour_(colour), thickness_(thickness) {}
@@ -52,12 +52,12 @@ class Polyline {
   LineThinning<ImVec2> line_;
 };
 
-/// Ground, grid and the numbers on both axes. `x_unit` and `y_unit` stand at the ends of the axes.
-/// `x_is_logarithm`: the x axis holds powers of ten, which are written out.
+/// Draws background, grid and the numbers of both axes. `x_unit` and `y_unit` are drawn at the ends of the axes.
+/// `x_is_logarithm`: x values are exponents of ten, and the axis shows the powers.
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
                const std::string& y_unit, bool x_is_logarithm = false);
 
-/// Points in the units of the axes, joined; NaN makes a gap.
+/// Connects points in axis units; NaN makes a gap.
 void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pair<double, double>> points,
                  Colour colour, const Style& style);
 

@@ -1,4 +1,4 @@
-// Ranges and ticks of a plot's axes.
+// Ranges and ticks of plot axes.
 #pragma once
 
 #include <string>
@@ -12,26 +12,26 @@ struct AxisRange {
   double maximum;
 
   double extent() const { return maximum - minimum; }
-  /// 0 at the minimum, 1 at the maximum.
+  /// Maps the minimum to 0 and the maximum to 1.
   double part(double value) const { return (value - minimum) / extent(); }
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten that lie in the range, about `wanted` of them.
+/// Returns about `wanted` multiples of 1, 2 or 5 times a power of ten within the range.
 std::vector<double> ticks(const AxisRange& range, int wanted);
 
-/// What an axis shows around a plain zero: what a haptic arm has of such a unit when it does a little, e.g. 2 cm. 2 for
-/// a unit that is not known.
+/// Height of an axis around constant zero for a unit: a small amount for a haptic arm, e.g. 2 cm. Returns 2 for an
+/// unknown unit.
 double extent_around_zero(std::string_view unit);
 
-/// The smallest range between such multiples that holds the data with a little room. Data that are constant get a
-/// fifth of their value, a plain zero and data that are not there (NaN) `around_zero`.
+/// Returns the smallest range between such multiples that contains the data with a margin. A constant gets a range of a
+/// fifth of its value. Constant zero or missing data (NaN) gets `around_zero`.
 AxisRange enclosing_range(double minimum, double maximum, double around_zero = 2.0);
 
-/// A tick's number with as many digits as its neighbours need to differ, e.g. "0.25", "1500", "2e-06".
+/// Formats a tick value with enough digits to distinguish adjacent ticks, e.g. "0.25", "1500", "2e-06".
 std::string tick_label(double value, double step);
 
-/// Follows the data, but shrinks only after the data has been small for a while, so that axes do not tremble. The room
-/// around a constant is a guess, which the first change replaces.
+/// Follows the data, but shrinks only after the data have been smaller for a while, so that the axis does not jitter.
+/// The first change replaces the estimated range around a constant.
 class SteadyRange {
  public:
   explicit SteadyRange(double around_zero = 2.0) : around_zero_(around_zero) {}

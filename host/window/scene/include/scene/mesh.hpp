@@ -1,4 +1,4 @@
-// Triangles of the scene's solids, made on the processor once.
+// Triangle meshes of the solids, computed once on the CPU.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,17 @@ struct Mesh {
   std::vector<std::uint16_t> indices;
 };
 
-/// Radius 1 around the origin.
+/// Unit sphere around the origin.
 Mesh sphere(int rings, int segments);
 
-/// A body of revolution about z from z = 0 to z = 1, radius 1 at the start and `end_radius` at the end, with flat
-/// ends. Scaled in x and y it is a cylinder (1), a tapered link, or a cone (0).
+/// Body of revolution about z from z = 0 to z = 1 with flat ends. The radius is 1 at z = 0 and `end_radius` at z = 1.
+/// `end_radius` 1 gives a cylinder, and 0 a cone.
 Mesh tapered_cylinder(float end_radius, int segments);
 
-/// A helix about z from z = 0 to z = 1, its coils of radius 1, drawn as a tube. For the hand's spring.
+/// Helical spring about z from z = 0 to z = 1 with coil radius 1, drawn as a tube. The hand's spring uses this mesh.
 Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_around);
 
-/// Moves, turns and stretches a mesh that lies along z from 0 to 1 so that it goes from one point to the other.
+/// Returns the transformation of a mesh along z from 0 to 1 to the line between two points.
 glm::mat4 between(glm::vec3 from, glm::vec3 to, float radius);
 
 }  // namespace inkwell::window

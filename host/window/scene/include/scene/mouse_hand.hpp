@@ -1,5 +1,5 @@
-// The simulated hand of a virtual board, moved by the mouse. Talks to the board in a thread of its own, so that
-// the window never waits for it.
+// The simulated hand of a virtual board, moved by the mouse. A separate thread communicates with the board, so that the
+// window never blocks.
 #pragma once
 
 #include <condition_variable>
@@ -15,12 +15,12 @@
 
 namespace inkwell::window {
 
-/// A person's hand on the stylus is about this stiff, and does not press harder than a few newtons.
+/// Typical stiffness and damping of a human hand on the stylus, and the limit of its force.
 inline constexpr double hand_stiffness_N_per_m = 150.0;
 inline constexpr double hand_damping_Ns_per_m = 2.0;
 inline constexpr float hand_pull_maximum_N = 2.8f;
 
-/// The hand's target for a wish: as far from the probe as the hand's strength reaches.
+/// Limits the hand's target to the distance from the probe that the maximum force allows.
 glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m);
 
 class MouseHand {
@@ -28,13 +28,13 @@ class MouseHand {
   explicit MouseHand(device::SocketAddress control);
   ~MouseHand();
 
-  /// Takes the stylus (out of the inkwell, if it is there) and pulls it to a place of the workspace.
+  /// Grasps the stylus, after removing it from the inkwell if necessary, and pulls it to a workspace position.
   void pull_to(glm::vec3 target_m);
   void let_go();
   void put_into_inkwell();
   void press_buttons(bool first, bool second);
 
-  /// Where the hand pulls to, while it holds the stylus.
+  /// Target of the hand while it grasps the stylus.
   std::optional<glm::vec3> target_m() const;
   bool is_docked() const;
   std::string error() const;  ///< empty while the board answers

@@ -1,4 +1,4 @@
-// How and where the scene is drawn.
+// Viewport and style of the scene.
 #pragma once
 
 #include <optional>
@@ -7,17 +7,17 @@
 
 namespace inkwell::window {
 
-/// Part of the framebuffer in pixels, origin bottom left as in OpenGL.
+/// Part of the framebuffer in pixels, with the origin at the bottom left as in OpenGL.
 struct Viewport {
   int x, y, width, height;
 };
 
 struct SceneLook {
   const Palette& palette;
-  bool flat_colours;               ///< no lighting, frames of the walls opaque
-  bool smooth;                     ///< with multisampling, in a buffer of its own: dear without a graphics card
-  bool is_as_before;               ///< the same scene as in the last call, which need not be drawn anew
-  std::optional<int> marked_wall;  ///< under the mouse: index into SceneModel::walls
+  bool flat_colours;               ///< no lighting; wall frames are opaque
+  bool smooth;                     ///< multisampling in a separate buffer: slow without a graphics card
+  bool is_as_before;               ///< the scene has not changed since the last call and need not be redrawn
+  std::optional<int> marked_wall;  ///< wall under the mouse: index into SceneModel::walls
 };
 
 }  // namespace inkwell::window

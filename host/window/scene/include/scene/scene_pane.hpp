@@ -1,4 +1,4 @@
-// The pane with the arm, the sphere and the walls, and what the mouse does in it.
+// The pane with arm, sphere and walls, and its mouse interaction.
 #pragma once
 
 #include <memory>
@@ -21,23 +21,23 @@ struct ScenePaneInput {
   ParameterEditor& editor;
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
-  bool is_replay = false;    ///< pose and parameters are a recording's
-  bool offers_force = true;  ///< nothing else has to be settled first
+  bool is_replay = false;    ///< pose and parameters are from a recording
+  bool offers_force = true;  ///< false while another question has to be answered first
 };
 
 class Renderer;
 
 class ScenePane {
  public:
-  /// OpenGL is ready to draw.
+  /// Requires an initialized OpenGL context.
   ScenePane();
   ~ScenePane();
 
-  /// Handles the mouse and draws the labels; the picture below them comes from draw_scene. True if the user asks for
-  /// the force.
+  /// Handles the mouse and draws the labels above the picture of draw_scene(). Returns true if the user asks for the
+  /// force.
   bool draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(const Viewport& viewport, SceneLook look) const;
-  /// What of the picture depends on the mouse and the hand.
+  /// Adds the part of the picture that depends on the mouse and the simulated hand.
   void add_to(PictureDigest& digest) const;
   void reset_view() { view_is_to_be_reset_ = true; }
 
@@ -45,7 +45,7 @@ class ScenePane {
   enum class Drag : std::uint8_t { none, orbit, pan, hand, wall };
 
   void handle_mouse(const ScenePaneInput& input);
-  /// Shift with the arrows turns, with Ctrl too it moves the picture; Ctrl with the arrows moves the simulated hand.
+  /// Shift with the arrow keys rotates the view, Ctrl+Shift moves it, and Ctrl moves the simulated hand.
   void handle_keys(const ScenePaneInput& input);
   void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
   void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);
@@ -58,7 +58,7 @@ class ScenePane {
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
-  /// Why nothing pushes back, and the button for it; true if that is pressed.
+  /// Shows why the force is off, with a button. Returns true if the button was pressed.
   bool draw_force_offer(const ScenePaneInput& input) const;
   void draw_replay_frame(const Style& style) const;
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
@@ -67,11 +67,11 @@ class ScenePane {
   SceneModel scene_{};
   std::optional<HandView> hand_view_;
   Camera camera_;
-  bool view_is_to_be_reset_ = true;  // at the next frame, from the box as it is then
+  bool view_is_to_be_reset_ = true;  // in the next frame, from the box at that time
   glm::vec2 origin_{0.0f};           // of the pane, in screen coordinates
   glm::vec2 size_{1.0f};
   Drag drag_ = Drag::none;
-  glm::vec3 grabbed_{0.0f};  // where the hand is wanted, in view space
+  glm::vec3 grabbed_{0.0f};  // target of the hand in view space
   int dragged_wall_ = 0;
   float wall_grab_offset_m_ = 0.0f;
   std::optional<int> marked_wall_;

@@ -1,4 +1,4 @@
-// Numbers about a stretch of a signal: statistics and spectrum.
+// Statistics and spectrum of a stretch of a signal.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace inkwell::window {
 
-/// Lost samples are left out; `count` is 0, and the rest NaN, if nothing is left.
+/// Lost samples are omitted. If no sample remains, `count` is 0 and the other members are NaN.
 struct Statistics {
   std::uint64_t count;
   double minimum;
@@ -20,19 +20,18 @@ struct Statistics {
 
 Statistics statistics(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// Amplitude of the sines a signal is made of: amplitudes[i] at i * resolution_Hz, in the signal's unit.
+/// Amplitude spectrum in the signal's unit: amplitudes[i] at the frequency i * resolution_Hz.
 struct Spectrum {
   double resolution_Hz = 0.0;
   std::vector<double> amplitudes;
 };
 
-/// Of the newest power of two of samples that fits into [first, last), at most 32768. A Hann window keeps strong
-/// lines from spilling over weak ones; its loss of amplitude is made up for, and the mean is taken off before.
-/// Empty if there are fewer than 16 samples or one of them was lost.
+/// Uses the newest power of two of samples in [first, last), at most 32768. The mean is removed. A Hann window reduces
+/// leakage, and its amplitude loss is compensated. Returns an empty spectrum for fewer than 16 samples or if a sample
+/// was lost.
 Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// True if the newest samples of a signal leave the range that it had before. Noise widens its range now and then by
-/// a little, which is not motion.
+/// True if the newest samples of a signal leave its previous range by more than the usual effect of noise.
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// A signal that is made of others by a formula, such as force_x_N - program_force_x_N.
+// A signal computed from other signals with a formula, such as force_x_N - program_force_x_N.
 #pragma once
 
 #include <memory>
@@ -14,34 +14,35 @@ namespace inkwell::window {
 struct Formula {
   static constexpr double low_pass_maximum_Hz = 5000.0;
 
-  std::string name;  ///< unlike every signal's
-  std::string text;  ///< names of signals, numbers, + - * / ^ ( ), functions such as sqrt and abs
-  std::string unit;  ///< "1" for a number without one
-  /// The result goes through a filter of first order with this corner; 0: it does not.
+  std::string name;  ///< different from all signal names
+  std::string text;  ///< expression of signal names, numbers, + - * / ^ ( ), and functions such as sqrt and abs
+  std::string unit;  ///< "1" for a dimensionless value
+  /// Corner frequency of the first-order low-pass filter of the result; 0 disables the filter.
   double low_pass_Hz = 0.0;
   bool operator==(const Formula&) const = default;
 };
 
-/// The signals that are named in the text, each once.
+/// Returns the signals in the text, each once.
 std::vector<protocol::Signal> inputs_of(std::string_view text);
 
-/// The unit, if the text only adds and subtracts signals that share one; else empty: its author has to state it.
+/// Derives the unit if the text only adds and subtracts signals with the same unit. Otherwise the result is empty, and
+/// the author has to enter the unit.
 std::string unit_told_by(std::string_view text);
 
-/// Why this is no formula that could be drawn, and what to do: a sentence. Empty if it is one.
+/// Returns why the formula is invalid and what to do; empty if it is valid.
 std::string refusal_of(const Formula& formula);
 
-/// Values of a formula, one after the other.
+/// Evaluates a formula for consecutive control periods.
 class FormulaValues {
  public:
-  /// Of a formula that is not refused.
+  /// Requires a formula without a refusal.
   explicit FormulaValues(const Formula& formula);
   FormulaValues(FormulaValues&&) noexcept;
   FormulaValues& operator=(FormulaValues&&) noexcept;
   ~FormulaValues();
 
   const std::vector<protocol::Signal>& inputs() const;
-  /// Of the inputs' values in one control period, in their order. NaN, for a sample that was lost, stays NaN.
+  /// Evaluates the formula for the input values of one control period. NaN (a lost sample) stays NaN.
   float next(std::span<const float> values);
 
  private:

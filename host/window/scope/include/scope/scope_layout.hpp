@@ -1,4 +1,4 @@
-// What the scope's plots show, and the layouts that come with the window.
+// Contents of the scope's plots, and the built-in layouts.
 #pragma once
 
 // To add a layout, add a row to built_in_layouts() in host/window/scope/scope_layout.cpp.
@@ -24,11 +24,11 @@
 namespace inkwell::window {
 
 enum class PlotKind : std::uint8_t {
-  time,      ///< signals against time
-  spectrum,  ///< amplitude of the signals against frequency
-  xy,        ///< the second signal against the first, the third against the first, ...
+  time,      ///< signals over time
+  spectrum,  ///< amplitude of the signals over frequency
+  xy,        ///< the second and each further signal over the first signal
 };
-inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind::xy) + 1;  // the last one
+inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind::xy) + 1;  // xy is the last kind
 
 struct ScopePlot {
   PlotKind kind = PlotKind::time;
@@ -41,29 +41,29 @@ struct ScopeLayout {
   std::string name;
   int columns = 2;
   std::vector<ScopePlot> plots;
-  std::vector<Formula> formulas = {};  ///< that plots may show, whether one does or not
+  std::vector<Formula> formulas = {};  ///< formulas available to the plots, whether or not a plot shows them
   bool operator==(const ScopeLayout&) const = default;
 };
 
-/// "contact", "paper" (figures 11 to 14), "wall" (force against penetration), "currents", "overview"
-/// (eight plots), "interrupt".
+/// "contact", "paper" (figures 11 to 14), "wall" (force over penetration), "currents", "overview" (eight plots) and
+/// "interrupt".
 std::span<const ScopeLayout> built_in_layouts();
-/// The built-in layout of that name, the first one if there is none.
+/// Returns the built-in layout of this name, or the first built-in layout if there is none.
 const ScopeLayout& built_in_layout(std::string_view name);
 
-/// The layouts that the user has named and saved. Those that come with the window keep their names and contents.
+/// Layouts that the user has saved. Built-in layouts cannot be renamed or changed.
 class OwnLayouts {
  public:
   OwnLayouts() = default;
-  explicit OwnLayouts(std::vector<ScopeLayout> layouts);  ///< those whose name is refused are left out
+  explicit OwnLayouts(std::vector<ScopeLayout> layouts);  ///< layouts with a refused name are omitted
 
   std::span<const ScopeLayout> all() const { return layouts_; }
   const ScopeLayout* find(std::string_view name) const;
 
-  /// Why no layout may be saved under this name; empty if one may. A layout of one's own is replaced.
+  /// Returns why no layout can be saved under this name; empty if it can. Saving replaces a user layout with this name.
   static std::string refusal(std::string_view name);
   void save(ScopeLayout layout);
-  /// Why `from` cannot be called `to`; empty once it is.
+  /// Returns why the layout cannot be renamed; empty on success.
   std::string rename(std::string_view from, std::string_view to);
   void remove(std::string_view name);
 
@@ -73,26 +73,26 @@ class OwnLayouts {
   std::vector<ScopeLayout> layouts_;
 };
 
-/// The layout of that name, one's own or built in; null if there is none.
+/// Finds a user layout or a built-in layout by name; null if there is none.
 const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own);
-/// The names of all, with commas between them.
+/// Returns all layout names, separated by commas.
 std::string layout_names(const OwnLayouts& own);
-/// The layout of that name, one's own or built in; the first of the built-in ones if there is none.
+/// Finds a user layout or a built-in layout by name. Returns the first built-in layout if there is none.
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
 
-/// The signal of that name: the device's, or what one of the formulas gives.
+/// Finds a signal of the device or of one of the formulas by name.
 std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas);
-/// Takes the place of the layout's formula of the name `before`, in its plots as well; joins them if there is none.
+/// Replaces the formula with the name `before` in the layout and its plots, or adds the formula if there is none.
 void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before);
-/// Takes it out of the plots, too; a plot that has nothing left goes.
+/// Removes the formula from the layout and its plots. A plot without signals is removed.
 void remove_formula(ScopeLayout& layout, std::string_view name);
-/// The formulas that the plots show, each once.
+/// Returns the formulas that the plots show, each once.
 std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);
 
-/// What to do so that the plot shows something; empty if it does.
+/// Returns how to make an empty plot show data; empty if the plot shows data.
 std::string hint_for(const ScopePlot& plot, const SignalHistory& history);
 
-/// Every signal of the layout once, at most as many as the scope can stream; those beyond are left out.
+/// Returns each signal of the layout once, up to the stream's limit. Further signals are omitted.
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout);
 
 }  // namespace inkwell::window

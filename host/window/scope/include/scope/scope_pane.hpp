@@ -1,4 +1,4 @@
-// The scope: plots of signals against time, against each other, or as spectra.
+// The scope: time, xy and spectrum plots of signals.
 #pragma once
 
 #include <memory>
@@ -24,44 +24,44 @@ class ScopePane {
   ~ScopePane();
 
   void draw(ImVec2 place, ImVec2 size, const Style& style);
-  /// Samples from the device; while paused they are let go, so that what is looked at stays.
-  /// `over`: of the same periods, of a recording that is laid over; null if none is.
+  /// Adds samples from the device. While the scope is paused, received samples are discarded, so that the shown samples
+  /// remain. `over`: samples of an overlaid recording for the same periods; null if there is none.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
-  /// Forgets what was received: what comes next does not continue it.
+  /// Clears the received samples, because the next samples do not continue them.
   void start_anew() { timeline_.start_anew(); }
   double span_s() const { return timeline_.span_s(); }
 
-  /// What has to be streamed for the plots and the trigger.
+  /// Signals that the plots and the trigger need.
   std::vector<protocol::Signal> signals() const;
-  /// As they stand now, to be remembered.
+  /// Returns the current settings, which are saved.
   ScopeSettings settings() const;
-  /// True if a signal left its range since the last call, rather than only scrolled.
+  /// True if a signal left its range since the last call. Scrolling alone does not count.
   bool take_motion() { return std::exchange(has_motion_, false); }
 
  private:
-  /// Plots that stay as they are keep their views, with what these remember.
+  /// Creates the views of new plots. Unchanged plots keep their views and the state of these views.
   void follow_layout();
-  /// Shift with the arrows moves the picture in time and zooms it, Ctrl with them moves the cursors.
+  /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
   void take_keys();
   void draw_controls(const Style& style);
   void draw_plots(ScopeFrame& frame);
-  /// A signal that is dragged onto the plot joins it.
+  /// Adds a signal that is dropped onto the plot.
   void take_dropped_signal(ScopePlot& plot);
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
-  /// True if the plot is to be removed.
+  /// Returns true if the plot is to be removed.
   bool draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame);
 
   Timeline timeline_;
   ScopeLayout layout_;
-  std::vector<std::unique_ptr<PlotView>> views_;  ///< of the layout's plots, in their order
+  std::vector<std::unique_ptr<PlotView>> views_;  ///< views of the layout's plots, in the same order
   std::unique_ptr<LayoutMenu> layout_menu_;
   std::unique_ptr<Cursors> cursors_;
   std::unique_ptr<SignalList> signal_list_;
   bool with_statistics_ = false;
   bool has_motion_ = false;
-  std::uint64_t judged_end_ = 0;  ///< end of the history in the frame before
+  std::uint64_t judged_end_ = 0;  ///< end of the history in the previous frame
 };
 
 }  // namespace inkwell::window

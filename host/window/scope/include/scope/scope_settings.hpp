@@ -1,4 +1,4 @@
-// What the scope is set to, which the window remembers from one time to the next.
+// Saved settings of the scope.
 #pragma once
 
 #include <scope/scope_layout.hpp>
@@ -10,9 +10,9 @@ struct ScopeSettings {
   static constexpr double span_minimum_s = 0.001;
   static constexpr double span_maximum_s = 100.0;
 
-  double span_s = 2.0;  ///< time shown
+  double span_s = 2.0;  ///< displayed time
   TriggerSettings trigger;
-  ScopeLayout layout = built_in_layout("contact");  ///< as it stands, saved under its name or not
+  ScopeLayout layout = built_in_layout("contact");  ///< current layout, including unsaved changes
   OwnLayouts own_layouts;
   bool operator==(const ScopeSettings&) const = default;
 };

@@ -1,4 +1,4 @@
-// What a plot draws: a signal of the device, or one that a formula makes of them.
+// A signal in a plot: a signal of the device, or the result of a formula.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,13 @@ class ScopeSignal {
 
   /// Null for a signal of the device.
   const Formula* formula() const { return formula_.get(); }
-  /// Of a signal of the device only.
+  /// Valid only for a signal of the device.
   protocol::Signal of_device() const { return signal_; }
 
   std::string_view name() const { return formula_ ? std::string_view(formula_->name) : info(signal_).name; }
   std::string_view unit() const;
   std::string_view help() const { return formula_ ? std::string_view(formula_->text) : info(signal_).help; }
-  /// What has to be streamed for it.
+  /// Signals that have to be streamed for this signal.
   std::vector<protocol::Signal> inputs() const;
 
   bool operator==(const ScopeSignal& other) const;
@@ -33,18 +33,19 @@ class ScopeSignal {
   std::shared_ptr<const Formula> formula_;
 };
 
-/// Whether it is what others are to follow, such as a current's reference: it is drawn above their noise.
+/// True for a setpoint that other signals follow, such as a current reference. A setpoint is drawn above the noise of
+/// these signals.
 bool is_reference(const ScopeSignal& signal);
-/// The places of the signals in the order in which they are drawn.
+/// Returns the indices of the signals in drawing order.
 std::vector<std::size_t> drawing_order(const std::vector<ScopeSignal>& signals);
 
-/// Signals that belong together, under a title.
+/// Related signals with a common title.
 struct SignalGroup {
   std::string_view title;
   std::vector<protocol::Signal> signals;
 };
-/// All that the device can stream, in groups; of them those in whose name or help, or in whose group's title, each word
-/// of the search stands. An empty search finds all.
+/// Returns the streamable signals in groups. Each word of the search has to occur in the signal's name or help, or in
+/// the group title. An empty search matches every signal.
 std::vector<SignalGroup> signal_groups(std::string_view search);
 
 }  // namespace inkwell::window

@@ -1,8 +1,8 @@
-// The last minutes of the scope's signals, kept so that any stretch of them can be drawn at once.
+// The last minutes of the scope's signals, stored for fast drawing of any stretch.
 //
-// Each signal has a ring of samples and, above it, rings of the smallest and largest value of 16, 256, 4096...
-// samples. The extremes of any stretch then take a few dozen look-ups, however long it is, so a plot of
-// millions of samples costs what its pixels cost.
+// Each signal has a ring of samples, and rings with the minimum and maximum of 16, 256, 4096... samples. The extremes
+// of any stretch then need a few dozen look-ups. The cost of a plot therefore depends on its number of pixels, not of
+// samples.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace inkwell::window {
 
-/// Smallest and largest value of a stretch; both NaN where every sample of it was lost.
+/// Minimum and maximum of a stretch; both are NaN if every sample was lost.
 struct Extremes {
   float minimum;
   float maximum;
@@ -28,7 +28,7 @@ struct Extremes {
 
 class SignalSeries {
  public:
-  /// `capacity`: a power of 16 times a power of 2, at least 16. `first`: index of the sample that is appended first.
+  /// `capacity`: a power of 16 times a power of 2, at least 16. `first`: index of the first appended sample.
   explicit SignalSeries(std::size_t capacity, std::uint64_t first = 0);
 
   void append(float value);
@@ -37,7 +37,7 @@ class SignalSeries {
   std::uint64_t begin() const { return std::max(first_, end_ > capacity_ ? end_ - capacity_ : 0); }
   float operator[](std::uint64_t index) const { return samples_[index & (capacity_ - 1)]; }
 
-  /// Over [first, last), cut to what is kept.
+  /// Extremes of [first, last), limited to the stored samples.
   Extremes extremes(std::uint64_t first, std::uint64_t last) const;
 
  private:
@@ -52,17 +52,17 @@ class SignalSeries {
   std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
 };
 
-/// What came from one source: the device, or a recording.
+/// Signals from one source: the device or a recording.
 class SignalLane {
  public:
   explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
 
   const std::vector<protocol::Signal>& signals() const { return signals_; }
-  /// Begins anew with other signals; the first sample gets the index `first`.
+  /// Clears the samples and sets other signals. The next sample gets the index `first`.
   void begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first);
-  /// What formulas give, also of the samples that are there already.
+  /// Adds the results of formulas, also for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
-  /// Values of signals(), period by period.
+  /// Appends values of signals(), period by period.
   void append(std::span<const float> values);
   void append_lost(std::uint64_t count);
 
@@ -74,7 +74,7 @@ class SignalLane {
   struct Derived {
     ScopeSignal signal;
     FormulaValues values;
-    std::vector<std::size_t> inputs;  ///< places of the formula's inputs in signals_
+    std::vector<std::size_t> inputs;  ///< indices of the formula's inputs in signals_
     SignalSeries series;
   };
 
@@ -85,22 +85,22 @@ class SignalLane {
   std::vector<protocol::Signal> signals_;
   std::vector<SignalSeries> series_;
   std::vector<ScopeSignal> formulas_;
-  std::vector<Derived> derived_;  ///< of the formulas all of whose inputs are among the signals
-  std::vector<float> inputs_;     ///< of one formula at one period, kept for the next one
+  std::vector<Derived> derived_;  ///< formulas whose inputs are all among the signals
+  std::vector<float> inputs_;     ///< reused buffer for the inputs of one formula in one period
 };
 
-/// The signals that are streamed now, and beside them those of a recording that is laid over. Index 0 is the first
-/// control period received since the selection.
+/// The streamed signals, and the signals of an overlaid recording. Index 0 is the first control period since the
+/// selection.
 class SignalHistory {
  public:
   explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
       : capacity_(capacity), shown_(capacity), over_(capacity) {}
 
-  /// Another choice of signals in `samples` starts the history anew. Lost samples become NaN, so a gap is seen.
-  /// `over`: of the same periods, what is laid over; null if nothing is.
+  /// Appends samples. Other signals in `samples` clear the history. Lost samples become NaN, so that a gap is visible.
+  /// `over`: samples of the overlaid recording for the same periods; null if there is none.
   void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   void clear();
-  /// The formulas whose values are to be there, too.
+  /// Sets the formulas that are computed in addition to the signals.
   void derive(const std::vector<ScopeSignal>& formulas);
 
   std::uint64_t begin() const { return shown_.begin(); }
@@ -113,8 +113,8 @@ class SignalHistory {
   SignalLane shown_, over_;
 };
 
-/// One pair for each of `columns` parts of [first, last), for drawing: of equal width, but for a sixteenth of it. Every
-/// sample is in one of them.
+/// Returns one pair per column for drawing [first, last) in `columns` columns. The column widths differ by at most a
+/// sixteenth. Each sample belongs to exactly one column.
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Which stretch of the signals the scope shows: the newest, the one around an event, or one of the past.
+// Time range that the scope shows: the newest samples, an event, or the past.
 #pragma once
 
 #include <scope/scope_settings.hpp>
@@ -7,14 +7,14 @@
 
 namespace inkwell::window {
 
-/// Part of the history, in samples; `zero` is where its axis says 0.
+/// Part of the history, in samples; `zero` is the origin of its axis.
 struct Stretch {
   double first;
   double last;
   double zero;
 
   double span() const { return last - first; }
-  /// As indices of samples.
+  /// Indices of samples.
   std::uint64_t first_index() const { return first > 0.0 ? static_cast<std::uint64_t>(first) : 0; }
   std::uint64_t last_index() const { return last > 0.0 ? static_cast<std::uint64_t>(last) : 0; }
 };
@@ -23,27 +23,27 @@ class Timeline {
  public:
   Timeline(double span_s, const TriggerSettings& trigger) : trigger_settings_(trigger), span_s_(span_s) {}
 
-  /// Samples from the device; while paused they are let go, so that what is looked at stays.
-  /// `over`: of the same periods, of a recording that is laid over; null if none is.
+  /// Adds samples from the device. While the timeline is paused, received samples are discarded, so that the shown
+  /// samples remain. `over`: samples of an overlaid recording for the same periods; null if there is none.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
-  /// Formulas whose values are to be there beside what is received.
+  /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
-  /// Forgets what was received: what comes next does not continue it.
+  /// Clears the received samples, because the next samples do not continue them.
   void start_anew();
   const SignalHistory& history() const { return history_; }
 
-  /// What is to be shown now; finds the trigger's events.
+  /// Returns the stretch to be shown. Searches for trigger events first.
   Stretch stretch();
 
   double span_s() const { return span_s_; }
   void set_span_s(double span_s) { span_s_ = span_s; }
-  /// By steps of the mouse wheel, positive shows less. What lies at `right_part` of the span from its right end stays
-  /// there while paused.
+  /// Zooms by steps of the mouse wheel; positive steps show less. While paused, the point at `right_part` of the span
+  /// from the right end stays fixed.
   void zoom(double steps, double right_part);
 
   bool is_paused() const { return paused_; }
   void pause(bool paused);
-  /// Pauses and moves the stretch into the past by a part of the span, no farther than something is kept.
+  /// Pauses and moves the stretch into the past by a fraction of the span, within the stored samples.
   void drag(double part);
 
   const TriggerSettings& trigger() const { return trigger_settings_; }
@@ -57,7 +57,7 @@ class Timeline {
   TriggerSettings trigger_settings_;
   double span_s_;
   bool paused_ = false;
-  double paused_last_ = 0.0;  ///< right end of what is shown while paused
+  double paused_last_ = 0.0;  ///< right end of the stretch while paused
 };
 
 }  // namespace inkwell::window

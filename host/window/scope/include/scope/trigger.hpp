@@ -1,4 +1,4 @@
-// The scope's trigger: finds the moment to which a picture is aligned.
+// The scope's trigger, which finds the event that a picture is aligned to.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace inkwell::window {
 
 enum class TriggerEdge : std::uint8_t { rising, falling };
 enum class TriggerMode : std::uint8_t {
-  off,     ///< the newest samples roll by
-  normal,  ///< every new event replaces the picture
-  single,  ///< the first event stays until the trigger is armed again
+  off,     ///< the newest samples scroll
+  normal,  ///< each new event replaces the picture
+  single,  ///< the first event remains until the trigger is armed again
 };
 
 struct TriggerSettings {
@@ -20,26 +20,26 @@ struct TriggerSettings {
   protocol::Signal signal = protocol::Signal::force_N;
   TriggerEdge edge = TriggerEdge::rising;
   float level = 0.1f;
-  float pre_trigger = 0.2f;  ///< part of the picture that lies before the event, 0..1
+  float pre_trigger = 0.2f;  ///< part of the picture before the event, 0..1
   bool operator==(const TriggerSettings&) const = default;
 };
 
-/// First index in [first, last) at which the signal has crossed the level since the sample before.
+/// Returns the first index in [first, last) at which the signal has crossed the level since the previous sample.
 std::optional<std::uint64_t> find_crossing(const SignalSeries& series, std::uint64_t first, std::uint64_t last,
                                            float level, TriggerEdge edge);
 
-/// Looks at every new sample once.
+/// Examines each new sample once.
 class Trigger {
  public:
-  void arm();  ///< forgets the event
-  /// Reads what is new in the series; `span` is the length of the picture in samples.
+  void arm();  ///< clears the event
+  /// Examines the new samples of the series; `span` is the length of the picture in samples.
   void advance(const SignalSeries& series, const TriggerSettings& settings, double span);
   /// Index of the event whose picture is complete, if any.
   std::optional<std::uint64_t> event() const { return event_; }
 
  private:
   std::uint64_t looked_at_ = 0;
-  std::optional<std::uint64_t> coming_;  // found, but its picture is not complete yet
+  std::optional<std::uint64_t> coming_;  // event whose picture is not complete yet
   std::optional<std::uint64_t> event_;
 };
 
