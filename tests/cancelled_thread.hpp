@@ -1,4 +1,4 @@
-// A thread that is cancelled while it is in a call.
+// A thread that is canceled during a call.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ class CancelledThread {
     pthread_create(&thread_, nullptr, &CancelledThread::run, this);
     while (!is_in_) sched_yield();
   }
-  /// Cancels it; true if it has ended by that, within a minute.
+  /// Cancels the thread; true if the cancellation ends it within a minute.
   bool ends_when_cancelled() {
     pthread_cancel(thread_);
     timespec until{};

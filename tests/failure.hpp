@@ -1,4 +1,4 @@
-// What a call that must fail says.
+// Message of a call that must fail.
 #pragma once
 
 #include <concepts>
@@ -7,7 +7,7 @@
 
 namespace inkwell::tests {
 
-/// The message of the `Failure` that the action throws; empty if it throws nothing.
+/// Message of the `Failure` that the action throws; empty if the action does not throw.
 template <class Failure>
 std::string message_of(const std::invocable auto& action) {
   try {

@@ -1,4 +1,4 @@
-// A client that sends and receives plain bytes, over TCP on this computer or over a Unix socket.
+// A client that sends and receives raw bytes over TCP on this computer or over a Unix socket.
 #pragma once
 
 #include <arpa/inet.h>
@@ -35,20 +35,19 @@ class PlainClient {
     }
     return true;
   }
-  /// The next bytes; fewer if the server closes the connection before, or is silent for a minute.
+  /// The next `count` bytes; fewer if the server closes the connection or sends nothing for a minute.
   std::string receive(std::size_t count) {
     std::string text;
     for (char letter = 0; text.size() < count && receive(letter);) text += letter;
     return text;
   }
-  /// What comes up to a newline, without it; less if the server closes the connection before, or is silent for a
-  /// minute.
+  /// The next line without its newline; less if the server closes the connection or sends nothing for a minute.
   std::string line() {
     std::string text;
     for (char letter = 0; receive(letter) && letter != '\n';) text += letter;
     return text;
   }
-  /// The server closes the connection now, and sends nothing before.
+  /// Waits for the server to close the connection; false if a byte arrives first.
   bool is_closed() {
     char letter = 0;
     const ssize_t count = ::recv(socket_.number(), &letter, 1, 0);

@@ -1,4 +1,4 @@
-// A virtual board whose time passes only when it is told to: the same calls give the same run on any machine.
+// A virtual board whose time advances only on request: the same calls produce the same run on any machine.
 #pragma once
 
 #include <device/control_client.hpp>
@@ -15,8 +15,8 @@ inline device::VirtualBoardOptions stepped_board(device::SimulationMode mode, de
   return options;
 }
 
-/// Lets the hand take the stylus out of the inkwell and bring it to a point of the workspace; the board time until it
-/// rests there, s.
+/// Lets the hand pull the stylus out of the inkwell and move it to a point of the workspace. Returns the board time
+/// in seconds until the stylus rests there.
 inline double bring_stylus(device::ControlClient& control, device::Vector3 target_m, double duration_s) {
   constexpr double comes_to_rest_s = 0.3;
   const auto truth = control.truth();

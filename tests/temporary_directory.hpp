@@ -1,4 +1,4 @@
-// A new empty directory for the files of one test, which goes away with this object.
+// A new empty directory for the files of one test; the destructor deletes it.
 #pragma once
 
 #include <cstdlib>

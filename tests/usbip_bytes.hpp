@@ -1,4 +1,4 @@
-// Messages of USB/IP as a client sends them, one behind the other.
+// Concatenated USB/IP messages in the form that a client sends.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How fast the virtual board runs the firmware, and what each stage of its control interrupt costs.
+// Speed of the virtual board, and cost of each stage of the control interrupt.
 #include <atomic>
 #include <cstdio>
 #include <thread>
@@ -17,7 +17,7 @@ using namespace inkwell;
 using namespace std::chrono_literals;
 using protocol::Signal;
 
-/// A board with a host that reads every pose and 14 signals, which is what the window does.
+/// A board with a host that reads every pose and 14 signals, as the window does.
 class BusyBoard {
  public:
   explicit BusyBoard(device::SimulationMode mode)

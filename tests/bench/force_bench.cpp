@@ -1,4 +1,4 @@
-// What the board's force law takes of a PC, beside what is known of CHAI3D on such a machine.
+// Duration of the board's force law on a PC, next to published durations of CHAI3D on such a machine.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ using control::Vector3;
 constexpr control::Box box{{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
 constexpr control::Wall wall{800.0f, 2.0f};
 
-/// A probe that goes in and out of walls, edges and corners, so that no branch is always the same.
+/// A probe that enters and leaves walls, edges and corners, so that each branch alternates.
 struct Path {
   struct Moment {
     Vector3 position_m, velocity_m_per_s;
@@ -47,7 +47,7 @@ void walls(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(walls_force_N(path.next()));
 }
 
-/// Eight planes, which make the box rounder, and a ball in its middle, all with friction.
+/// Eight planes that bevel the box, and a ball in its middle, all with friction.
 control::Shapes nine_shapes() {
   const control::Surface surface{.stiffness_N_per_m = 800.0f,
                                  .m_per_N = 1.0f / 800.0f,

@@ -25,7 +25,7 @@ constexpr std::size_t selected = 31;
 constexpr auto first_stage = static_cast<std::size_t>(Signal::servo_cycles);
 constexpr std::size_t stage_count = static_cast<std::size_t>(Signal::stage_report_cycles) - first_stage + 1;
 
-/// A board that is pushed around by a hand. Board time passes only in run() and while the device answers.
+/// A board with a hand that pushes the stylus. Board time advances only in run() and while the device answers.
 class PressedBoard {
  public:
   /// `profile`: see VirtualBoardOptions.
@@ -37,9 +37,10 @@ class PressedBoard {
     device_ = device::Device::open(*endpoint);
   }
 
-  /// The longest of each stage, the sum of all first, while it is pressed into three walls and comes out again.
+  /// Largest duration of each stage, the total first, while the probe is pressed into three walls and comes out
+  /// again.
   std::array<float, stage_count> press() {
-    run(0.5);  // the reference is taken
+    run(0.5);  // the encoders are referenced
     std::vector<Signal> signals;
     for (std::size_t id = first_stage + stage_count - selected; id < first_stage + stage_count; ++id)
       signals.push_back(static_cast<Signal>(id));

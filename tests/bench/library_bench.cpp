@@ -1,5 +1,5 @@
-// What a call of libinkwell and a frame of HDAPI take of the calling thread, a call at each pose of a virtual board. Of
-// the USB they only hand over what another thread sends.
+// Time that a call of libinkwell and a frame of HDAPI take in the calling thread, with one call per pose of a virtual
+// board. Another thread performs the USB transfers.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -42,7 +42,7 @@ class Times {
   std::vector<double> taken_us_;
 };
 
-/// A thread that sleeps until it is woken, as the one that sends the forces does.
+/// A thread that sleeps until it is woken, like the thread that sends the forces.
 class Sleeper {
  public:
   ~Sleeper() {

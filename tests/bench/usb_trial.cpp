@@ -1,4 +1,4 @@
-// usb-trial: the flashed firmware against a USB host, for as long as one likes. The tests do the same for seconds.
+// usb-trial: the flashed firmware against a USB host, for any duration. The tests do the same for seconds.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The window on software OpenGL beside the virtual board: its frames while all moves, its share of a core at rest.
+// The window on software OpenGL with the virtual board: its frames during motion and its processor load at rest.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr auto measured_for = 10s;
 
-/// Processor time of all threads of a process so far (proc(5), /proc/PID/stat, utime and stime).
+/// Processor time of all threads of a process (proc(5), /proc/PID/stat, utime and stime).
 double processor_time_s(int process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string text;
@@ -37,7 +37,7 @@ double share_of_a_core(int process) {
   return (processor_time_s(process) - before_s) / std::chrono::duration<double>(measured_for).count();
 }
 
-/// The hand pushes the sphere into the wall on the right and along it, again and again.
+/// The hand pushes the sphere into the right wall and along it, repeatedly.
 void push_for(device::ControlClient& control, double time_s) {
   const device::Vector3 start_m{0.0, 0.0, -0.03};
   control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
@@ -58,7 +58,7 @@ void measure(const std::string& layout, const std::string& width, const std::str
   push_for(rig.control, 1.5 * std::chrono::duration<double>(measured_for).count());
   const double moving = share_of_a_core(rig.window_process());
   const std::string report = rig.close_and_read_lines(2);
-  // A busy machine shows fewer frames, but each of them costs what it costs.
+  // A busy machine shows fewer frames, but the processor time per frame is the same.
   std::printf("  moving:  %.0f %% of a core, %.1f ms of it for a frame; %s", 100 * moving,
               1000 * moving / std::stod(report), report.c_str());
   std::fflush(stdout);
@@ -66,7 +66,7 @@ void measure(const std::string& layout, const std::string& width, const std::str
 
 }  // namespace
 
-/// Of the layouts alone whose names are given.
+/// Measures the layouts that are named in the arguments; without arguments all layouts.
 int main(int argument_count, char** arguments) {
   const std::vector<std::string> wanted(arguments + 1, arguments + argument_count);
   const auto is_wanted = [&wanted](const std::string& layout) {

@@ -1,4 +1,4 @@
-// A virtual board for programs that find it by INKWELL_DEVICE, and its simulated hand.
+// A virtual board with its simulated hand, for programs that find the board through INKWELL_DEVICE.
 #pragma once
 
 #include <chrono>
@@ -10,11 +10,11 @@
 
 namespace inkwell::tests {
 
-/// Where the hand of these tests holds the stylus; no two axes alike.
+/// Stylus position at which the hand of these tests rests; all coordinates differ.
 inline constexpr device::Vector3 held_point_m{0.02, 0.01, -0.03};
 inline constexpr double hand_N_per_m = 300;
 
-/// A firmware that speaks the next version of the protocol.
+/// Firmware with the next version of the protocol.
 inline const device::VirtualBoardOptions next_protocol{.elf = INKWELL_BUILD_DIRECTORY "/../board/next-protocol.elf"};
 
 struct Board {
@@ -24,7 +24,7 @@ struct Board {
 
   device::Vector3 rest_m = held_point_m;
 
-  /// With `paused` the stylus is out of the inkwell when time begins, so that the board does not know where it is.
+  /// With `paused` the stylus is outside the inkwell when board time begins, so the encoders are not referenced.
   explicit Board(const device::VirtualBoardOptions& options = {}) : board(options) {
     if (options.paused) {
       control.dock(false);
@@ -43,7 +43,7 @@ struct Board {
     control.dock(false);
   }
   double position_m(char axis) { return control.truth().at(std::string("true_position_") + axis + "_m").get<double>(); }
-  /// How far the stylus was pulled out of where it rested.
+  /// Distance of the stylus from its rest position along this axis.
   double pulled_m(std::size_t axis) { return position_m("xyz"[axis]) - rest_m[axis]; }
   double time_s() { return control.status().board_time_s; }
 };

@@ -1,4 +1,4 @@
-// Whether the arm knows where it is, as HDAPI asks it, also in faults.
+// The result of HDAPI's calibration check, also during faults.
 #include <doctest/doctest.h>
 
 #include <device/device.hpp>
@@ -24,7 +24,7 @@ TEST_CASE("an arm that a program finds in a fault knows where it is, if nothing 
   const auto driver = device::Device::open(*board.board.find());
   read_until(*driver, [](const auto& pose) { return pose.state == State::ready; });
   board.hold();
-  driver->send(protocol::Command::enable_force);  // and says nothing any more
+  driver->send(protocol::Command::enable_force);  // no further commands are sent
   const auto pose = read_until(*driver, [](const auto& now) { return now.state == State::fault; });
   REQUIRE(pose.fault == protocol::Fault::host_silent);
   const HHD device = hdInitDevice(nullptr);

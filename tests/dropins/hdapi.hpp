@@ -1,4 +1,4 @@
-// What a program's own header of HDAPI declares, written from the published reference, as far as the tests use it.
+// The declarations of a program's HDAPI header that the tests use, written from the published reference.
 #pragma once
 
 extern "C" {

@@ -1,4 +1,4 @@
-// libHD.so: forces on the hand, their bounds, and what becomes of them when the program or the link fails.
+// libHD.so: forces on the hand, their limits, and their handling when the program or the link fails.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -22,14 +22,14 @@ TEST_CASE("a force pulls the hand, as much and where it says; a joint torque too
         held.frame([] { set_force({1, 0, 0}); });
         return held.pulled_m(0) > 0.002;
       },
-      200));  // is off
+      200));  // the force output is off
   hdEnable(HD_FORCE_OUTPUT);
   CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
     hdSetDoublev(HD_FORCE_RAMPING_RATE, ramp_N_per_s);
     hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
     CHECK(sent_N[0] == 0.0);
     set_force({9, 9, 9});
-    set_force({1, 0, 0});  // the last one counts
+    set_force({1, 0, 0});  // the last call counts
   }));
   CHECK(std::abs(held.pulled_m(1)) < 0.001);
   hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
@@ -107,7 +107,7 @@ TEST_CASE("a stylus that is too fast is told once, not at each frame") {
     return fast_frames == 200;
   }));
   CHECK(told >= 1);
-  CHECK(told < 20);  // near the limit it may be fast and slow again
+  CHECK(told < 20);  // near the limit the speed may cross it several times
 }
 
 TEST_CASE("a callback that sleeps loses the force, and it comes back") {
@@ -142,7 +142,7 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
     CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
       double force_N[3];
       hdGetDoublev(HD_CURRENT_FORCE, force_N);
-      CHECK(force_N[0] == 0.0);  // programs add to it
+      CHECK(force_N[0] == 0.0);  // programs add to the current force
       if (++frames == 1) set_force({1, 0, 0});
     }));
   }
@@ -173,9 +173,9 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
     hdUnschedule(reader);
   }
   while (const auto error = hdGetError().errorCode)
-    CHECK(error == HD_FORCE_ERROR);  // a busy computer may have been silent for too long
+    CHECK(error == HD_FORCE_ERROR);  // on a busy computer the frames may be late
 
-  // It ends with the scheduler and with the capability, and does not come back with them.
+  // The force stops with the scheduler and with the capability, and does not return with either of them.
   const bool by_scheduler = frames % 2 == 0;
   if (by_scheduler) {
     hdStopScheduler();
@@ -207,7 +207,7 @@ TEST_CASE("a force that was set once ends when no poses come, and is not there w
     while (const auto error = hdGetError().errorCode) is_lost = is_lost || error == HD_COMM_ERROR;
     return is_lost;
   }));
-  CHECK(std::abs(position_mm[0] - 1e3 * (held.rest_m[0] + held.pulled_m(0))) < 1.0);  // the last known one
+  CHECK(std::abs(position_mm[0] - 1e3 * (held.rest_m[0] + held.pulled_m(0))) < 1.0);  // the last known position
   held.control.resume();
   CHECK(until([&] {
     held.frame([] {});
@@ -260,7 +260,7 @@ TEST_CASE("frames as fast as a program can make them, beside a thread that asks"
   ends = true;
   CHECK(held.pulled_m(0) > 0.0028);
   while (const auto error = hdGetError().errorCode)
-    CHECK(error == HD_FORCE_ERROR);  // a busy computer may have been silent for too long
+    CHECK(error == HD_FORCE_ERROR);  // on a busy computer the frames may be late
 }
 
 TEST_CASE("a board that is lost in the middle of a frame") {
@@ -272,7 +272,7 @@ TEST_CASE("a board that is lost in the middle of a frame") {
   forget_errors();
   set_force({1, 0, 0});
   hdEndFrame(held.device);
-  CHECK(only_error() == HD_SUCCESS);  // the next frame tells it
+  CHECK(only_error() == HD_SUCCESS);  // the next frame reports the error
   held.frame([] {});
   CHECK(only_error() == HD_COMM_ERROR);
 }

@@ -1,4 +1,4 @@
-// libHD.so: callbacks, their order and their time.
+// libHD.so: callbacks, their order and their timing.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST_CASE("a frame may begin in one callback and end in another of the same tick
   hdUnschedule(hdWaitForCompletion(last, HD_WAIT_INFINITE) ? first : 0);
   CHECK(state.ended == 50);
   while (const auto error = hdGetError().errorCode)
-    CHECK(error == HD_ILLEGAL_BEGIN);  // the first may have been left over
+    CHECK(error == HD_ILLEGAL_BEGIN);  // the first callback may have been left over
 }
 
 TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the servo thread itself") {
@@ -50,7 +50,7 @@ TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the 
   };
   int low = 1, middle = 2, high = 3;
   std::array<HDSchedulerHandle, 3> tasks{};
-  until([&] {  // by the servo thread each is called at once, and again in the next tick
+  until([&] {  // the servo thread calls each task immediately and again in the next tick
     tasks = {hdScheduleAsynchronous(note, &low, 10), hdScheduleAsynchronous(note, &high, 30),
              hdScheduleAsynchronous(note, &middle, 20)};
     return true;
@@ -75,7 +75,7 @@ TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the 
   calls = 0;
   const auto waiting = hdScheduleAsynchronous(counts, &calls, 5);
   CHECK(calls == 0);
-  hdScheduleSynchronous(counts, &calls, 5);  // nobody else would
+  hdScheduleSynchronous(counts, &calls, 5);  // no other thread would call the callback
   CHECK(calls == 1);
   hdStartScheduler();
   CHECK(hdWaitForCompletion(waiting, HD_WAIT_INFINITE) == 1);
@@ -123,7 +123,7 @@ TEST_CASE("a thread that is cancelled while it waits for the scheduler ends ther
   hdStartScheduler();
   int ticks = 0;
   CHECK(until([&] { return ++ticks == 20; }));
-  // Callbacks of a scheduler that stands are called by their thread, which may be cancelled in them.
+  // While the scheduler is stopped, the scheduling thread calls its callbacks. The thread may be canceled in them.
   hdStopScheduler();
   CHECK(CancelledThread([] {
           hdScheduleSynchronous(
@@ -183,7 +183,7 @@ TEST_CASE("the measured rate is never nought: programs make time of it by 1 / ra
   REQUIRE(device == 0);
   Rates rates;
   look(&rates);
-  for (const double pause_s : {0.0, 2.5}) {  // the tick after the second is of 0.4 Hz
+  for (const double pause_s : {0.0, 2.5}) {  // after the second pause the tick rate is 0.4 Hz
     const double begin_s = board.time_s();
     while (board.time_s() - begin_s < pause_s) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     rates.ticks = 0;

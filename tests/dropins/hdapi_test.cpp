@@ -1,4 +1,4 @@
-// libHD.so as programs use it that were linked against it, on a virtual board: devices, frames and what they show.
+// libHD.so, linked by a program, with a virtual board: devices, frames and the frames' values.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -92,13 +92,13 @@ TEST_CASE("a device is opened once, by any name, and may be opened again after i
   const std::string serial_number = hdGetString(HD_DEVICE_SERIAL_NUMBER);
   CHECK(serial_number.size() == 24);
   double position_mm[3]{};
-  hdGetDoublev(HD_CURRENT_POSITION, position_mm);  // no frame has been yet
+  hdGetDoublev(HD_CURRENT_POSITION, position_mm);  // before the first frame
   CHECK(position_mm[2] == doctest::Approx(1e3 * board.position_m('z')).epsilon(0.02));
   hdDisableDevice(device);
   CHECK(only_error() == HD_SUCCESS);
   CHECK(hdInitDevice("Left") == 0);
   CHECK(hdGetString(HD_DEVICE_SERIAL_NUMBER) == serial_number);
-  hdEndFrame(0);  // an error that the program never asks for
+  hdEndFrame(0);  // an error that the program never reads
   hdDisableDevice(0);
   CHECK(hdInitDevice("Left") == 0);
   CHECK(only_error() == HD_SUCCESS);
@@ -167,13 +167,13 @@ TEST_CASE("what a frame sees: the stylus's place, attitude and switches, in HDAP
   for (int i = 0; i < 3; ++i) CHECK(transform[12 + i] == position_mm[i]);
   CHECK(transform[15] == 1.0);
   CHECK(std::hypot(transform[0], transform[1], transform[2]) == doctest::Approx(1.0));
-  CHECK(transform[10] > 0.5);  // the stylus's back is towards the user
+  CHECK(transform[10] > 0.5);  // the back of the stylus points toward the user
   HDboolean inkwell = 7;
   hdGetBooleanv(HD_CURRENT_INKWELL_SWITCH, &inkwell);
   CHECK(inkwell == 1);
   HDboolean safety = 7;
   hdGetBooleanv(HD_CURRENT_SAFETY_SWITCH, &safety);
-  CHECK(safety == 0);  // on, the force would be off
+  CHECK(safety == 0);  // with the safety switch on, the force would be off
   held.control.buttons(false, true);
   int buttons = 0, before = 0;
   CHECK(until([&] {
@@ -215,7 +215,7 @@ TEST_CASE("two devices, with frames of one inside frames of the other") {
     return ++rounds == 100;
   }));
   CHECK(only_error() == HD_SUCCESS);
-  hdDisableDevice(left);  // the other one paces from now on
+  hdDisableDevice(left);  // the other device now sets the pace
   CHECK(until([&] {
     hdBeginFrame(right);
     hdEndFrame(right);
@@ -246,9 +246,9 @@ TEST_CASE("a thread's current device is not taken away by another thread's frame
       &state, HD_DEFAULT_SCHEDULER_PRIORITY);
   hdStartScheduler();
   while (state.frames < 10) CHECK(hdGetCurrentDevice() == state.left);
-  std::jthread([&] { CHECK(hdGetCurrentDevice() == state.left); }).join();  // it made none current: the program's
+  std::jthread([&] { CHECK(hdGetCurrentDevice() == state.left); }).join();  // none current in this thread
 
-  // A callback for a thread that waits acts for that thread.
+  // A callback that another thread waits for uses the current device of the waiting thread.
   std::array<HHD, 2> seen{};
   CHECK(until([&] {
     seen[0] = hdGetCurrentDevice();
@@ -264,7 +264,7 @@ TEST_CASE("a thread's current device is not taken away by another thread's frame
   hdUnschedule(frames);
   hdStopScheduler();
   hdDisableDevice(state.left);
-  forget_errors();  // of frames of the device that went
+  forget_errors();  // errors of frames of the disconnected device
   unsetenv("INKWELL_DEVICE");
 }
 

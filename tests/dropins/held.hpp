@@ -1,4 +1,4 @@
-// An open device of HDAPI in a simulated hand, and what programs of HDAPI do again and again.
+// An open HDAPI device in a simulated hand, and common actions of HDAPI programs.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@
 
 namespace inkwell::tests {
 
-/// The newest error, of which there is to be no other.
+/// The newest error; checks that no second error is queued.
 inline HDerror only_error() {
   const auto error = hdGetError();
   CHECK(hdGetError().errorCode == HD_SUCCESS);
@@ -24,7 +24,7 @@ inline bool says(HDerror code, const std::string& words) {
   return std::string(hdGetErrorString(code)).find(words) != std::string::npos;
 }
 
-/// In the servo thread, tick after tick, until `condition`; false if as many ticks passed before.
+/// Runs `condition` in the servo thread in each tick until it is true; false if it is not true after `ticks` ticks.
 inline bool until(std::function<bool()> condition, int ticks = 20'000) {
   struct State {
     std::function<bool()> condition;
@@ -46,7 +46,7 @@ inline void forget_errors() {
   }
 }
 
-/// An open device in a hand; the scheduler runs.
+/// An open device in a hand; the scheduler is running.
 struct Held : Board {
   HHD device = hdInitDevice(nullptr);
   Held() {
@@ -77,7 +77,7 @@ struct Held : Board {
     action();
     hdEndFrame(device);
   }
-  /// Frames that ask for the same until the stylus was pulled out of the hand's place so far.
+  /// Repeats a frame with this action until the stylus is displaced by at least `least_m` along the axis.
   template <class Action>
   bool pulls(std::size_t axis, double least_m, double most_m, Action action) {
     return until([&, this] {

@@ -1,4 +1,4 @@
-// Programs of their own processes: as CHAI3D and as HDAPI's users are, started by `inkwell run` or beside each other.
+// Programs in separate processes that behave like CHAI3D or HDAPI programs, started by `inkwell run` or in parallel.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 std::string program(const std::string& name) { return build_directory() + "/" + name; }
 
-/// What stands behind the first word of the line that begins with it.
+/// Rest of the line that begins with this word.
 std::string told(const std::string& text, const std::string& word) {
   const auto begin = text.find(word + " ");
   return begin == std::string::npos
@@ -46,7 +46,7 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   CHECK(told(held.out, "open") == "-1 0");
   CHECK(told(held.out, "refused") == "0");
   CHECK(told(held.out, "buttons") == "0");
-  CHECK(told(held.out, "error") == "0x104 77");  // which was not libhdPhantom's to take
+  CHECK(told(held.out, "error") == "0x104 77");  // libhdPhantom must not consume this error
   CHECK(told(held.out, "close") == "0");
   CHECK(told(held.out, "late") == "-1");
   const Place place(told(held.out, "position")), turn(told(held.out, "rotation"));
@@ -55,7 +55,7 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   CHECK(std::abs(place.y - held_point_m[0]) < 0.005);
   CHECK(std::abs(place.z - held_point_m[1]) < 0.005);
   CHECK(turn.result == 0);
-  CHECK(turn.x > 0.5);  // the stylus's back is towards the user: CHAI3D's x
+  CHECK(turn.x > 0.5);  // the back of the stylus points toward the user, along CHAI3D's x
   const auto pulled =
       run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d"), "1.0"});
   INFO(pulled.out, pulled.err);
@@ -103,7 +103,7 @@ TEST_CASE("both sonames lead to the one library") {
 TEST_CASE("two programs that both drive: the second is told of the first, and may when that is gone") {
   Board board;
   board.hold();
-  const HHD before = hdInitDevice(nullptr);  // until the board knows where it is
+  const HHD before = hdInitDevice(nullptr);  // waits until the encoders are referenced
   REQUIRE(before == 0);
   while (hdCheckCalibration() != HD_CALIBRATION_OK) {
   }
@@ -143,7 +143,7 @@ TEST_CASE("a program that hangs loses its force by the board's own clock, and ho
   CHECK(hanging.read_line() == "drives");
   while (next_pose().force_N[0] < 0.9f) continue;
   kill(hanging.process(), SIGSTOP);
-  const double stopped_s = board.time_s();  // the board has all that the program had sent
+  const double stopped_s = board.time_s();  // the board has received everything that the program sent
   CHECK(board.control.status().all["usb"]["waits_for"].empty());
   double time_s = 0;
   do {

@@ -1,4 +1,4 @@
-// What comes over the cable, and what a user writes into parameter files and on command lines.
+// Data from the USB cable, and text from users in parameter files and on command lines.
 #include <array>
 
 #include <arms/description.hpp>
@@ -32,7 +32,7 @@ const Registered parameter_file{
     },
     [] { return std::vector<Bytes>{bytes_of(device::format_parameters(protocol::default_parameters()))}; }};
 
-/// The first byte chooses what the word is read as.
+/// The first byte chooses the parser for the word.
 const Registered words{"words", [](Input input) {
                          if (input.empty()) return;
                          const std::string word = text_of(input.subspan(1));
@@ -59,7 +59,7 @@ const Registered usb_descriptors{
 
 const Registered force_law{"force_law",
                            [](Input input) {
-                             // A law that was joined is kept for good, so only the first ones are.
+                             // A joined force law is never freed, so only the first ones are joined.
                              static std::size_t joined = 0;
                              constexpr std::size_t joined_maximum = 100'000;
                              refuse_or_take<device::Error>([&] {
@@ -83,7 +83,7 @@ constexpr auto chosen_signals = [] {
   return selection;
 }();
 
-/// Frames of any length, each behind two bytes that say how long it is.
+/// Frames of any length, each preceded by its length in two bytes.
 const Registered scope_frames{
     "scope_frames",
     [](Input input) {
@@ -116,7 +116,7 @@ const Registered scope_frames{
           }
         };
         for (std::uint32_t period = 0; period < periods; ++period) pass(period);
-        link.scope.select({}, token + 1);  // ends the frame that was begun
+        link.scope.select({}, token + 1);  // discards the unfinished frame
         for (int i = 0; i < 3; ++i) pass(periods);
         examples.push_back(std::move(frames));
       }

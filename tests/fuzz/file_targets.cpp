@@ -1,4 +1,4 @@
-// Files that the companion reads again: recordings, what the window remembers, results of the campaign.
+// Files that the companion reads: recordings, window settings, and campaign results.
 #include <cstring>
 #include <sstream>
 
@@ -27,9 +27,9 @@ const Registered campaign_result{
           bytes_of(campaign::text_of({.number = 7, .fault = "motor_open:2", .off_after_s = 1e-3}))};
     }};
 
-/// In memory, because a file of its own takes most of the time.
+/// The recording is read from memory, because a file would take most of the time.
 const Registered recording_csv{"recording_csv", [](Input input) {
-                                 // A force law that was joined is kept for good, so only the first ones are.
+                                 // A joined force law is never freed, so only the first ones are joined.
                                  static std::size_t laws = 0;
                                  constexpr std::size_t laws_maximum = 1000;
                                  std::string text = text_of(input);
@@ -58,7 +58,7 @@ const Registered signal_names{"signal_names", [](Input input) {
                                 refuse_or_take<device::Error>([&] { recording::parse_quantities(text_of(input)); });
                               }};
 
-/// A report, and then as many rows as there are bytes for.
+/// A report, followed by as many rows as the input has bytes for.
 const Registered black_box{"black_box",
                            [](Input input) {
                              protocol::BlackBoxReport report;
@@ -91,7 +91,7 @@ const Registered window_settings{
     [](Input input) { window::parse_settings(window::format_settings(window::parse_settings(text_of(input)))); },
     [] { return std::vector<Bytes>{bytes_of(window::format_settings({}))}; }};
 
-/// An ELF that a user names, and whatever it says of itself.
+/// An ELF file with any content that a user may choose.
 const Registered firmware_image{"firmware_image",
                                 [](Input input) {
                                   refuse_or_take<firmware_update::NoImage>([&] {
@@ -109,7 +109,7 @@ const Registered firmware_image{"firmware_image",
                                   return std::vector<Bytes>{tests::made_elf(tests::made_segments(identity))};
                                 }};
 
-/// What a boot loader calls its memory.
+/// A boot loader's description of its memory.
 const Registered memory_layout{"memory_layout",
                                [](Input input) {
                                  const auto sectors = firmware_update::parse_memory_layout(text_of(input));
@@ -123,7 +123,7 @@ const Registered memory_layout{"memory_layout",
                                      bytes_of("@Option Bytes  /0x1FFFC000/01*016 e")};
                                }};
 
-/// A formula that a user types; what is not refused can be computed.
+/// A formula that a user types; an accepted formula can be evaluated.
 const Registered typed_formula{"formula",
                                [](Input input) {
                                  window::Formula formula{.name = "typed", .text = text_of(input), .unit = "1"};

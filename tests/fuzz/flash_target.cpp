@@ -1,4 +1,4 @@
-// What an earlier firmware, a torn write or a worn chip has left in the flash where parameters are stored.
+// Flash content of the parameter store that an earlier firmware, an interrupted write or a worn chip may have left.
 #include <cstring>
 #include <stdexcept>
 
@@ -11,16 +11,16 @@ namespace inkwell::fuzz {
 namespace {
 
 constexpr std::array<std::uint8_t, 3> version{1, 0, 0};
-constexpr std::size_t sector_words = 600;  // less than the chip's: most of the time would go into erased words
+constexpr std::size_t sector_words = 600;  // small, because erased words would take most of the time
 
-/// The begins of both sectors, as they are.
+/// Fills the beginnings of both sectors with the raw input.
 void fill(test::PlainFlash& flash, Input input) {
   const std::size_t half = input.size() / 2;
   std::memcpy(flash.sectors[0].data(), input.data(), std::min(half, 4 * sector_words));
   std::memcpy(flash.sectors[1].data(), input.data() + half, std::min(input.size() - half, 4 * sector_words));
 }
 
-/// A whole record with any head and payload.
+/// A complete record with any header and payload.
 void write_record(test::PlainFlash& flash, Input input) {
   link::RecordHead head{};
   if (input.size() < sizeof head) return;
@@ -35,7 +35,7 @@ void write_record(test::PlainFlash& flash, Input input) {
   }
 }
 
-/// Whatever is found, the board starts with a set that its own checks accept, stores it, and starts with it again.
+/// With any flash content, the board starts with a valid parameter set, stores it and starts with it again.
 void start(Input input) {
   if (input.empty()) return;
   test::PlainFlash flash(sector_words);

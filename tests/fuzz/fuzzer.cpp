@@ -1,8 +1,8 @@
-// Joins one target to libFuzzer, which has main():
+// Connects one target to libFuzzer, which contains main():
 //
-//     inkwell-fuzz TARGET [libFuzzer's options] [FOLDER...]   fuzzes; FOLDER keeps what reaches new code
-//     inkwell-fuzz --list                                     the targets
-//     inkwell-fuzz --seeds TARGET FOLDER                      writes the seeds of a target as they are fed to it
+//     inkwell-fuzz TARGET [libFuzzer's options] [FOLDER...]   fuzzes; inputs that reach new code are saved in FOLDER
+//     inkwell-fuzz --list                                     prints the targets
+//     inkwell-fuzz --seeds TARGET FOLDER                      writes the target's seeds as raw input
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -42,7 +42,7 @@ void write_seeds(const std::string& target, const std::filesystem::path& folder)
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
-  // The checks of the fake port, outside a test.
+  // The fake port's checks need a doctest context outside a test.
   static doctest::Context context;
   context.setAsDefaultForAssertsOutOfTestCases();
   context.setAssertHandler([](const doctest::AssertData& failed) {
@@ -61,7 +61,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
   }
   if (arguments.empty()) end(2, "Name a target; inkwell-fuzz --list shows them.");
   chosen = &target_named(arguments[0]);
-  (*words)[1] = (*words)[0];  // libFuzzer knows no target
+  (*words)[1] = (*words)[0];  // removes the target from libFuzzer's arguments
   ++*words;
   --*count;
 

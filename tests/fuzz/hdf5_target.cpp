@@ -1,5 +1,5 @@
-// HDF5 recordings. The input chooses what a file declares, so that everything is tried that the file format can say;
-// damaged bytes would mostly test how the HDF5 library reads its own structures.
+// HDF5 recordings. The input chooses the declarations in a valid file, so that every declaration of the format is
+// tried. Damaged bytes would mostly test the HDF5 library itself.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 using recording::Handle;
 
-/// Choices by the bytes of an input; 0, which is what a recording has, once they are used up.
+/// Chooses options from the input bytes. After the last byte it returns 0, the option of a valid recording.
 class Choices {
  public:
   explicit Choices(Input left) : left_(left) {}
@@ -89,7 +89,7 @@ Handle chosen_space(Choices& choices, Rank wanted) {
   }
 }
 
-/// As many values of any content as the space has, if these are few.
+/// Values of any content for this space, if their number is small.
 std::string values_of(hid_t type, hid_t space) {
   constexpr std::uint64_t bytes_maximum = 65'536;
   const auto count = static_cast<std::uint64_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));

@@ -1,4 +1,4 @@
-// Inputs that are kept: one of each kind, and every one that once broke something.
+// Stored inputs: one of each kind, and every input that once broke the code.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,9 @@ struct Seed {
   Bytes bytes;
 };
 
-/// The target's examples, and what lies in its folder, in the order of names: a file NAME.hex holds hexadecimal digits,
-/// with spaces and with remarks behind '#'; any other is taken as it is. Throws std::runtime_error if one cannot be
-/// read.
+/// The target's examples and the files of its folder in the order of their names. A file NAME.hex contains
+/// hexadecimal digits with spaces and '#' comments; other files are raw bytes. Throws std::runtime_error if a file
+/// cannot be read.
 std::vector<Seed> seeds_of(const Target& target);
 
 /// Throws std::runtime_error if the file cannot be read.

@@ -1,4 +1,4 @@
-// The seeds of the fuzzer, in each ordinary run of the tests: what once broke something stays mended.
+// Runs the fuzzer's seeds in each test run, so that a corrected error cannot return.
 #include <doctest/doctest.h>
 
 #include "seeds.hpp"

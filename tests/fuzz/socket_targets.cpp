@@ -1,4 +1,4 @@
-// What comes over sockets to the companion: answers of a USB/IP server and of a virtual board.
+// Data that the companion receives on sockets: answers of a USB/IP server and of a virtual board.
 #include <cstring>
 #include <stdexcept>
 
@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-/// The first byte chooses between the list, the import and transfers. These are a script: a transfer IN or OUT of a
-/// length in two bytes, one that is taken back, named by a byte, or an answer.
+/// The first byte chooses the device list, the import or transfers. Transfers are a script with four kinds of steps:
+/// an IN or OUT transfer with its length in two bytes, the cancellation of a transfer, or an answer.
 const Registered usbip_answers{
     "usbip_answers", [](Input input) {
       const auto next = [&](std::size_t size) {
@@ -79,7 +79,7 @@ const Registered usbip_answers{
       });
     }};
 
-/// The first byte chooses what was asked for.
+/// The first byte chooses the request.
 const Registered control_answers{"control_answers", [](Input input) {
                                    if (input.empty()) return;
                                    refuse_or_take<device::Error>([&] {

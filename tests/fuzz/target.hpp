@@ -1,5 +1,5 @@
-// What is fuzzed: everything of firmware and companion that reads bytes which somebody else wrote. A target is one
-// function that takes any bytes; it may throw what the parser documents, and nothing else may happen.
+// The fuzz targets: all code of firmware and companion that reads bytes from outside. A target is one function that
+// accepts any bytes. It may throw only the documented exceptions of its parser.
 #pragma once
 
 // To add a target:
@@ -21,9 +21,9 @@ using Input = std::span<const std::byte>;
 using Bytes = std::vector<std::byte>;
 
 struct Target {
-  std::string_view name;  ///< also of its folder of seeds
+  std::string_view name;  ///< also the name of its seed folder
   void (*run)(Input input);
-  std::vector<Bytes> (*examples)();  ///< sound inputs that the code can make itself
+  std::vector<Bytes> (*examples)();  ///< valid inputs that the code itself generates
 };
 
 inline std::vector<Target>& targets() {
@@ -31,7 +31,7 @@ inline std::vector<Target>& targets() {
   return all;
 }
 
-/// Puts a target into the list when the program starts.
+/// Adds a target to the list at program start.
 struct Registered {
   using Examples = std::vector<Bytes>();
   static std::vector<Bytes> none() { return {}; }
@@ -40,7 +40,7 @@ struct Registered {
   }
 };
 
-/// The target of this name, or none.
+/// The target with this name, or null.
 inline const Target* find(std::string_view name) {
   for (const Target& target : targets())
     if (target.name == name) return &target;
@@ -54,7 +54,7 @@ inline Bytes bytes_of(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Calls `parse`; an `Error` is an answer.
+/// Calls `parse` and accepts an `Error` as a valid result.
 template <class Error, class Parse>
 void refuse_or_take(Parse parse) {
   try {

@@ -1,11 +1,11 @@
-// The firmware's USB device, with a host that sends any packets in any order. The port checks what the device does.
+// The firmware's USB device with a host that sends any packets in any order. The fake port checks the device.
 #include "../firmware/usb/device_bench.hpp"
 #include "target.hpp"
 
 namespace inkwell::fuzz {
 namespace {
 
-/// One step of the host by each byte, whose upper bits say how much of the input goes with it.
+/// Each byte is one step of the host; its upper bits choose how much of the following input the step uses.
 void host(Input input) {
   test::DeviceBench bench;
   const auto take = [&](std::size_t most) {
@@ -25,7 +25,7 @@ void host(Input input) {
         bench.port.in(0);
         bench.device.poll();
         break;
-      // Mostly a part of a frame, which has 20 of them: control periods take the time, and none of the input.
+      // Usually less than one bus frame (20 control periods), because control periods take most of the time.
       case 4: bench.run(argument < 12 ? argument + 1 : 20 * (argument - 11)); break;
       case 5: bench.port.frames_run = argument % 2 == 0; break;
       case 6:
@@ -40,7 +40,7 @@ void host(Input input) {
       case 10: bench.port.out(static_cast<std::uint8_t>(argument % 4), take(usb::packet_size_maximum)); break;
       case 11:
       case 12: bench.port.in(static_cast<std::uint8_t>(argument % 4)); break;
-      case 13: {  // a report over endpoint 0, whole
+      case 13: {  // a complete report on endpoint 0
         const Input report = take(16 * argument + 16);
         if (report.empty()) break;
         bench.setup(test::request(0x21, 9, static_cast<std::uint16_t>(0x0300 | std::to_integer<unsigned>(report[0])), 0,
@@ -55,7 +55,7 @@ void host(Input input) {
       default: bench.device.poll(); break;
     }
   }
-  // Whatever it was, the device is well afterwards.
+  // The device must still enumerate after any input.
   bench.port.reset();
   bench.device.poll();
   if (bench.get_descriptor(0x0100, 18).data.size() != 18) throw std::logic_error("the device does not enumerate");

@@ -1,4 +1,4 @@
-// What clients send to a virtual board: to its control socket, to its USB/IP server, and to its debug port as GDB does.
+// Data from clients of a virtual board, for the control socket, the USB/IP server and the GDB port.
 #include <algorithm>
 #include <initializer_list>
 #include <span>
@@ -34,7 +34,7 @@ void check_pin(const PinName& pin) {
   if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
 }
 
-/// Everything that is read from a request before it reaches the board.
+/// Reads all values of a request that are parsed before it reaches the board.
 void read_values(Command command, const json& values) {
   switch (command) {
     case Command::run: run_time_s(values); break;
@@ -93,7 +93,7 @@ const Registered control_requests{
       });
     }};
 
-/// The image that a board is started with. Its memories are as the images before have left them.
+/// The start image of a board. The memories still contain the previous images.
 const Registered board_image{"board_image",
                              [](Input input) {
                                static Memory memory;
@@ -107,13 +107,13 @@ const Registered board_image{"board_image",
                              },
                              [] { return std::vector<Bytes>{tests::made_elf(tests::made_segments({}))}; }};
 
-/// As on a command line and in a script of faults.
+/// The text of a command line or of a fault script.
 const Registered injections{
     "injections", [](Input input) {
       refuse_or_take<InvalidInjection>([&] { parse_injections(text_of(input), board::default_board); });
     }};
 
-/// Gives `take` the bytes as a socket might: so many at a time.
+/// Passes the bytes to `take` in pieces of at most this length, as a socket might.
 template <class Take>
 void in_pieces(std::string_view bytes, std::size_t most, Take take) {
   for (; !bytes.empty(); bytes.remove_prefix(std::min(most, bytes.size()))) take(bytes.substr(0, most));
@@ -139,7 +139,7 @@ void note(std::string& seen, const Urb& urb) {
   for (const auto& packet : urb.packets) note(seen, {packet.offset, packet.length});
 }
 
-/// All that is found in a client's bytes, as the server has it: lists until there is an import, transfers from then on.
+/// All requests in a client's bytes, parsed as in the server: operations until an import, then transfers.
 std::string found_in(std::string_view bytes, std::size_t piece) {
   std::string seen;
   UsbIpRequests requests;
@@ -177,7 +177,7 @@ std::string found_in(std::string_view bytes, std::size_t piece) {
   return seen;
 }
 
-/// Messages that arrive byte by byte.
+/// Messages that arrive in pieces of one byte.
 template <class... Messages>
 Bytes one_by_one(const Messages&... messages) {
   Bytes bytes = tests::joined(messages...);
@@ -194,7 +194,7 @@ std::vector<Bytes> usbip_examples() {
   out.header.direction = usbip::Direction::out;
   out.header.endpoint = 1;
   out.packet_count = 1;
-  // Any data: a message has some.
+  // The content of the data has no meaning.
   const usbip::IsochronousPacket data{.offset = 1, .length = 2}, packet{.offset = 3, .length = 4};
   out.length = sizeof data;
   usbip::Unlink unlink{.unlinked_sequence = 1};
@@ -204,7 +204,7 @@ std::vector<Bytes> usbip_examples() {
   return {one_by_one(list, import), one_by_one(import, submit, unlink), one_by_one(import, out, data, packet, submit)};
 }
 
-/// The first byte says how many arrive at a time; it must not matter.
+/// The first byte sets the length of the pieces, which must not change the result.
 const Registered usbip_requests{"usbip_requests",
                                 [](Input input) {
                                   if (input.empty()) return;
@@ -250,7 +250,7 @@ struct Checked {
 
 void check_packet(std::string_view packet) { std::visit(Checked{packet.size()}, gdb::request_of(packet)); }
 
-/// The payloads of what is found, a line each.
+/// The payloads of all packets, one per line.
 std::string packets_in(std::string_view bytes, std::size_t piece) {
   std::string found;
   GdbPackets packets;
@@ -296,7 +296,8 @@ std::vector<Bytes> gdb_examples() {
   return all;
 }
 
-/// A first byte of 0: one packet without its frame. Otherwise what comes over the wire, so many bytes at a time.
+/// With a first byte of 0, the input is one packet without its frame. Otherwise it is the byte stream in pieces of
+/// this length.
 const Registered gdb_requests{
     "gdb_requests",
     [](Input input) {

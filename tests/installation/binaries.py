@@ -11,12 +11,12 @@ from kinds import LIBRARY
 
 ET_EXEC, ET_DYN = 2, 3
 EM_ARM = 40
-FUNCTION_BEGIN = b"\xf3\x0f\x1e\xfa"  # endbr64: an indirect call may lead here
-PROBES = (b"\x48\x83\x0c\x24\x00", b"\x48\xc7\x04\x24\x00\x00\x00\x00")  # of the stack: GCC's and Clang's
-# The objects that the C library adds to each binary begin a few functions in this way whatever the flags are.
+FUNCTION_BEGIN = b"\xf3\x0f\x1e\xfa"  # endbr64: a valid target of an indirect call
+PROBES = (b"\x48\x83\x0c\x24\x00", b"\x48\xc7\x04\x24\x00\x00\x00\x00")  # stack probes of GCC and of Clang
+# Some functions that the C library adds to each binary begin with this instruction independently of the flags.
 FUNCTIONS_LEAST = 10
 
-# Each property of each binary, and the flag without which it is missing.
+# Properties of every binary, each with the flag that sets it.
 EVERYWHERE = {
     "position independent": "-fPIC, -pie",
     "read-only relocations": "-Wl,-z,relro",
@@ -27,7 +27,7 @@ EVERYWHERE = {
 CHECKED_CALLS = "checked library calls"
 ASSERTIONS = "library assertions"
 STACK_PROBES = "stack probes"
-# Properties that show only where a binary has the code that they protect.
+# Properties that are visible only if a binary contains code of this kind.
 IN_SOME = {
     CHECKED_CALLS: "-D_FORTIFY_SOURCE=3",
     ASSERTIONS: "-D_GLIBCXX_ASSERTIONS",
@@ -37,9 +37,9 @@ IN_SOME = {
 
 @dataclasses.dataclass(frozen=True)
 class Binary:
-    file: str  # below the folder of the build, with * for what depends on the computer
-    kind: str | None  # below the prefix, one of kinds.KINDS; None: it is not installed
-    also: frozenset[str]  # of IN_SOME
+    file: str  # relative to the build folder; * where the name depends on the computer
+    kind: str | None  # relative to the prefix, one of kinds.KINDS; None: not installed
+    also: frozenset[str]  # subset of IN_SOME
     is_optional: bool = False
 
     def expected(self) -> dict[str, str]:
@@ -57,7 +57,7 @@ BINARIES = [
     binary("dropins/libHD.so", r"lib/inkwell/dropins/libHD\.so\.3\.4", ASSERTIONS),
     binary("dropins/libhdPhantom.so", r"lib/inkwell/dropins/libhdPhantom\.so"),
     binary("python/inkwell/_native.*.so", None, ASSERTIONS),
-    binary("octave/inkwell_mex.mex", None, ASSERTIONS, is_optional=True),  # where there is Octave
+    binary("octave/inkwell_mex.mex", None, ASSERTIONS, is_optional=True),  # only with Octave
 ]
 
 
@@ -81,7 +81,7 @@ def properties(path: pathlib.Path) -> set[str]:
     if "X86-64" in header:
         shown["marked functions"] = content.count(FUNCTION_BEGIN) >= FUNCTIONS_LEAST
         shown[STACK_PROBES] = any(probe in content for probe in PROBES)
-    else:  # these two are instructions that only this processor has
+    else:  # other processors do not have these two instructions
         shown["marked functions"] = shown[STACK_PROBES] = True
     return {name for name, is_shown in shown.items() if is_shown}
 

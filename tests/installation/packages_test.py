@@ -41,7 +41,7 @@ def content(name: str) -> pathlib.Path:
 
 def setUpModule():
     shutil.rmtree(PACKAGES, ignore_errors=True)
-    # Not compressed, which takes longer than all the rest.
+    # The packages are not compressed, because compression would take most of the time.
     run(CPACK, "--config", BUILD / "CPackConfig.cmake", "-B", PACKAGES, "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none")
 
 
@@ -63,7 +63,7 @@ class Packages(unittest.TestCase):
         self.assertEqual(f"inkwell (= {VERSION})", field("inkwell-dev", "Depends"))
         for library in ("libunicorn2", "libusb-1.0-0", "libhidapi-hidraw0", "libgl1"):
             self.assertRegex(field("inkwell", "Depends"), rf"\b{re.escape(library)}(t64)?\b")  # t64: Debian 13
-        self.assertRegex(field("inkwell", "Depends"), r"\blibhdf5-[0-9]")  # the serial one
+        self.assertRegex(field("inkwell", "Depends"), r"\blibhdf5-[0-9]")  # the serial HDF5
         self.assertNotIn("mpi", field("inkwell", "Depends"))
         self.assertIn("gnuplot", field("inkwell", "Recommends"))
         self.assertEqual(("science", "libdevel"), (field("inkwell", "Section"), field("inkwell-dev", "Section")))
@@ -74,7 +74,7 @@ class Packages(unittest.TestCase):
         self.assertEqual("activate-noawait ldconfig\n", (control / "triggers").read_text())
         for script in ("postinst", "postrm"):
             run("sh", "-n", control / script)
-            # Where no udev runs, as in a container, there is nothing to be told.
+            # Without udev, as in a container, the script has nothing to do.
             run("env", "PATH=/nowhere", "/bin/sh", control / script, "configure")
 
     def test_programs_and_libraries_are_stripped(self):

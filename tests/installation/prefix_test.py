@@ -44,7 +44,7 @@ class Files(unittest.TestCase):
         self.assertEqual([], differences(files, [kind for kinds in KINDS.values() for kind in kinds]))
 
     def test_none_names_the_sources_or_the_build(self):
-        # The debugging information of the firmware's ELF does, and no program looks at its folders.
+        # The debug information of the firmware's ELF contains source paths, which no program opens.
         files = [path for path in PREFIX.rglob("*") if path.is_file() and path.suffix != ".elf"]
         naming = [path for path in files for folder in (REPOSITORY, BUILD, WORK)
                   if str(folder).encode() in path.read_bytes()]
@@ -126,7 +126,7 @@ class OutsideProject(unittest.TestCase):
             f"-DCMAKE_CXX_COMPILER={COMPILER}", f"-DCMAKE_PREFIX_PATH={PREFIX}")
         run(CMAKE, "--build", build)
         self.assertEqual(f"{VERSION} 1", run(build / "outside").strip())
-        # None of our warnings, optimisation or other options reach its sources.
+        # Warnings, optimization and other options of this project do not apply to the user's sources.
         [command] = json.loads((build / "compile_commands.json").read_text())
         self.assertNotRegex(command["command"], r" -[WfO]")
 

@@ -72,7 +72,7 @@ TEST_CASE("poses come one after the other, and the velocity is that of the probe
 TEST_CASE("parameters are stored, restored and forgotten, but not while the force is on") {
   VirtualArm virtual_arm;
   inkwell_arm* arm = virtual_arm.arm;
-  const char* const name = "link_2_m";  // which the library itself uses
+  const char* const name = "link_2_m";  // the library itself uses this parameter
   const auto set = [&](double value_m) { REQUIRE(inkwell_set_parameters(arm, &name, &value_m, 1) == INKWELL_OK); };
   const auto held_m = [&] {
     double value_m = 0;
@@ -198,7 +198,7 @@ TEST_CASE("an arm of other lengths: its firmware knows them") {
   double length_m = 0;
   REQUIRE(inkwell_get_parameter(virtual_arm.arm, "link_3_m", &length_m) == INKWELL_OK);
   CHECK(length_m == doctest::Approx(0.16));
-  constexpr double stiff_N_per_m = 2000;  // gives way to gravity by less than a millimetre
+  constexpr double stiff_N_per_m = 2000;  // deflected by gravity by less than 1 mm
   REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, free_point_m, stiff_N_per_m) == INKWELL_OK);
   virtual_arm.wait_until([](const auto& pose) {
     return std::hypot(pose.position_m[0] - free_point_m[0], pose.position_m[1] - free_point_m[1],
@@ -226,7 +226,7 @@ TEST_CASE("a servo pulls the hand, and lets go when it is stopped") {
   REQUIRE(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_OK);
   CHECK(inkwell_servo_is_running(virtual_arm.arm) == 1);
   CHECK(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_REFUSED);
-  // Between two springs of 300 and 100 N/m, 20 mm apart.
+  // Equilibrium between two springs of 300 and 100 N/m, 20 mm apart.
   const auto pulled = virtual_arm.wait_until([](const auto& pose) {
     return std::abs(pose.position_m[0] - 0.005) < 0.0007 && std::abs(pose.velocity_m_s[0]) < 0.005;
   });
@@ -322,7 +322,7 @@ TEST_CASE("a plane holds the probe up, and a set that is not sound changes nothi
                   std::string(inkwell_error_text()));
   const double below_m[3]{0, 0, -0.034};
   REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, below_m, hand_N_per_m) == INKWELL_OK);
-  // Springs of 300 and 1000 N/m, 4 mm apart.
+  // Equilibrium between two springs of 300 and 1000 N/m, 4 mm apart.
   virtual_arm.wait_until([](const auto& pose) {
     return std::abs(pose.force_N[2] - 0.92) < 0.1 && (pose.force_sources & INKWELL_SHAPES) != 0;
   });

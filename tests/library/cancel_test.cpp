@@ -1,4 +1,4 @@
-// Threads of a program that are cancelled while they wait in the library.
+// Threads of a program that are canceled while they wait in the library.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@
 namespace inkwell::tests {
 namespace {
 
-/// Far more than the test takes.
+/// Much longer than the test.
 constexpr double long_s = 1000;
 
 TEST_CASE("a thread that is cancelled in a call that waits ends there, and the arm goes on") {
@@ -43,7 +43,7 @@ TEST_CASE("a thread that is cancelled in a call that waits ends there, and the a
           while (inkwell_wait_for_pose(arm, long_s, &pose) == INKWELL_OK) continue;
         }).ends_when_cancelled());
   CHECK(CancelledThread([&] {
-          inkwell::Vector values;  // with something to be destroyed on the way
+          inkwell::Vector values;  // an object with a destructor
           std::string address(100, 'x');
           inkwell_pose pose;
           while (inkwell_wait_for_pose(arm, long_s, &pose) == INKWELL_OK) values[0] += address.size();
@@ -56,7 +56,7 @@ TEST_CASE("a thread that is cancelled in a call that waits ends there, and the a
         }).ends_when_cancelled());
   board.control.resume();
 
-  // What frees something runs to its end.
+  // A call that frees memory runs to its end.
   inkwell_arm* second = nullptr;
   REQUIRE(inkwell_open(board.address.c_str(), &second) == INKWELL_OK);
   std::atomic<int> closed = -1;

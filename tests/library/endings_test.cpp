@@ -1,4 +1,5 @@
-// Every command of every interface, followed at once by every end of its program: what has returned has happened.
+// Every command of every interface, immediately followed by every kind of program exit: a command that has returned
+// was executed.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -26,8 +27,8 @@ const Words everything{"stop", "disable", "clear", "set", "store", "shapes"},
     without_shapes{"stop", "disable", "clear", "set", "store"};
 const Words every_end{"close", "exit", "kill", "unplug"};
 
-/// With the commands and the endings that each interface has. A command of the command line or the window is complete
-/// when its program exits.
+/// The interfaces with their commands and endings. A command of the command line or the window is complete when its
+/// program exits.
 std::vector<Interface> interfaces() {
   const std::string build = build_directory(), programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
   std::vector<Interface> all{
@@ -35,7 +36,7 @@ std::vector<Interface> interfaces() {
       {"C++", {build + "/library-ending", "cpp"}, everything, every_end},
       {"command line", {INKWELL_PYTHON, programs + "command_ending.py", build}, without_shapes, {"exit", "unplug"}},
       {"window", {build + "/window-ending"}, without_shapes, {"exit", "unplug"}}};
-#ifndef __SANITIZE_ADDRESS__  // interpreters that were built without it do not load libraries that have it
+#ifndef __SANITIZE_ADDRESS__  // interpreters without the sanitizer cannot load libraries that use it
   all.push_back({"Python", {INKWELL_PYTHON, programs + "ending.py"}, everything, every_end});
   const auto add_dropin = [&](const std::string& name, Words commands) {
     const Words words{INKWELL_PYTHON, programs + "dropin_ending.py", build, name};
@@ -53,10 +54,10 @@ std::vector<Interface> interfaces() {
   return all;
 }
 
-/// A board out of its inkwell, and an arm that looks on.
+/// A board with the stylus outside the inkwell, and a watching arm.
 struct Watched : Board {
   VirtualArm watcher{address};
-  std::optional<VirtualArm> driver;  ///< whose force is stopped
+  std::optional<VirtualArm> driver;  ///< the arm whose force is stopped
 
   Watched() {
     watcher.be_patient();
@@ -65,7 +66,7 @@ struct Watched : Board {
     watcher.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
   }
 
-  /// The next pose that comes, also after a pulled cable was put back.
+  /// The next pose, also after a cable was plugged in again.
   inkwell_pose newest() {
     inkwell_pose pose;
     for (int i = 0; i < 6'000; ++i) {
@@ -75,14 +76,14 @@ struct Watched : Board {
     FAIL("the board does not come back");
     return {};
   }
-  /// Returns once the watcher knows.
+  /// Returns when the watcher has noticed the unplugged cable.
   void pull_cable() {
     control.usb(false);
     inkwell_pose pose;
     while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  /// Repeats a call of the watcher while poses do not come: after a pulled cable, or on a busy computer.
+  /// Repeats a call of the watcher while poses are missing: after a cable was unplugged, or on a busy computer.
   template <class Call>
   void require(Call call) {
     auto result = INKWELL_DISCONNECTED;
@@ -115,7 +116,7 @@ struct Watched : Board {
       require(set_patience);
     }
   }
-  /// What the command was for is so, and nothing else of the program is left.
+  /// Checks the effect of the command, and that no other state of the program remains.
   void check(const std::string& command) {
     CHECK(newest().state == INKWELL_READY);
     driver.reset();

@@ -1,4 +1,4 @@
-// Over how long the board interpolates a program's forces.
+// Time over which the board interpolates a program's forces.
 #include <doctest/doctest.h>
 
 #include "library/force_interval.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 TEST_CASE("a program that answers each pose has an interval of one, also after a pose that it answered late") {
   library::ForceInterval interval;
-  std::uint32_t sequence = 0xFFFFFF00;  // which wraps
+  std::uint32_t sequence = 0xFFFFFF00;  // the sequence wraps
   for (int i = 0; i < 600; ++i) {
     sequence += i % 10 == 0 ? 7 : 1;
     CHECK(interval.next(sequence) == 1);
@@ -19,7 +19,7 @@ TEST_CASE("the interval follows a program that sends less often, and a pause is 
   library::ForceInterval interval;
   std::uint32_t sequence = 0;
   const auto after = [&](std::uint32_t passed) { return interval.next(sequence += passed); };
-  after(10);  // the first force has none before it
+  after(10);  // the first force has no predecessor
   for (int i = 0; i < 3; ++i) after(10);
   CHECK(after(10) == 10);
   for (const std::uint32_t passed : {51u, 1000u, 0u, 0u, 0u, 0u, 0u}) CHECK(after(passed) == 10);

@@ -1,4 +1,4 @@
-// How a program's forces reach the device, and how its poses reach the program, without a queue that adds delay.
+// The paths of forces to the device and of poses to the program, without a queue that adds delay.
 #include <doctest/doctest.h>
 
 #include <memory>
@@ -26,7 +26,7 @@ TEST_CASE("while the device does not accept a force or a command, only the newes
   reports.wait_for_forces(1);
   device.send(protocol::Command::heartbeat);
   for (int i = 2; i <= 100; ++i) output.send({static_cast<double>(i), 0, 0}, 1);
-  reports.accept_one();  // the command is still under way
+  reports.accept_one();  // the command is still pending
   output.send({101, 0, 0}, 3);
   reports.accept_one();
   reports.wait_for_forces(2);

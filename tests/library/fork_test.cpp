@@ -1,4 +1,3 @@
-// A program that forks while it has an arm open.
 #include <doctest/doctest.h>
 
 #include <sys/wait.h>
@@ -27,7 +26,7 @@ TEST_CASE("forked children neither use nor disturb their parent's arm, and may o
   CHECK_MESSAGE(run.out.starts_with("servo runs\nsamples "), run.out, run.err);
   const unsigned long samples = std::stoul(run.out.substr(run.out.find("samples ") + 8));
   if (!file.ends_with(".csv")) return;
-  // Not a line twice.
+  // No line is written twice.
   std::ifstream text(file);
   unsigned long rows = 0;
   double time_s = -1;
@@ -41,7 +40,7 @@ TEST_CASE("forked children neither use nor disturb their parent's arm, and may o
   CHECK(rows == samples);
 }
 
-/// In a child: 0 if the arm that it opens is its parent's to drive, and its parent's handle ends without a word.
+/// Runs in a child. Returns 0 if the child can drive the arm that it opens and the parent's handle closes silently.
 int try_to_drive(inkwell_arm* of_parent, const std::string& address) {
   const double none_N[3]{};
   inkwell_arm* own = nullptr;

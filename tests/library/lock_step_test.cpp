@@ -1,4 +1,4 @@
-// A program and its virtual board in lock step: no pose is missed, no force is late, and a seed gives the same run.
+// A program and its virtual board in lock step: no pose is missed, no force is late, and a seed repeats the same run.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Samples {
   bool operator==(const Samples&) const = default;
 };
 
-/// One recording of some signals.
+/// One recording of these signals.
 Samples record(inkwell_arm* arm, const std::vector<const char*>& signals, std::size_t rows) {
   Samples samples{std::vector<float>(rows * signals.size()), std::vector<std::uint32_t>(rows)};
   REQUIRE(inkwell_select_signals(arm, signals.data(), signals.size()) == INKWELL_OK);
@@ -45,7 +45,7 @@ Samples record(inkwell_arm* arm, const std::vector<const char*>& signals, std::s
   return samples;
 }
 
-/// Answers each pose with a force along x that depends on the time alone, and counts the poses that it missed.
+/// Answers each pose with a force along x that depends only on the time. Counts the missed poses.
 struct TimedServo {
   std::function<double(double time_s)> force_N;
   std::chrono::microseconds takes{0};
@@ -67,7 +67,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   arm.make_active();
   SUBCASE("100 recordings during a servo") {
     constexpr int recordings = 100;
-    // The commands that select signals take the frames of two forces, which is over after 2 ms.
+    // The commands that select signals replace two force reports; the effect ends after 2 ms.
     constexpr std::size_t displaced = 60, rows = 100;
     constexpr double N_per_s = 0.5;
     inkwell_pose begin;
@@ -103,7 +103,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
       part += double{samples.values[row]} *
               std::polar(2.0 / 2000, -2 * std::numbers::pi * frequency_Hz * samples.periods[row] / rate_Hz);
     const double turns = std::numbers::pi * frequency_Hz / 1000, sinc = std::sin(turns) / turns;
-    CHECK(std::abs(part) / amplitude_N > 0.97 * sinc * sinc);  // of lines between samples of 1 kHz
+    CHECK(std::abs(part) / amplitude_N > 0.97 * sinc * sinc);  // linear interpolation between forces at 1 kHz
   }
 }
 
@@ -127,7 +127,7 @@ TEST_CASE("a slow servo misses no pose of a virtual board; a slow loop misses no
   inkwell_pose pose, before;
   for (int i = 0; i < 40; ++i) {
     REQUIRE(inkwell_wait_for_pose(arm.arm, 10.0, &pose) == INKWELL_OK);
-    // From its second force on it is in a loop.
+    // From the second force on, the program counts as a loop.
     if (i > 1 && !board) CHECK(pose.sequence == before.sequence + 1);
     before = pose;
     std::this_thread::sleep_for(slow);
@@ -151,7 +151,7 @@ TEST_CASE("a slow servo in C++ misses no pose of a virtual board, and keeps its 
   CHECK(missed == 0);
 }
 
-/// A servo, requests, a moving hand and two recordings. All that the program learned, with the newest pose.
+/// Runs a servo, requests, a moving hand and two recordings. Returns all received values, with the newest pose last.
 std::pair<Samples, std::vector<double>> run_script(const std::string& address) {
   VirtualArm arm(address);
   arm.make_active();
@@ -185,7 +185,7 @@ TEST_CASE("the same program with the same seed gives the same samples, on an idl
   const auto loaded = run_script("virtual?seed=7");
   ends = true;
   CHECK(idle == loaded);
-  CHECK(run_script("virtual?seed=8").first.values != idle.first.values);  // the noise is another
+  CHECK(run_script("virtual?seed=8").first.values != idle.first.values);  // the noise differs
 }
 
 TEST_CASE("the boards of one program have one clock") {

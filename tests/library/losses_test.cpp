@@ -1,5 +1,5 @@
-// What becomes of an open arm that is lost, of its force and of its servo; and the force of a program that was there
-// before.
+// Loss of the connection to an open arm: the effect on the arm, its force and its servo. Also covers the force of a
+// previous program.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ namespace {
 
 const double push_N[3]{1, 0, 0};
 
-/// Waits, at most a minute.
+/// Waits for at most one minute.
 bool eventually(auto condition) {
   for (int i = 0; i < 12'000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   return condition();
@@ -31,7 +31,7 @@ int goes_on(inkwell_arm*, const inkwell_pose*, double force_N[3], void*) {
   return 0;
 }
 
-/// A board in whose hand the force of a servo is felt.
+/// A board whose hand feels the force of a servo.
 struct Driven : Board {
   VirtualArm driver{address};
   inkwell_arm* const arm = driver.arm;
@@ -51,7 +51,7 @@ struct Driven : Board {
     inkwell_pose pose;
     return inkwell_get_pose(arm, &pose);
   }
-  /// No pose comes, no force goes out, the servo has ended, and each says why.
+  /// Poses, forces and the servo have stopped, and each call reports the cause.
   void check_lost(const std::string& cause) {
     REQUIRE(eventually([&] { return pose_result() == INKWELL_DISCONNECTED; }));
     CHECK_MESSAGE(says(cause), std::string(inkwell_error_text()));
@@ -98,7 +98,7 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
   CHECK(says("The link to the arm was lost"));
   CHECK(board.driver.wait_until([](const auto&) { return true; }).force_N[0] == 0.0);
   board.driver.be_patient();
-  board.drive();  // the fault usb_gone is of the link before
+  board.drive();  // the fault usb_gone belongs to the previous connection
 
   board.control.reset();
   board.check_lost("restarted");
@@ -112,7 +112,7 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
   board.drive();
 }
 
-/// A board whose program ends, and starts again on the same port.
+/// A board whose program exits and starts again on the same port.
 struct Program {
   std::string port = "0";
   std::optional<RunningProgram> board;
@@ -189,7 +189,7 @@ TEST_CASE("a force that another program or a fault takes away ends the servo, wi
   REQUIRE(inkwell_clear_fault(board.arm) == INKWELL_OK);
   board.drive();
 
-  // What the program does itself is no loss.
+  // A force that the program itself switches off is not reported as a loss.
   REQUIRE(inkwell_disable_force(board.arm) == INKWELL_OK);
   board.driver.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
   const auto off = board.driver.wait_until([](const auto&) { return true; });

@@ -1,4 +1,4 @@
-// What a program is told of lost poses and of a lost force, without a board.
+// Reports of lost poses and of a lost force, without a board.
 #include <doctest/doctest.h>
 
 #include <device/error.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 using library::Loss, library::PoseFeed, library::Servo;
 
-/// A board in one state after the other.
+/// A board that passes through a sequence of states.
 struct Board {
   PoseFeed poses;
   std::uint32_t sequence = 0;
@@ -93,7 +93,7 @@ TEST_CASE("a force that goes off against the program's will is lost, and the cau
     CHECK(cause_of_lost_force(board.poses) == "");
     board.is(INKWELL_ACTIVE);
     board.is(INKWELL_READY);
-    CHECK(cause_of_lost_force(board.poses) != "");  // that was another program
+    CHECK(cause_of_lost_force(board.poses) != "");  // switched off by another program
   }
   SUBCASE("by a fault while this program lets it fall") {
     board.poses.expect_force_off();

@@ -1,4 +1,4 @@
-// What a program's pose says beyond the report that it is made of.
+// Values of a program's pose that the reader adds to the report.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ TEST_CASE("the velocity is that of the way, and nothing where no way leads from 
   library::PoseReader reader;
   device::Pose report{};
   double x_m = 0.0;
-  /// Passes a millisecond at 0.1 m/s and gives the velocity along x.
+  /// Advances by one millisecond at 0.1 m/s and returns the velocity along x.
   const auto next = [&](bool is_referenced) {
     report.time_periods += protocol::servo_rate_Hz / 1000;
     report.is_referenced = is_referenced;
@@ -24,7 +24,7 @@ TEST_CASE("the velocity is that of the way, and nothing where no way leads from 
     return reader.read(report, geometry).velocity_m_s[0];
   };
   for (int i = 0; i < 5; ++i) CHECK(next(false) == 0.0);
-  x_m += 0.05;  // where it finds itself
+  x_m += 0.05;  // position jump when the encoders are referenced
   CHECK(next(true) == 0.0);
   for (int i = 0; i < 20; ++i) CHECK(next(true) == doctest::Approx(0.1).epsilon(0.01));
   CHECK(next(false) == 0.0);

@@ -1,4 +1,4 @@
-// A device of a test's own: the test decides which reports came and when the device accepts one.
+// A device for tests: the test decides which reports arrive and when the device accepts a report.
 #pragma once
 
 #include <algorithm>
@@ -17,21 +17,20 @@
 
 namespace inkwell::tests {
 
-/// What a QueuedTransport has exchanged. It outlives the transport, which its device owns.
+/// Reports that a QueuedTransport has exchanged. They outlive the transport, which its device owns.
 struct QueuedReports {
   std::mutex mutex;
   std::condition_variable changed;
-  std::deque<protocol::PoseReport> poses;     ///< that the device has sent
-  std::vector<protocol::ForceReport> forces;  ///< that were written
-  int under_way = 0;                          ///< written, and not accepted yet
-  std::function<void()> on_feature_request;   ///< before it is answered, with nothing
+  std::deque<protocol::PoseReport> poses;     ///< sent by the device
+  std::vector<protocol::ForceReport> forces;  ///< written to the device
+  int under_way = 0;                          ///< number of written reports that are not accepted yet
+  std::function<void()> on_feature_request;   ///< called before the request is answered with nothing
 
   void accept_one() {
     const std::lock_guard lock(mutex);
     --under_way;
     changed.notify_all();
   }
-  /// Waits until this many forces were written.
   void wait_for_forces(std::size_t count) {
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return forces.size() >= count; });

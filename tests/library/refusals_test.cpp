@@ -1,4 +1,4 @@
-// Devices that are not what a program hopes for, and programs that ask for too much.
+// Devices that a program cannot use, and requests that are refused.
 #include <doctest/doctest.h>
 
 #include <inkwell/inkwell.h>
@@ -28,7 +28,7 @@ TEST_CASE("a fault whose cause stays cannot be cleared, and the sentence says wh
   Board board;
   VirtualArm virtual_arm(board.address);
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
-  CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_OK);  // there is none
+  CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_OK);  // there is no fault
   board.control.inject({"bridge_fault"});
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_FAULT; });
   CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_REFUSED);
@@ -57,7 +57,7 @@ TEST_CASE("more forces than the USB takes: the newest goes out, and none is refu
   REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &pose) == INKWELL_OK);
   const auto first = pose.sequence;
   int forces = 0;
-  // Ten a pose.
+  // Ten forces per pose.
   virtual_arm.wait_until([&](const auto& now) {
     for (const double each_N : {-3., -3., -3., -3., -3., -3., -3., -3., -3., 1.}) {
       const double force_N[3]{each_N, 0, 0};

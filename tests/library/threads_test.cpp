@@ -1,4 +1,4 @@
-// Several threads on one arm, a servo that hangs, and how an arm is closed under all of them.
+// Several threads on one arm, a servo that blocks, and closing an arm while they run.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace inkwell::tests {
 namespace {
 
-/// The hand takes the stylus out of the inkwell, so that there may be a force.
+/// The hand pulls the stylus out of the inkwell, so that the force can be enabled.
 void take_out(Board& board, VirtualArm& arm) {
   arm.be_patient();
   arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
@@ -90,7 +90,7 @@ TEST_CASE("closing takes the force away, and waits for a servo that does not ret
     Gate& gate;
     ~AtTheEnd() { gate.open(); }
   } at_the_end{gate};
-  // Ready: the program has switched the force off, which an expired force would not do.
+  // The state is ready: the program has switched the force off. An expired force would leave another state.
   looks_on.wait_until(
       [](const auto& pose) { return pose.state == INKWELL_READY && (pose.force_sources & INKWELL_PROGRAM) == 0; });
   CHECK_FALSE(is_closed);
@@ -182,7 +182,7 @@ TEST_CASE("changed parameters of the arm do not disturb its velocity") {
   const double value = 0.98;
   for (int i = 0; i < 5; ++i) {
     REQUIRE(inkwell_set_parameters(virtual_arm.arm, &name, &value, 1) == INKWELL_OK);
-    for (int poses = 0; poses < 2; ++poses) {  // the first may have come before
+    for (int poses = 0; poses < 2; ++poses) {  // the first pose may have arrived earlier
       inkwell_pose pose;
       REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &pose) == INKWELL_OK);
       CHECK(std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]) > 0.0);

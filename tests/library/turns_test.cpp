@@ -1,4 +1,4 @@
-// Lock step: when a turn of virtual boards begins, and what it waits for.
+// Lock step: the start of a turn of virtual boards, and the conditions that it waits for.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace {
 
 using library::Loss, library::PoseFeed, library::Turns;
 
-/// A board of which each pose comes as soon as it is asked for.
+/// A board that sends each pose as soon as it is requested.
 class SteppedBoard {
  public:
   SteppedBoard(PoseFeed& poses, std::shared_ptr<Turns> turns, bool is_stepped, std::uint32_t poses_before_open = 1)
@@ -58,8 +58,8 @@ TEST_CASE("a stepped board's time passes only while a call waits, and exactly as
     CHECK(poses.wait(reaches(sequence)).sequence == sequence);
     CHECK(board.sequence() == sequence);
   }
-  CHECK(poses.wait([](const auto&, Loss) { return false; }, 0.0).sequence == 500);   // looks, and waits for nothing
-  CHECK(poses.wait([](const auto&, Loss) { return false; }, 0.25).sequence == 750);  // of board time
+  CHECK(poses.wait([](const auto&, Loss) { return false; }, 0.0).sequence == 500);   // checks once without waiting
+  CHECK(poses.wait([](const auto&, Loss) { return false; }, 0.25).sequence == 750);  // 0.25 s of board time
   CHECK(board.sequence() == 750);
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("a call waits for what comes between two poses until the next pose, wi
   const SteppedBoard board(poses, std::make_shared<Turns>(), true);
   int asked = 0;
   REQUIRE(poses.is_in_step());
-  CHECK(poses.wait([&] { return ++asked == 4; }, std::chrono::seconds(60)));  // asked once before the first turn
+  CHECK(poses.wait([&] { return ++asked == 4; }, std::chrono::seconds(60)));  // checked once before the first turn
   CHECK(board.sequence() == 4);
   CHECK_FALSE(poses.wait([] { return false; }, std::chrono::milliseconds(100)));
   CHECK(board.sequence() == 104);
@@ -92,7 +92,7 @@ TEST_CASE("the next pose is not asked for before a servo has answered, and what 
       const auto pose = poses.wait([&](const auto& newest, Loss) { return newest.sequence != seen; },
                                    library::forever_s, Turns::Answer::servo);
       CHECK(pose.sequence == seen + 1);
-      CHECK(board.sequence() == pose.sequence);  // it has not gone on
+      CHECK(board.sequence() == pose.sequence);  // the board has not advanced
       if (i > 0) CHECK(part.sent == seen);
       seen = pose.sequence;
       if (i % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -1,4 +1,4 @@
-// An arm on a virtual board of its own, or on one that runs already, and how long a test waits for it.
+// An arm on a separate virtual board or on a running board, and the time limits of tests.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -11,14 +11,14 @@
 
 namespace inkwell::tests {
 
-/// Where the hand of these tests holds the stylus: in the middle of the box.
+/// Stylus position at which the hand of these tests rests: the middle of the box.
 inline constexpr double free_point_m[3]{0.0, 0.0, -0.03};
 
 inline bool says(const std::string& words) {
   return std::string(inkwell_error_text()).find(words) != std::string::npos;
 }
 
-/// Long limits for late programs: a busy computer is not under test.
+/// Long time limits, so that a busy computer does not fail the tests.
 inline inkwell_result set_patience(inkwell_arm* arm) {
   const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
   const double values[]{2.0, 0.5};
@@ -35,7 +35,7 @@ struct VirtualArm {
   VirtualArm(const VirtualArm&) = delete;
   VirtualArm& operator=(const VirtualArm&) = delete;
 
-  /// Passes on poses until one fulfils the condition, for as much board time.
+  /// Reads poses until one fulfills the condition, for at most `limit_s` of board time.
   template <class Condition>
   inkwell_pose wait_until(Condition condition, double limit_s = 5.0) {
     inkwell_pose pose;

@@ -19,19 +19,18 @@ namespace {
 
 constexpr std::uint32_t poses = 20;
 
-/// Returns after this many poses.
 void let_pass(const Arm& arm) {
   const auto begin = arm.wait_for_pose().sequence;
   while (arm.wait_for_pose().sequence - begin < poses) continue;
 }
 
-/// Calls of a servo: all, and those during or after its destruction.
+/// Number of servo calls: all calls, and calls during or after the destruction of the servo.
 struct Calls {
   std::atomic<int> all = 0, late = 0;
   std::atomic<bool> is_gone = false;
 };
 
-/// A servo whose destruction lasts some poses of `clock`. If the library still calls it, it does so meanwhile.
+/// A servo whose destruction lasts several poses of `clock`, so that a late call of the library would occur.
 Arm::Servo counting_servo(const std::shared_ptr<Calls>& calls, const Arm& clock) {
   struct Captured {
     std::shared_ptr<Calls> calls;
@@ -66,7 +65,7 @@ struct Bench {
   }
 };
 
-/// What this thread allocates meanwhile is no leak to the sanitizers.
+/// Excludes this thread's allocations from leak detection.
 struct LeakAllowed {
   LeakAllowed() {
 #ifdef __SANITIZE_ADDRESS__

@@ -1,4 +1,4 @@
-// Carries out the commands of losses_test.py through the C++ interface.
+// Executes the commands of losses_test.py through the C++ interface.
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -23,7 +23,7 @@ void push(double force_N) {
   for (int i = 0; i < pushes; ++i) {
     try {
       arm->wait_for_pose(0.05);
-    } catch (const inkwell::Failure&) {  // the force is to say so
+    } catch (const inkwell::Failure&) {  // set_force() must report the loss
     }
     arm->set_force({force_N, 0, 0});
   }

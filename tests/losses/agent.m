@@ -1,4 +1,4 @@
-% Carries out the commands of losses_test.py through the Octave functions.
+% Executes the commands of losses_test.py through the Octave functions.
 1;
 
 function carry_out(words)

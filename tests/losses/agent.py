@@ -210,7 +210,7 @@ class HdPhantom:
         place = [ctypes.c_double(math.nan) for _ in range(3)]
         turn = [ctypes.c_double(math.nan) for _ in range(9)]
         result, turned = 0, -1
-        for _ in range(3):  # a loss may begin or end between the two
+        for _ in range(3):  # a loss may begin or end between the two calls
             result = self.library.hdPhantomGetPosition(0, *map(ctypes.byref, place))
             turned = self.library.hdPhantomGetRotation(0, *map(ctypes.byref, turn))
             if (result < 0) == (turned < 0):
@@ -236,7 +236,7 @@ class CommandLine:
     def __init__(self):
         self.server = ""
         self.force = self.watch = None
-        self.force_error = ""  # of the last `force on`
+        self.force_error = ""  # error of the last `force on`
         self.x_m = 0.0
 
     def start(self, *words):

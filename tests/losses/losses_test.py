@@ -87,7 +87,7 @@ class Losses(unittest.TestCase):
     def setUpClass(cls):
         cls.board = VirtualBoard(BUILD)
         cls.addClassCleanup(cls.board.__exit__)
-        cls.board.let_pass(1)  # until the arm knows where it is
+        cls.board.let_pass(1)  # until the encoders are referenced
         with inkwell.open(cls.board.address) as arm:
             be_patient(arm)
             arm.parameters.store()
@@ -96,7 +96,7 @@ class Losses(unittest.TestCase):
         cls.board.let_pass(0.5)
 
     def setUp(self):
-        self.board.call("resume")  # a failed test may have left the board paused, where no time passes
+        self.board.call("resume")  # a failed test may have left the board paused
         self.agent = Agent(INTERFACE, self.board.address)
         self.addCleanup(self.agent.__exit__)
         self.answers = []
@@ -107,7 +107,7 @@ class Losses(unittest.TestCase):
         self.answers.append(self.agent.ask(*words))
         return self.answers[-1]
 
-    # ---- what is asked of a program ----------------------------------------------------------------------------
+    # ---- requests to a program -----------------------------------------------------------------------------------
 
     def succeeds(self, *words):
         answer = self.ask(*words)
@@ -236,7 +236,7 @@ class Losses(unittest.TestCase):
         self.becomes_active()
         with Agent("python", self.board.address) as other:
             self.assertEqual(other.ask("take_over", self.board.address), "ok")
-            if INTERFACE in FEELS_A_WALL:  # the other program keeps the wall's force on
+            if INTERFACE in FEELS_A_WALL:  # the other program still renders the wall
                 self.eventually(lambda: self.fails("push", 1, says=f"(process {other.process_id})"))
             else:
                 self.is_not_felt(says=f"(process {other.process_id})")

@@ -1,4 +1,4 @@
-% The Octave functions as users call them, on virtual boards of their own. Ends with an error if one does otherwise.
+% Tests the Octave functions on separate virtual boards. Exits with an error if a function fails.
 1;
 
 function refused(action, words)
@@ -11,7 +11,7 @@ function refused(action, words)
   error("%s was not refused", func2str(action));
 end
 
-% What is wrong is an error with the library's sentence.
+% Errors contain the library's message.
 refused(@() inkwell_open('no such number'), 'no such number');
 refused(@() inkwell_pose(7), 'not open');
 refused(@() inkwell_pose(0.5), 'not open');
@@ -40,7 +40,7 @@ refused(@() inkwell_parameters(arm, 'wall_stifness_N_per_m'), 'Did you mean wall
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', NaN), 'wall_stiffness_N_per_m');
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', [1 2]), 'as many values');
 
-% What outlives the board's power.
+% Stored parameters.
 assert(inkwell_store(arm, 'state').not_stored, 2);
 refused(@() inkwell_store(arm, 'restore'), 'no stored parameters');
 inkwell_store(arm);
@@ -55,7 +55,6 @@ assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
 assert(inkwell_store(arm, 'state').contents, 'factory reset');
 refused(@() inkwell_store(arm, 'nonsense'), 'no such action');
 
-% The board's self-test.
 items = inkwell_self_test(arm);
 assert(all(strcmp({items.result}, 'passed') | strcmp({items.result}, 'not done')));
 motor = items(strcmp({items.name}, 'motor_1'));
@@ -80,7 +79,7 @@ refused(@() inkwell_mex('read', arm, 1, 1), 'No signals are selected');
 
 % A force pulls the hand: between springs of 300 and 100 N/m, 20 mm apart.
 target_m = [0.02; 0; -0.03];
-inkwell_parameters(arm, {'host_timeout_s', 'program_force_expiry_s'}, [2 0.5]);  % a busy computer is late
+inkwell_parameters(arm, {'host_timeout_s', 'program_force_expiry_s'}, [2 0.5]);  % allows for a busy computer
 inkwell_hand(arm, [0 0 -0.03]);
 do
   pose = inkwell_pose(arm);
@@ -101,7 +100,7 @@ assert(! pose.limited_by_force);
 assert(pose.is_referenced);
 assert(pose.state, 'active');
 
-% A limit that holds the force back is told.
+% Force limits are reported in the pose.
 function push_until(arm, force_N, condition)
   pose = inkwell_pose(arm);
   begin_s = pose.time_s;
@@ -119,7 +118,7 @@ push_until(arm, 0, @(pose) ! pose.limited_by_current);
 table = inkwell_parameters();
 inkwell_parameters(arm, 'current_limit_1_A', table(strcmp({table.name}, 'current_limit_1_A')).default_value);
 
-% With a seed, time passes only while a function waits: a loop misses no pose, and each run is the same.
+% With a seed, time advances only while a function waits: a loop misses no pose, and each run is the same.
 function samples = run_with_seed(seed)
   arm = inkwell_open('virtual', seed);
   inkwell_force(arm, [0 0 0]);  % claims the arm
@@ -141,7 +140,7 @@ assert(isequal(run_with_seed(7), samples));
 assert(! isequal(run_with_seed(8), samples));
 refused(@() inkwell_open('usbip:127.0.0.1:1', 7), 'A seed requires a simulated arm');
 
-% A recording of the command line is loaded whole, and its marks are text.
+% A recording of the command line can be loaded, and its marks are text.
 [programs, ~] = fileparts(fileparts(which('inkwell_mex')));
 file = [tempname() '.h5'];
 command = sprintf('echo touch | %s/inkwell --virtual record %s --seconds 0.2 --mark-key', programs, file);
@@ -153,9 +152,10 @@ assert(numel(recording.signals.force_N), 4000);
 assert(recording.parameters.wall_stiffness_N_per_m, 800);
 assert(diff(recording.time_s), ones(1, 3999) / 20000, 1e-9);
 assert(strtrim(recording.marks.text), 'touch');
-assert(any(recording.period == recording.marks.period));  % on a busy computer the key comes after the first sample
+assert(any(recording.period == recording.marks.period));  % on a busy computer the mark comes after the first sample
 
-% The example finds the friction of the simulated waist, 0.010 Nm at the lever of the probe, beside the hand's spring.
+% The example finds the waist friction of the simulation: 0.010 Nm at the probe's lever arm, in addition to the hand's
+% spring.
 graphics_toolkit('gnuplot');
 picture = [tempname() '.png'];
 found = identify_friction(arm, picture);
@@ -164,7 +164,7 @@ assert(found.coulomb_N > 0.02 && found.coulomb_N < 0.2, 'coulomb_N is %g', found
 assert(stat(picture).size > 1000);
 delete(picture);
 
-% A forked child has no part in its parent's arm.
+% A forked child cannot use its parent's arm.
 parent = getpid();
 child = fork();
 if child == 0

@@ -26,7 +26,7 @@ TEST_CASE("control characters and broken UTF-8 are replaced byte by byte") {
     CHECK(plain_text(hostile) == "???");
   for (const char* hostile : {"\xF4\x90\x80\x80", "\xF0\x80\x82\x9B", "\xF8\x80\x80\x80"})
     CHECK(plain_text(hostile) == "????");
-  CHECK(plain_text("\xE2\x82") == "??");  // the euro sign, cut
+  CHECK(plain_text("\xE2\x82") == "??");  // the euro sign, truncated
   CHECK(plain_text("\xE2\x82x") == "??x");
   CHECK(plain_text(std::string_view("\0\xC3", 2)) == "??");
 }

@@ -1,4 +1,4 @@
-// The tables that both ends read: complete, unambiguous, and their hash notices a change.
+// Tables that both ends use: completeness, unique names, and hashes that detect a change.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 using namespace inkwell::protocol;
 
 bool ends_in_unit(std::string_view name, std::string_view unit) {
-  // "N/m" is written N_per_m in a parameter's name, and m/s is m_s in a signal's.
+  // The name of a parameter contains N_per_m for "N/m". The name of a signal contains m_s for "m/s".
   std::string per, plain;
   for (const char c : unit) {
     if (c == '(' || c == ')') continue;
@@ -32,7 +32,7 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
          name.ends_with(plain + "_per_turn");
 }
 
-/// The parameter table, to be changed; one for all, because each takes 3.5 KB of the target's memory.
+/// A parameter table that tests change. All tests share it, because each table needs 3.5 KB of the target's memory.
 auto& fresh_table() {
   static auto table = parameter_table;
   return table = parameter_table;
@@ -199,11 +199,11 @@ TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash"
   const std::array one_row{SignalInfo{3, "name", "unit", SignalWire::duty_int16, ""}};
   CHECK(detail::hash_signals(one_row) ==
         detail::fnv1a(detail::fnv1a(detail::hash_number(2166136261u, 3 + 2 * 256), "name"), "unit"));
-  // Every byte of a number counts, and neighbouring texts do not merge.
+  // Every byte of a number counts, and adjacent texts are not merged.
   for (const std::uint32_t bit : {0u, 8u, 16u, 31u})
     CHECK(detail::hash_number(2166136261u, 1u << bit) != detail::hash_number(2166136261u, 0));
   CHECK(detail::fnv1a(detail::fnv1a(1, "ab"), "c") != detail::fnv1a(detail::fnv1a(1, "a"), "bc"));
-  // FNV-1a of "a" is published; the table's form appends a zero byte.
+  // The hash of "a" is a published FNV-1a value. The tables append a zero byte to each text.
   CHECK(detail::fnv1a(2166136261u, "a") == 0xE40C292Cu * 16777619u);
 }
 

@@ -29,7 +29,7 @@ def command(name: str) -> list[str]:
     """The example of this file name."""
     if name.endswith(".py"):
         return [sys.executable, str(HOST / "python/examples" / name)]
-    # Into a pipe C writes when its buffer is full, unless it is told otherwise.
+    # C buffers the output to a pipe by default.
     return ["stdbuf", "-oL", str(BUILD / "examples" / pathlib.Path(name).stem)]
 
 
@@ -72,7 +72,7 @@ class Examples(unittest.TestCase):
     def test_spring_to_a_point(self, name, board):
         board.take_to(beside(0.02))
         with running(name, board.address):
-            # Between the hand's spring of 300 N/m and the program's of 100, 20 mm apart.
+            # Equilibrium between the hand's spring of 300 N/m and the program's spring of 100 N/m, 20 mm apart.
             board.wait_until(rests_at_x(0.015))
         board.wait_until(rests_at_x(0.02))
 
@@ -80,7 +80,7 @@ class Examples(unittest.TestCase):
     def test_magnetic_surface(self, name, board):
         board.take_to(beside(0.006))
         with running(name, board.address):
-            # Springs of 300 and 200 N/m, 6 mm apart.
+            # Equilibrium between two springs of 300 and 200 N/m, 6 mm apart.
             board.wait_until(rests_at_x(0.0036, 0.0008))
             board.hold(beside(0.016))
             board.wait_until(rests_at_x(0.016))
@@ -105,9 +105,9 @@ class Examples(unittest.TestCase):
 
         friction_N, _ = stroke()
         with running(name, board.address):
-            board.let_pass(0.5)  # in which the force rises
+            board.let_pass(0.5)  # while the force rises
             damping_Ns_per_m = []
-            # A computer that is busy may not let the program keep up through a stroke, but through one of some.
+            # On a busy computer the program may be too slow during one stroke, but not during all of them.
             while not damping_Ns_per_m or abs(damping_Ns_per_m[-1] - 4) > 1:
                 self.assertLess(len(damping_Ns_per_m), 10, damping_Ns_per_m)
                 force_N, velocity_m_s = stroke()
@@ -119,7 +119,7 @@ class Examples(unittest.TestCase):
         with running(name, board.address):
             board.let_pass(0.5)
             board.hold(beside(0.015), 600)
-            # Between springs of 800 and 600 N/m, 5 mm apart; gravity and friction have their part.
+            # Equilibrium between two springs of 800 and 600 N/m, 5 mm apart, with gravity and friction.
             board.wait_until(rests_at_x(0.0179, 0.0008))
             radius_m = np.linalg.norm(np.subtract(board.position_m(), FREE_POINT_M))
             self.assertGreater(radius_m, 0.0172)
@@ -131,17 +131,17 @@ class Examples(unittest.TestCase):
             board.take_to(beside(-0.01))
             other.take_to(beside(0.01))
             with running(name, board.address, other.address):
-                # Springs of 300, 150 and 300 N/m in a row, 20 mm long.
+                # Springs of 300, 150 and 300 N/m in series, 20 mm long.
                 board.wait_until(rests_at_x(-0.005))
                 other.wait_until(rests_at_x(0.005))
-                # What one hand does, the other feels.
+                # The motion of one hand moves the other hand.
                 other.hold(beside(0.03))
                 board.wait_until(rests_at_x(0.0))
 
     def test_recording(self):
         with VirtualBoard(BUILD) as board, tempfile.TemporaryDirectory() as folder:
             board.take_to(beside(0.0))
-            # To and fro, 20 mm in half a second.
+            # Back and forth, 20 mm per half second.
             board.call("hand_path", points=[{"after_s": 0.5 * i, "target_m": beside(0.02 * (i % 2))}
                                             for i in range(1, 200)])
             file = pathlib.Path(folder, "movement.npz")

@@ -220,7 +220,7 @@ class Reading(unittest.TestCase):
             with self.assertRaisesRegex(inkwell.BadArgument, "time-out"):
                 self.arm.wait_for_pose(timeout_s)
         with self.assertRaises(inkwell.TimedOut):
-            for _ in range(10_000):  # far more in a millisecond than there are poses
+            for _ in range(10_000):  # many more iterations than poses in this time
                 self.arm.wait_for_pose(0)
 
 
@@ -255,7 +255,7 @@ class Programs(unittest.TestCase):
 
     def test_a_fault_whose_cause_stays_is_raised(self):
         with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm:
-            arm.clear_fault()  # there is none
+            arm.clear_fault()  # there is no fault
             board.call("inject", fault="bridge_fault")
             wait_until(arm, lambda pose: pose.state == inkwell.State.FAULT)
             with self.assertRaisesRegex(inkwell.Refused, "The fault is there again. bridge_fault: A bridge reported"):
@@ -283,7 +283,7 @@ class Programs(unittest.TestCase):
                     pass
             self.assertFalse(arm.servo_is_running)
             self.assertFalse(wait_until(arm, lambda pose: pose.state == inkwell.State.READY).feels_program)
-            arm.stop_servo()  # said once
+            arm.stop_servo()  # the error is raised only once
             with self.assertRaisesRegex(inkwell.ForceLost, "Another program"):
                 arm.set_force((0, 0, 0))
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import inkwell
 
-FREE_POINT_M = (0.0, 0.0, -0.03)  # in the middle of the box
+FREE_POINT_M = (0.0, 0.0, -0.03)  # the middle of the box
 AXES = "xyz"
 
 
@@ -55,7 +55,7 @@ class VirtualBoard:
         self._replies = self._control.makefile()
         self.call("dock", docked=in_inkwell)
         self.call("resume")
-        self.let_pass(0.5)  # in which the USB finds it
+        self.let_pass(0.5)  # until the board is enumerated on USB
 
     def __enter__(self) -> "VirtualBoard":
         return self
@@ -95,7 +95,7 @@ class VirtualBoard:
                 return now
             if now["board_time_s"] > begin_s + limit_s:
                 raise AssertionError(f"within {limit_s} s it did not come to this; last: {now}")
-            time.sleep(0.005)  # the board answers by stopping what it does
+            time.sleep(0.005)  # each answer stops the board for a short time
 
     def let_pass(self, duration_s: float) -> None:
         end_s = self.truth()["board_time_s"] + duration_s

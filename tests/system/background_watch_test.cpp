@@ -1,5 +1,5 @@
-// What the main loop watches: a supply that swings, dead wires of encoders, wires of the bridges that touch something,
-// a reference that is off. Each is noticed in time, and nothing that a hand and a program do is taken for one of them.
+// Checks of the main loop: supply ripple, dead encoder wires, shorted bridge wires, and a wrong reference voltage. Each
+// fault is detected in time, and normal use of hand and program raises no fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using protocol::State;
 
 namespace {
 
-/// Fast free motion of all joints, as in the campaign.
+/// Fast free motion of all joints, as in the fault campaign.
 void swing(BoardRig& rig, int times) {
   std::vector<device::HandWaypoint> path;
   for (int i = 1; i <= times; ++i)
@@ -42,7 +42,7 @@ void check_told(BoardRig& rig, Fault fault) {
   CHECK(protocol::info(rig.pose().fault).name == protocol::info(fault).name);
 }
 
-/// After which time the bridges are off, to a tenth of what it may be.
+/// Returns the time until the bridges are off, with a resolution of a tenth of the limit.
 double off_after_s(BoardRig& rig, double limit_s) {
   const double begin_s = rig.board_time_s();
   for (int i = 0; i < 20 && bridges_enabled(rig.control); ++i) rig.control.run(0.1 * limit_s);
@@ -51,7 +51,7 @@ double off_after_s(BoardRig& rig, double limit_s) {
   return after_s;
 }
 
-/// The cause is still there: it cannot be cleared. Then it is gone.
+/// The fault cannot be cleared while its cause lasts. Afterwards the fault can be cleared.
 void check_clears_when_gone(BoardRig& rig, State then) {
   rig.command(protocol::Command::clear_fault);
   rig.run(0.02);
@@ -92,7 +92,7 @@ TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, an
     REQUIRE(protocol::force_is_on(rig.pose().state));
     swing(rig, 4);
     CHECK(off_after_s(rig, 0.25) < 0.2501);
-    // The second joint is so fast that its motor's voltage may tell sooner that it turns.
+    // The second joint is so fast that its motor voltage may reveal the motion first.
     rig.run(0.01);
     const Fault told = rig.pose().fault;
     check_told(rig,
@@ -125,7 +125,7 @@ TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are of
     }
     rig.control.inject({.fault = "wire_high", .of = wire});
     rig.control.run(12 * control_period_s);
-    rig.command(protocol::Command::enable_force);  // comes too late
+    rig.command(protocol::Command::enable_force);  // too late to have an effect
     check_told(rig, Fault::bridge_wire);
     check_clears_when_gone(rig, State::ready);
   }
@@ -134,7 +134,7 @@ TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are of
 TEST_CASE("a wire of the bridges that touches 3.3 V for a tenth of a millisecond is borne: that is one look at most") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
-  for (int i = 0; i < 9; ++i) {  // the looks come every three control periods
+  for (int i = 0; i < 9; ++i) {  // the checks run every three control periods
     protocol::InjectionRequest touch{"wire_high", "bridges[1].leg_a"};
     touch.for_s = 2 * control_period_s;
     rig.control.inject(touch);
@@ -199,7 +199,7 @@ TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coa
     const auto truth = rig.control.truth();
     return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>();
   };
-  // The legs rest low from here on.
+  // The half bridges are low from here on.
   for (int i = 0; i < 1'000 && pause_s() < control_period_s; ++i) rig.control.run(control_period_s / 10);
   rig.control.run(1.1 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));
@@ -213,7 +213,7 @@ TEST_CASE("an enable wire that touches ground is noticed within two control peri
   rig.control.run(2 * control_period_s);
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   check_told(rig, Fault::heartbeat_missed);
-  // With the bridges off it is where it should be.
+  // With the bridges off, low is the correct level of the enable wire.
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
 }
@@ -271,13 +271,13 @@ TEST_CASE(
     return rig.pose().fault;
   };
   CHECK(fault_at(3.2) == Fault::none);
-  CHECK(fault_at(2.95) == Fault::analog_supply);  // the converters' reference falls with it
+  CHECK(fault_at(2.95) == Fault::analog_supply);  // the reference of the converters falls with the supply
   CHECK(fault_at(3.3) == Fault::analog_supply);
   CHECK(clear() == Fault::none);
   CHECK(fault_at(2.9) == Fault::logic_supply_low);
   CHECK(clear() == Fault::logic_supply_low);
   CHECK(fault_at(3.0) == Fault::logic_supply_low);
-  CHECK(clear() == Fault::logic_supply_low);  // it must rise further than it fell
+  CHECK(clear() == Fault::logic_supply_low);  // the rising threshold is above the falling threshold
   CHECK(fault_at(3.3) == Fault::logic_supply_low);
   CHECK(clear() == Fault::none);
   CHECK(restarts(rig.control) == 0);
@@ -285,7 +285,7 @@ TEST_CASE(
 
 namespace {
 
-/// How near honest use comes to a fault.
+/// Measures the margin between normal use and a fault.
 class HonestRig : public BoardRig {
  public:
   HonestRig() {
@@ -343,7 +343,8 @@ class HonestRig : public BoardRig {
       }
   }
 
-  /// The slowest ripple turns each 14 ms, so half of what the true supply goes through in that time is what may count.
+  /// The slowest ripple reverses every 14 ms, so half of the supply's range within this time is the largest possible
+  /// ripple.
   void look_at_supply() {
     const device::Trace trace = control.trace_read(100'000);
     const auto column = std::ranges::find(trace.columns, "true_supply_V");
@@ -391,7 +392,7 @@ TEST_CASE("a hand that shakes the arm, and one that knocks on the hardest walls,
   rig.control.hand_path({{0.1, beside(0.0, 0.0, -0.10)}, {0.2, free_point_m}, {0.3, beside(0.0, 0.0, -0.10)}});
   rig.use(0.4);
   rig.check("knocked on a wall");
-  // Held loosely where the walls begin, which is where they may buzz.
+  // Held loosely at the edge of the walls, where vibrations are most likely.
   rig.set({{Parameter::box_minimum_z_m, -0.0301f}});
   for (const double stiffness_N_per_m : {50.0, 200.0}) {
     rig.control.hand({true, free_point_m, stiffness_N_per_m, 0.5});

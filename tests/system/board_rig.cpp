@@ -59,10 +59,10 @@ void BoardRig::connect() {
   }
   endpoint->seed = seed_;
   device = device::Device::open(*endpoint);
-  set({{protocol::Parameter::host_timeout_s, 2.0f}});  // tests decide when the host is silent
+  set({{protocol::Parameter::host_timeout_s, 2.0f}});  // the tests decide when the host is silent
 }
 
-// A run ends when the host has everything that the device sent, so nothing is waited for here.
+// A run ends after the host has received everything that the device sent, so no waiting is needed here.
 void BoardRig::pass_slice() {
   control.run(slice_s);
   const std::size_t before = poses_.size();

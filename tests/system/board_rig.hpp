@@ -1,6 +1,5 @@
-// A virtual board with the firmware that would be flashed, and a host on its USB. Board time passes only inside `run`
-// and while the device answers a request, so that a slow test machine changes nothing: the same calls give the same
-// run.
+// A virtual board with the flashed firmware, and a host on its USB. Board time passes only inside `run` and while the
+// device answers a request. The same calls therefore give the same run, also on a slow machine.
 #pragma once
 
 #include <chrono>
@@ -18,30 +17,30 @@ namespace inkwell::tests {
 
 class BoardRig {
  public:
-  /// Starts the board, docked in its inkwell, and opens the device.
+  /// Starts the board with the stylus in the inkwell, and opens the device.
   explicit BoardRig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1,
                     device::CyclePricing pricing = device::CyclePricing::likely);
-  /// With another image, build/board/`image`.
+  /// Uses another image, build/board/`image`.
   explicit BoardRig(const std::string& image);
-  /// Of stepped_board(); the first broken rule of the chip ends the board.
+  /// Uses the options of stepped_board(). The board stops when the firmware first breaks a rule of the chip.
   explicit BoardRig(device::VirtualBoardOptions options);
 
-  /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
+  /// Advances board time in slices of 10 ms, collects all poses, and sends the host's signs of life.
   void run(double time_s);
-  /// The same without the sign of life.
+  /// Does the same without the signs of life.
   void run_silent(double time_s);
   void set(std::initializer_list<device::ParameterChange> changes);
-  /// Sends a command; the device gets it when board time passes next.
+  /// Sends a command, which the device receives when board time advances.
   void command(protocol::Command command);
-  /// Sends a program's force for the newest pose and lets a millisecond pass. The board refuses a force that answers an
-  /// old pose.
+  /// Sends a program's force for the newest pose and advances one millisecond. The board refuses a force for an old
+  /// pose.
   void push(const device::ForceRequest& force);
-  /// Waits until the board shows a device, for a second of board time at most, and opens it.
+  /// Waits for the device for at most one second of board time, and opens it.
   void connect();
-  /// Runs until the newest pose fulfils the condition; fails the test after `limit_s` of board time.
+  /// Runs until the newest pose satisfies the condition; fails the test after `limit_s` of board time.
   void run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s = 3.0);
 
-  /// Takes the stylus out of the inkwell by the hand and brings it to a point of the workspace.
+  /// Takes the stylus out of the inkwell with the hand and moves it to a point of the workspace.
   void take_to(device::Vector3 target_m, double duration_s = 0.6);
   /// Waits for the reference, then switches the force on.
   void make_active();
@@ -56,17 +55,17 @@ class BoardRig {
 
  private:
   void pass_slice();
-  std::uint64_t seed_;  ///< of the board, and of the numbers that the host draws
+  std::uint64_t seed_;  ///< seed of the board and of the host's random numbers
   double since_sign_of_life_s_ = 0;
   std::vector<device::Pose> poses_;
 };
 
-/// The largest true current of the three motors.
+/// Returns the largest true current of the three motors.
 double largest_current_A(device::ControlClient& control);
 
-/// The middle of the default arm's box, within its reach.
+/// The center of the default arm's box, within its reach.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
-/// The point so far from it.
+/// Returns the point at this distance from free_point_m.
 constexpr device::Vector3 beside(double x_m, double y_m, double z_m) {
   return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
 }

@@ -1,5 +1,5 @@
-// Every board runs the same firmware, made of its own facts: it starts, tests itself, finds its place, and its current
-// loop and its walls are right. What needs no second board stands in the other files here.
+// All boards run the same firmware, built with their facts. Each board starts, passes its self-test and is referenced,
+// and its current loop and walls are correct. Other files contain all tests that need only one board.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ void check_self_test(BoardRig& rig) {
   }
 }
 
-/// What the firmware reads of the motors' currents is what flows.
+/// Checks that the measured motor currents equal the true currents.
 void check_currents(BoardRig& rig) {
   constexpr std::array currents{protocol::Signal::current_1_A, protocol::Signal::current_2_A,
                                 protocol::Signal::current_3_A};
@@ -38,7 +38,7 @@ void check_currents(BoardRig& rig) {
   rig.device->select_signals(currents);
   rig.take_to(free_point_m);
   rig.set({{protocol::Parameter::box_minimum_z_m, static_cast<float>(free_point_m[2]) + 0.002f}});
-  rig.run(0.3);  // in a wall of two millimetres
+  rig.run(0.3);  // in a wall of two millimeters
   device::ScopeSamples newest;
   while (auto samples = rig.device->read_scope(std::chrono::milliseconds(0))) newest = std::move(*samples);
   REQUIRE(newest.count > 0);
@@ -123,7 +123,7 @@ TEST_CASE("a board that nobody knows is refused with those that are known") {
       run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "feather"});
   CHECK(board.exit_code == 2);
   CHECK(board.err.find("feather, which is not known here; known are bench_modules, omni_driver.") != std::string::npos);
-  // What the board prints is safe for a terminal.
+  // Output of the board is safe for a terminal.
   const auto hostile =
       run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "x\x1B[2J"});
   CHECK(hostile.err.find("x?[2J, which") != std::string::npos);
@@ -131,7 +131,7 @@ TEST_CASE("a board that nobody knows is refused with those that are known") {
 
 TEST_CASE("the wall of the paper is as stiff, and the current loop as quick, on every other board") {
   for (const board::Facts* board : board::known_boards) {
-    if (board == &board::default_board) continue;  // experiment_test.cpp
+    if (board == &board::default_board) continue;  // covered by experiment_test.cpp
     const std::string name(board->name);
     CAPTURE(name);
     const TemporaryDirectory directory;

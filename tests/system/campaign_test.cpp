@@ -1,4 +1,4 @@
-// The fault campaign in short: a few of its cases with the firmware that is flashed, and the commands around them.
+// A short fault campaign: some of its cases with the flashed firmware, and its commands.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ Result result_of(const std::string& name) {
   return result;
 }
 
-/// An arm that a hand swings gets and gives some all the time.
+/// Energy exchange of an arm in motion without a fault.
 double energy_without_fault_J(const Result& result) {
   if (result.situation != "motion") return 0.0;
   return result_of(fmt::format("none motion {}", result.phase)).energy_J;
@@ -76,7 +76,7 @@ TEST_CASE("the force that rises, falls or is held back is less than, or as much 
 TEST_CASE("the self-test's pulses end by themselves, and the second motor's find what came during the first's") {
   const Result sound = result_of("none testing 1");
   CHECK(sound.bridges_were_on);
-  CHECK(sound.off_after_s.value() > 0.0095);  // four pulses of a millisecond for each motor, less the first's four
+  CHECK(sound.off_after_s.value() > 0.0095);  // the remaining pulses of the self-test
   CHECK(sound.off_after_s.value() < 0.014);
   CHECK(sound.detected_as.empty());
   CHECK(sound.recovery == "none needed");
@@ -109,7 +109,7 @@ TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user d
   CHECK(board.pose()->fault == protocol::Fault::supply_high);
   board.run(0.02);
   board.command(protocol::Command::clear_fault);
-  CHECK_FALSE(board.wait_for(protocol::State::ready, 0.05));  // the bulk capacitor is still above
+  CHECK_FALSE(board.wait_for(protocol::State::ready, 0.05));  // the bulk capacitor is still above the threshold
   CHECK(campaign::regains_force(board));
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
     CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
     CHECK(result.recovery == "clear_fault");
-    CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be a millisecond old
+    CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be one millisecond old
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("the wire of the supply's divider that breaks is a supply far too low,
 TEST_CASE("a motor that does not do as its voltage says is let go of before the hand feels more than it may") {
   struct Known {
     const char* name;
-    int periods;  ///< many where the loop creeps away from a reading that was right when it froze
+    int periods;  ///< large where the current drifts from a frozen reading that was initially correct
   };
   for (const Known& known : {Known{"wires_shorted:bridges[1].leg_a+bridges[1].leg_b wall 2", 40},
                              {"shunt_frozen:2 wall 3", 4000},
@@ -200,7 +200,7 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
     const Result result = result_of(known.name);
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < known.periods * control_period_s);
-    // Whether a current jumps on the way depends on the instant.
+    // Depending on the time of the fault, a current jump is detected first.
     CHECK((result.detected_as == "motor_implausible" || result.detected_as == "current_jump"));
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
     CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
@@ -234,7 +234,7 @@ TEST_CASE("a cable that is pulled and a bus that is suspended take the force awa
     CAPTURE(name);
     const Result result = result_of(name);
     REQUIRE(result.off_after_s);
-    CHECK(*result.off_after_s < 0.005);  // a bus that rests is a bus that is gone after 3 ms
+    CHECK(*result.off_after_s < 0.005);  // 3 ms of silence on the bus count as a disconnection
     CHECK(result.detected_as == "usb_gone");
     CHECK(result.recovery == "clear_fault");
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
@@ -262,8 +262,8 @@ TEST_CASE("a main loop that stands for a while takes the force away and is told,
 TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
   const Result result = result_of("adc_stopped:1 wall 2");
   REQUIRE(result.off_after_s);
-  CHECK(*result.off_after_s < 2 * control_period_s);  // no control interrupt, so no heartbeat
-  CHECK(result.restarts >= 1);                        // and again, as long as the cause lasts
+  CHECK(*result.off_after_s < 2 * control_period_s);  // without the control interrupt there is no heartbeat
+  CHECK(result.restarts >= 1);                        // repeatedly while the cause lasts
   CHECK(result.detected_as == "watchdog");
   CHECK(result.recovery == "clear_fault");
 }
@@ -331,7 +331,7 @@ TEST_CASE("a board on the way to its boot loader gets there, and its firmware te
   CHECK(stalled.missed_boot_loader);
   CHECK(stalled.restarts == 1);
   CHECK(stalled.detected_as == "watchdog");
-  const Result unplugged = result_of("usb_cut update 1");  // the loader shows itself once the cable is in again
+  const Result unplugged = result_of("usb_cut update 1");  // the boot loader appears once the cable is connected again
   CHECK_FALSE(unplugged.missed_boot_loader);
   CHECK_FALSE(campaign::is_detected(unplugged));
   CHECK(unplugged.recovery == "none needed");
@@ -341,8 +341,9 @@ TEST_CASE("what is broken before the power comes, or breaks while the board star
   for (const char* name : {"none starting 1", "none starting 2", "none starting 3"}) {
     CAPTURE(name);
     const Result sound = result_of(name);
-    CHECK(sound.bridges_were_on == (name == std::string_view("none starting 2")));  // the self-test's pulses
-    CHECK_FALSE(sound.bridges_went_on);                                             // but for the self-test's pulses
+    CHECK(sound.bridges_were_on == (name == std::string_view("none starting 2")));  // pulses of the self-test
+    CHECK_FALSE(sound.bridges_went_on);                                             // except for the pulses of the
+                                                                                    // self-test
     CHECK_FALSE(campaign::is_detected(sound));
     CHECK(sound.peak_force_N < 1);
     CHECK(sound.recovery == "none needed");

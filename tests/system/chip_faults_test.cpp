@@ -1,4 +1,4 @@
-// What the flashed image does when a part of the chip fails with the bridges on.
+// Reaction of the flashed image to failures of the chip while the bridges are on.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
 
-/// Whether a motor got voltage at any of 60 instants of a control period, three of the bridges' own.
+/// True if any motor had voltage at one of 60 times within three PWM periods.
 bool any_motor_driven(device::ControlClient& control) {
   bool driven = false;
   for (int i = 0; i < 60; ++i) {
@@ -33,7 +33,7 @@ bool any_motor_driven(device::ControlClient& control) {
   return driven;
 }
 
-/// Stops board time while the control interrupt runs, behind its first stores.
+/// Stops board time inside the control interrupt, after its first register writes.
 void run_into_control_interrupt(BoardRig& rig) {
   const auto exception = [&] { return rig.control.status().all.at("exception").get<int>(); };
   while (exception() == control_interrupt) rig.control.run(1e-6);
@@ -62,7 +62,7 @@ TEST_CASE("a control interrupt that never ends leaves the motors without voltage
   REQUIRE(any_motor_driven(rig.control));
   run_into_control_interrupt(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
-  rig.control.run(control_period_s);  // the duties that it wrote first become active
+  rig.control.run(control_period_s);  // the first duty cycles that the interrupt wrote become active
   CHECK(restarts(rig.control) == 0);
   CHECK_FALSE(any_motor_driven(rig.control));
   rig.control.run(0.04);
@@ -108,7 +108,7 @@ TEST_CASE(
   CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
   rig.control.run(0.001);
   CHECK(restarts(rig.control) == 0);
-  // The force does not come back by itself.
+  // The force does not return automatically.
   CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
   rig.control.run(0.05);
   CHECK(restarts(rig.control) == 0);
@@ -140,14 +140,14 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   rig.control.inject({"exception_lost", std::to_string(control_interrupt)});
   rig.control.run(0.0001);
   CHECK(watchdog_bites(rig.control) == 0);
-  CHECK_FALSE(bridges_enabled(rig.control));  // no heartbeat any more
-  rig.control.run(0.04);                      // the slowest watchdog of the data sheet bites after 38 ms
+  CHECK_FALSE(bridges_enabled(rig.control));  // no heartbeat
+  rig.control.run(0.04);                      // the slowest watchdog of the data sheet expires after 38 ms
   CHECK(watchdog_bites(rig.control) == 1);
   check_bridges_off(rig);
   rig.control.heal("exception_lost");
-  rig.control.run(0.04);  // the restart may have met the dead interrupt too
+  rig.control.run(0.04);  // the restart may also have been affected by the lost interrupt
   check_fault_after_restart(rig, Fault::watchdog);
-  // What was told once is not told of the next reset.
+  // A reported fault is not reported again after the next reset.
   rig.control.reset();
   reconnect(rig);
   rig.run(0.3);
@@ -170,7 +170,7 @@ TEST_CASE("a main loop that hangs is missed by the control interrupt after 10 ms
   rig.control.run(0.05 * patience_s + 2 * control_period_s);
   check_bridges_off(rig);
   CHECK(watchdog_bites(rig.control) == 0);
-  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  rig.control.run(0.04);  // the slowest watchdog of the data sheet expires after 38 ms
   CHECK(watchdog_bites(rig.control) == 1);
   check_fault_after_restart(rig, Fault::watchdog);
 }
@@ -194,7 +194,7 @@ TEST_CASE("a crystal that stops switches the bridges off at once; the board star
   rig.control.run(2e-6);
   check_bridges_off(rig);
   rig.control.run(0.05);
-  CHECK(restarts(rig.control) == 1);  // by the fault handler; without a crystal nothing feeds or starts a watchdog
+  CHECK(restarts(rig.control) == 1);  // by the fault handler; without a crystal the watchdog is neither fed nor started
   check_bridges_off(rig);
   CHECK_FALSE(rig.board.find());
 
@@ -223,17 +223,17 @@ TEST_CASE("a spike of 100 ns on an encoder's wire leaves the pose alone; a long 
 }
 
 TEST_CASE("a spike on one encoder wire during a pulse on the other is no whole step of the disc") {
-  // The pulse passes the filter 0.33 us to 0.38 us late. The spike spans its end there: without a filter of its own,
-  // both lines go through all four of their states.
+  // The pulse passes the filter 0.33 us to 0.38 us late, and the spike covers its delayed end. Without a filter on the
+  // spiked wire, both lines would pass through all four states.
   constexpr double pulse_s = 1e-6, spike_after_s = 1.31e-6, spike_s = 0.1e-6, soon_s = 1e-6;
-  BoardRig rig(device::SimulationMode::exact);  // else a spike may last for a block of instructions longer
+  BoardRig rig(device::SimulationMode::exact);  // in fast mode a spike may last for one more block of instructions
   rig.run(0.3);
   const auto before = rig.pose();
   for (int encoder = 0; encoder < 3; ++encoder)
     for (const std::string pulsed : {"a", "b"})
       for (const std::string pulse : {"wire_high", "wire_low"})
         for (const std::string spike : {"wire_high", "wire_low"}) {
-          // Of the four, one inverts both.
+          // One of the four combinations inverts both wires.
           const std::string wires = fmt::format("encoders[{}].", encoder), spiked = pulsed == "a" ? "b" : "a";
           rig.control.inject({pulse, wires + pulsed, {}, soon_s, pulse_s});
           rig.control.inject({spike, wires + spiked, {}, soon_s + spike_after_s, spike_s});

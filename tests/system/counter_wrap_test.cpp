@@ -1,5 +1,5 @@
-// The board's counters of time wrap: control periods after 59 hours, bus frames after 49 days. Neither the hand nor a
-// program may notice. The image near-wrap.elf starts to count 3 s and 4 s before that.
+// The board's time counters wrap: control periods after 59 hours, bus frames after 49 days. The wraps have no effect on
+// hand or program. The image near-wrap.elf starts 3 s and 4 s before these wraps.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,26 +27,25 @@ constexpr std::int64_t wrap = std::int64_t{1} << 32;
 constexpr std::int64_t rate_Hz = protocol::servo_rate_Hz;
 constexpr std::int64_t periods_per_frame = protocol::servo_rate_Hz / protocol::pose_rate_Hz;
 constexpr float program_N = 0.5f;
-/// The hand trembles and sensors have noise.
+/// Tolerance for the tremor of the hand and the noise of the sensors.
 constexpr double force_tolerance_N = 0.05;
 constexpr device::Vector3 begin_m = beside(-0.025, 0, 0), end_m = beside(0.025, 0, 0);
-/// A hand moves from one to the other with the least jerk, and is fastest in the middle, at the first wrap.
+/// A minimum-jerk movement between both points, with its peak speed in the middle, at the first wrap.
 constexpr double moves_for_s = 1.0, fastest_m_per_s = 1.875 * 0.05 / moves_for_s;
-/// Around each wrap.
 constexpr std::size_t frames_before = 200, frames_after = 100;
 
-/// A hand moves on a plane, pulled by a program. The force is on, and a recording runs.
+/// A hand moves on a plane while a program applies a force. The force is on, and a recording runs.
 struct Story {
-  std::vector<device::Pose> poses;  ///< since the recording began
+  std::vector<device::Pose> poses;  ///< since the start of the recording
   recording::Recording recording;
-  std::int64_t applied_at_periods = 0;  ///< a change of parameters after both wraps
+  std::int64_t applied_at_periods = 0;  ///< time of a parameter change after both wraps
   std::optional<device::Driver> driver;
   std::uint32_t forces_refused = 0;
 };
 
 void record_until(BoardRig& rig, recording::Recorder& recorder,
                   const std::function<bool(const device::Pose&)>& condition) {
-  // The board exits on its own if the test hangs: each slice is 10 ms of board time.
+  // Limits the board time if the test hangs: each slice is 10 ms.
   for (int slices = 0; !condition(rig.pose()); ++slices) {
     REQUIRE(slices < 500);
     rig.device->send_force({.force_N = {program_N, 0.0f, 0.0f}, .interval_ms = 10});
@@ -100,7 +99,7 @@ const Story& story() {
 
 double magnitude_N(const device::Pose& pose) { return std::hypot(pose.force_N[0], pose.force_N[1], pose.force_N[2]); }
 
-/// The first pose at which the counter has passed its wrap. Around it force, state and time go on.
+/// Returns the first pose after the wrap of this counter. Checks that force, state and time are continuous around it.
 const device::Pose& check_goes_on_around(std::int64_t device::Pose::*counter) {
   const auto& poses = story().poses;
   const auto found = std::ranges::find_if(poses, [&](const auto& pose) { return pose.*counter >= wrap; });
@@ -133,7 +132,7 @@ TEST_CASE("the count of control periods wraps after 59 hours, and force, speeds 
   CHECK(recording.periods.front() < wrap);
   CHECK(recording.periods.back() == recording.periods.front() + static_cast<std::int64_t>(recording.size()) - 1);
   CHECK(std::ranges::is_sorted(recording.periods));
-  // It is on the time of the poses.
+  // The recording has the same time base as the poses.
   CHECK(std::abs(recording.periods.back() - story().poses.back().time_periods) < rate_Hz / 50);
   CHECK(recording.duration_s() == doctest::Approx(static_cast<double>(recording.size() - 1) / rate_Hz));
 
@@ -155,7 +154,7 @@ TEST_CASE("the count of bus frames wraps after 49 days, and no pose is lost and 
   CHECK(story().applied_at_periods > at_wrap.time_periods);
   CHECK(story().applied_at_periods < story().poses.back().time_periods);
 
-  // The program still drives, for as long as it has.
+  // The program is still the driver, since the same time.
   REQUIRE(story().driver);
   CHECK(story().driver->is_this_device);
   const auto& poses = story().poses;

@@ -1,4 +1,4 @@
-// A board with another crystal.
+// A board with a crystal of another frequency.
 #include <doctest/doctest.h>
 
 #include "program.hpp"

@@ -1,4 +1,4 @@
-// GDB itself, connected to the virtual board with the firmware that would be flashed.
+// GDB, connected to the virtual board with the flashed firmware.
 #include <doctest/doctest.h>
 
 #include "program.hpp"
@@ -7,7 +7,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// What GDB prints after `commands` with the board that listens at `port`.
+/// Returns GDB's output after `commands` with the board at `port`.
 std::string gdb(const std::string& elf, const std::string& port, std::initializer_list<const char*> commands) {
   std::vector<std::string> arguments{"-nx", "-batch", elf, "-ex", "target remote 127.0.0.1:" + port};
   for (const char* command : commands) {
@@ -47,14 +47,14 @@ TEST_CASE("GDB stops in the control interrupt, looks, steps, watches a variable 
   CHECK(said.find("New value = 1") != std::string::npos);
   const auto moved = word_after(said, "$2 = ");
   CHECK((moved == "2" || moved == "4"));
-  CHECK(said.find("$3 = true\n") != std::string::npos);  // VTOR: the processor finds the handlers without the flash
-  // Board time stands still while GDB looks.
+  CHECK(said.find("$3 = true\n") != std::string::npos);  // VTOR: the exception handlers do not depend on the flash
+  // Board time does not advance while GDB has stopped the board.
   constexpr const char* unit = " s of board time";
   const auto first = said.find(unit), second = said.find(unit, first + 1);
   REQUIRE(second != std::string::npos);
   CHECK(said.substr(first - 11, 11) == said.substr(second - 11, 11));
 
-  // Another GDB finds the board running on from there.
+  // A second GDB session continues from the same point.
   const std::string again = gdb(elf, port, {"print *(unsigned*)&inkwell::application::completed_periods", "kill"});
   CAPTURE(again);
   CHECK(std::stoul(word_after(again, "$1 = ")) >= 1);

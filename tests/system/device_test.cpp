@@ -1,4 +1,4 @@
-// The device as a host sees it: enumeration, identity, parameters, streams, unplugging.
+// The device as a host sees it: enumeration, identity, parameters, streams, disconnection.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -37,7 +37,7 @@ std::vector<protocol::Signal> floating_point_signals(std::size_t count) {
 }  // namespace
 
 TEST_CASE("the device enumerates within a second of board time and says who it is") {
-  BoardRig rig;  // refuses to start if the device is not there by then
+  BoardRig rig;  // throws if the device is not present by then
   const auto information = rig.device->information();
   CHECK(information.protocol_version == protocol::protocol_version);
   CHECK(information.report.parameter_table_hash == protocol::parameter_table_hash);
@@ -87,7 +87,7 @@ TEST_CASE("boards that are started by hand have serial numbers of their own, whi
     const std::string ready = board.read_line();
     port = ready.substr(ready.find("usbip=") + 6);
     port.resize(port.find(' '));
-    // On a busy machine its arm is there later than the list waits for it.
+    // On a busy machine the arm may appear after the time limit of the list.
     auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
     for (int again = 0; listed.exit_code != 0 && again < 30; ++again)
       listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
@@ -116,7 +116,7 @@ TEST_CASE("the device holds the table's defaults, takes a transaction whole, and
   BoardRig rig;
   const auto before = rig.device->parameters();
   auto expected = protocol::default_parameters();
-  expected[Parameter::host_timeout_s] = 2.0f;  // the rig's own
+  expected[Parameter::host_timeout_s] = 2.0f;  // set by the test fixture
   CHECK(before == expected);
 
   rig.set({{Parameter::wall_stiffness_N_per_m, 432.0f},
@@ -190,7 +190,7 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for 4 s, none los
 }
 
 TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's") {
-  // One converter measures them in turn, and a sampling that is too short leaves some of the one before.
+  // One converter samples these inputs in turn. A sampling time that is too short would mix adjacent inputs.
   BoardRig rig;
   using protocol::Signal;
   const std::vector signals{Signal::gimbal_1_rad, Signal::gimbal_2_rad, Signal::gimbal_3_rad, Signal::supply_V};
@@ -209,7 +209,7 @@ TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's"
     for (double& sum : sums) sum /= static_cast<double>(count);
     return sums;
   };
-  // Each next to the other end of the neighbour's track.
+  // Adjacent potentiometers are at opposite ends.
   constexpr device::Vector3 one_way_rad{-2.3, 1.6, -2.3}, other_way_rad{2.3, -0.4, 2.3};
   const auto one_way = means(one_way_rad), other_way = means(other_way_rad);
   const double steepest_rad = rig.device->parameters()[Parameter::gimbal_3_slope_rad];
@@ -225,7 +225,7 @@ TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's"
 TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {
   BoardRig rig;
   rig.device->select_signals(floating_point_signals(14));
-  rig.run(6.0);  // far longer than all buffers on the way hold
+  rig.run(6.0);  // much longer than the capacity of all buffers
   const auto longest = rig.device->information().report;
   CHECK(longest.scope_samples_dropped > 20'000);
   CHECK(longest.servo_overruns == 0);
@@ -253,14 +253,14 @@ TEST_CASE(
   kill(program.process(), SIGSTOP);
   auto control = board.control();
   device::BoardStatus status;
-  // Longer than anyone's patience.
+  // Waits without a time limit.
   do status = control.status();
   while (status.all["usb"]["waits_for"].empty());
   CHECK(status.all["usb"]["waits_for"][0] == "inkwell (process " + std::to_string(program.process()) + ")");
-  std::this_thread::sleep_for(2s);  // longer than all buffers on the way hold
+  std::this_thread::sleep_for(2s);  // longer than the capacity of all buffers
   CHECK(control.status().board_time_s - status.board_time_s < 0.1);
   CHECK(contains(message_of<device::Error>([&] {
-                   for (;;) control.supply(18.0);  // the first may come before a frame
+                   for (;;) control.supply(18.0);  // the first requests may precede a frame
                  }),
                  "board time waits for inkwell (process "));
   kill(program.process(), SIGCONT);
@@ -287,7 +287,7 @@ TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the 
   rig.connect();
   rig.run(0.01);
   const auto pose = rig.pose();
-  // The cable took the force with it; the arm still knows where it is.
+  // The disconnection has switched the force off; the arm is still referenced.
   CHECK(pose.state == protocol::State::fault);
   CHECK(pose.fault == protocol::Fault::usb_gone);
   rig.command(protocol::Command::clear_fault);

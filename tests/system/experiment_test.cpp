@@ -1,4 +1,4 @@
-// The paper's section 4.3, end to end, judged by the recording and not by the experiment's own summary.
+// The experiment of the paper's section 4.3, evaluated from the recording instead of the experiment's summary.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// The columns of a recording by name, in doubles to compute with.
+/// Columns of a recording by name, converted to double.
 class Columns {
  public:
   explicit Columns(const std::string& file) {
@@ -89,7 +89,7 @@ Spread spread(const std::vector<double>& values, std::size_t begin, std::size_t 
   return {*smallest, *largest};
 }
 
-/// The half second, deep in a wall, in which the simulation's hand pushes most evenly. Begins there.
+/// Returns the start of the half second, deep in a wall, with the most constant force of the simulated hand.
 std::size_t steadiest_hold(const Columns& recording, const std::string& axis, std::size_t length) {
   const auto& depth_m = recording["penetration_" + axis + "_m"];
   const auto& hand_N = recording["hand_force_" + axis + "_N"];
@@ -113,7 +113,7 @@ std::size_t steadiest_hold(const Columns& recording, const std::string& axis, st
 }  // namespace
 
 TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
-  // One run for all that is looked at below.
+  // All checks below use one run.
   static const TemporaryDirectory directory;
   static const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()});
   INFO("output: ", result.out, result.err);
@@ -139,7 +139,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
     std::vector<std::string> simulated;
     while (std::getline(file, line) && line.starts_with("# "))
       if (line.starts_with("# simulated ")) simulated.push_back(line.substr(12, line.find(" = ") - 12));
-    // What the device told and what the simulation knew are told apart.
+    // Signals of the device and of the simulation are distinguished.
     CHECK(std::ranges::equal(simulated, std::span(recording.names).last(9)));
     CHECK(line.starts_with("time_s,encoder_1_counts,"));
     CHECK(std::ranges::count(line, ',') == 40);
@@ -169,7 +169,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
           continue;
         }
         ++in_contact;
-        // The proxy rests on the wall, so d' is minus the velocity; the wall never pulls.
+        // The proxy rests on the wall, so d' is minus the velocity. The wall never pulls.
         const double outward = penetration_m[i] > 0 ? 1 : -1;
         const double expected_N = outward * std::max(0.0, outward * (k * penetration_m[i] - c * velocity_m_s[i]));
         wrong += std::abs(force_N[i] - expected_N) > std::max(0.005, 0.01 * std::abs(expected_N));
@@ -203,7 +203,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
                                                  recording[std::string("true_current_") + motor + "_A"][i]));
     }
     MESSAGE("simulation: position off by at most ", position_m * 1e6, " um, current by ", current_A * 1e3, " mA");
-    CHECK(position_m < 250e-6);  // a few encoder counts, the inkwell's tolerance included
+    CHECK(position_m < 250e-6);  // a few encoder counts, including the tolerance of the inkwell
     CHECK(position_m > 0);
     CHECK(current_A < 0.1);
     CHECK(current_A > 0);
@@ -220,7 +220,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
       CHECK(counts.width() <= 2);
     }
     CHECK(spread(recording["force_N"], begin, begin + length).smallest > 1.0);
-    // The summary speaks of the same recording.
+    // The summary refers to the same recording.
     const auto& hold = summary.at("steady_hold");
     CHECK(hold.at("duration_s") >= 0.5);
     const auto from = static_cast<std::size_t>(std::lround(hold.at("from_s").get<double>() / sample_period_s));

@@ -1,4 +1,4 @@
-// Places in the firmware that the virtual board runs.
+// Symbol addresses in the firmware of the virtual board.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ struct FirmwareSymbol {
   bool contains(std::uint32_t place) const { return place >= address && place - address < size_bytes; }
 };
 
-/// The one whose mangled name has this in it; fails the test unless there is exactly one.
+/// Returns the symbol whose mangled name contains `name`; fails the test unless there is exactly one.
 FirmwareSymbol firmware_place(std::string_view name);
 inline std::uint32_t firmware_symbol(std::string_view name) { return firmware_place(name).address; }
 
-/// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
+/// Returns the address where the firmware waits for a requested reset: "dsb" and a branch to itself.
 std::uint32_t endless_loop_address();
 
 /// Version of the compiler in the firmware's .comment section, without the last number, such as "12.2".

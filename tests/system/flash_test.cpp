@@ -1,4 +1,4 @@
-// `inkwell flash` on the virtual board: out of the firmware, through the chip's boot loader, and back.
+// `inkwell flash` with the virtual board: from the firmware through the chip's boot loader and back.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -28,10 +28,10 @@ namespace {
 
 std::string image(const std::string& name) { return build_directory() + "/../board/" + name; }
 
-/// A virtual board that runs on by itself.
+/// A virtual board that runs in real time.
 class FreeBoard {
  public:
-  /// `more`: options beside the image, or instead of it if they name one or a flash.
+  /// `more`: additional options. These options override the default image and flash file.
   explicit FreeBoard(const std::vector<std::string>& more = {}) : program_(words(more)) {
     const std::string ready = program_.read_line();
     const auto at = ready.find("usbip=") + 6;
@@ -47,7 +47,7 @@ class FreeBoard {
       std::this_thread::sleep_for(20ms);
     }
   }
-  /// The power goes; what the flash holds then is in its file.
+  /// Switches the power off; the flash contents remain in the file.
   void switch_off() {
     kill(program_.process(), SIGTERM);
     program_.wait();
@@ -99,13 +99,14 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   REQUIRE(result.exit_code == 0);
   auto json = nlohmann::json::parse(result.out);
   CHECK(json.at("protocol_version") == protocol::protocol_version + 1);
-  CHECK(json.at("brown_out_level_set") == true);  // a new chip has it off
+  CHECK(json.at("brown_out_level_set") == true);  // the brown-out reset of a new chip is disabled
   CHECK(json.at("serial_number") == "000000000000000000000001");
-  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 1);  // it is another version now
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 1);  // the version is different now
   for (const char* step : {"asking the board to leave", "erasing", "writing", "reading back", "starting the firmware"})
     CHECK(says(result, step));
 
-  // Without a name it is the image that belongs to the program, and it finds the board although it cannot talk to it.
+  // Without a name, the program's image is written. The program finds the board although their protocol versions
+  // differ.
   result = board.flash({});
   CHECK(result.exit_code == 1);
   CHECK(says(result, "which is older than the firmware"));
@@ -118,7 +119,8 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   REQUIRE(result.exit_code == 0);
   CHECK(says(result, "The board contained firmware"));
   CHECK(says(result, "protocol " + std::to_string(protocol::protocol_version + 1)));
-  CHECK_FALSE(says(result, "brown-out level was changed"));  // it has been set, and outlives the firmware
+  CHECK_FALSE(says(result, "brown-out level was changed"));  // the level is already set, and a firmware update does not
+                                                             // change it
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 
@@ -170,7 +172,7 @@ TEST_CASE("a word of yes writes it all the same") {
   board.wait_until(&FreeBoard::is_in_boot_loader);
   auto identity = protocol::image_identity("omni_driver", 99, 0, 0);
   --identity.protocol_version;
-  // What it makes of the chip is no firmware: made up here, it only has to get there.
+  // The content of the image is irrelevant here, because it only has to be transferred.
   const auto result = board.flash({write_elf(directory, made_segments(identity)), "--yes"});
   CHECK(says(result, "was written and verified, but the board does not respond"));
 }
@@ -199,7 +201,8 @@ TEST_CASE("a flashing that was cut off is repaired by the same command") {
   const auto result = board.flash({});
   INFO(result.err);
   CHECK(result.exit_code == 0);
-  CHECK(says(result, "The board contained unidentified data"));  // its begin went first
+  CHECK(says(result, "The board contained unidentified data"));  // the interrupted command has erased the start of the
+                                                                 // image
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 
@@ -268,7 +271,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // Its flash is erased. It reports that the image is verified, with the marker from its arguments.
+  // A fake openocd with an erased flash. This openocd reports a verified image, with the marker from its arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";
@@ -288,7 +291,8 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   CHECK(failed.exit_code == 1);
   CHECK(says(failed, "Is the probe connected"));
 
-  // Of the board that is named it is the image beside the program; of none, none is guessed and openocd not called.
+  // With a board name the image installed with this program is used. Without one the board is not guessed, and openocd
+  // is not called.
   CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
   CHECK(contains(told(), "6E63685F6D6F64756C6573"));  // nch_modules
   std::filesystem::remove(called);

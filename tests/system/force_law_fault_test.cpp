@@ -1,4 +1,4 @@
-// A force law that divides by zero: no force, a fault that says what it was, and a law that begins anew.
+// A force law that divides by zero: the force is switched off, the fault states the cause, and the law restarts.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ TEST_CASE("a force law that divides by zero switches the force off with a fault 
   const Signal periods = *protocol::find_signal("quotient_periods");
   rig.set({{Parameter::force_ramp_s, 0.0f}});
   rig.take_to(free_point_m);
-  // 0.5 / 0 is infinite, 0 / 0 is no number.
+  // 0.5 / 0 is infinite, 0 / 0 is not a number.
   for (const float dividend_N : {0.5f, 0.0f}) {
     rig.set({{divisor, 1.0f}, {dividend, 0.5f}});
     rig.make_active();
@@ -51,7 +51,7 @@ TEST_CASE("a force law that divides by zero switches the force off with a fault 
     CHECK(is_finite);
     CHECK(largest_N < 0.5001f);
     CHECK(most_periods > 1000.0f);
-    CHECK(last_periods == 0.0f);  // state and signals are new
+    CHECK(last_periods == 0.0f);  // state and signals are reinitialized
     CHECK(rig.pose().force_N[2] == 0.0f);
     CHECK(largest_current_A(rig.control) < 0.05);
     rig.device->select_signals({});

@@ -1,5 +1,5 @@
-// A force law of one's own in the image: its parameters and signals are in every table, the force is what the same file
-// gives on the PC, and a division by zero is a fault that has a name.
+// A user-defined force law in the image: every table contains its parameters and signals. The force equals that of the
+// same source on the PC, and a division by zero raises a fault.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using protocol::Fault;
 using protocol::Parameter;
 using protocol::State;
 
-/// The force of the law on the PC, with the parameters that the device holds.
+/// Returns the force of the law on the PC, with the parameters of the device.
 control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const control::Vector3& position_m,
                                 float& distance_m) {
   magnet::Parameters parameters{};
@@ -40,7 +40,7 @@ control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const contro
   return force_N;
 }
 
-/// Runs `inkwell` while board time passes.
+/// Runs `inkwell` while board time advances.
 int run_beside(BoardRig& rig, std::vector<std::string> words) {
   words.insert(words.begin(), build_directory() + "/inkwell");
   words.insert(words.end(), {"--usbip", rig.board.usbip().text()});
@@ -98,7 +98,7 @@ TEST_CASE(
     CHECK(std::fabs(at(Signal::force_x_N, i)) > 0.3f);
   }
 
-  // Who only has the file knows what its columns are.
+  // The file contains the description of its columns.
   const auto about = run_program("inkwell", {"replay", file, "--json"});
   CHECK(about.exit_code == 0);
   const auto json = nlohmann::json::parse(about.out);

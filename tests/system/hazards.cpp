@@ -13,7 +13,7 @@ using protocol::State;
 
 void reconnect(BoardRig& rig) {
   rig.device.reset();
-  rig.control.run(0.02);  // long enough for the bus to see that the device is gone
+  rig.control.run(0.02);  // until the bus detects the disconnection of the device
   rig.connect();
 }
 

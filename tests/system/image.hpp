@@ -1,4 +1,4 @@
-// Pictures that a program wrote, to look at what they show.
+// Reads pictures that a program wrote, and analyzes their pixels.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,18 @@ struct Colour {
 struct Image {
   std::size_t width = 0;
   std::size_t height = 0;
-  std::vector<std::uint8_t> rgb;  ///< rows from the top
+  std::vector<std::uint8_t> rgb;  ///< rows from top to bottom
 
   Colour at(std::size_t x, std::size_t y) const {
     const std::size_t i = 3 * (y * width + x);
     return {rgb[i], rgb[i + 1], rgb[i + 2]};
   }
-  /// How many pixels are within `tolerance` of the colour in each channel.
+  /// Number of pixels within `tolerance` of the color in each channel.
   std::size_t count(Colour colour, int tolerance) const;
-  /// How many different colours there are.
   std::size_t colours() const;
 };
 
-/// Throws std::runtime_error if the file is no PNG.
+/// Throws std::runtime_error if the file is not a PNG.
 Image read_png(const std::string& path);
 
 }  // namespace inkwell::tests

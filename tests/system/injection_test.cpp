@@ -1,4 +1,4 @@
-// Faults that are put into the virtual board, by its control socket, its command line and a script.
+// Fault injection into the virtual board through its control socket, its command line and a script.
 #include <doctest/doctest.h>
 
 #include <fstream>

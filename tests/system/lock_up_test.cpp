@@ -1,4 +1,4 @@
-// Firmware that locks the processor up: a run in the background ends, and says where it went wrong.
+// Firmware that locks up the core: a run in the background stops and reports the location of the error.
 #include <doctest/doctest.h>
 
 #include <device/control_client.hpp>

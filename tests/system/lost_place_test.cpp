@@ -1,5 +1,5 @@
-// What says that the board no longer knows where the arm is: an encoder that jumps, an inkwell's switch that is closed
-// where no inkwell is.
+// Conditions that void the reference of the arm: an encoder that jumps, or an inkwell switch that closes outside the
+// inkwell.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -25,7 +25,7 @@ void clear(BoardRig& rig) {
   rig.run(0.02);
 }
 
-/// Into the inkwell again, as a user would, until the board knows where the arm is.
+/// Puts the stylus into the inkwell and waits for the reference.
 void put_into_inkwell(BoardRig& rig) {
   rig.control.dock(true);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });

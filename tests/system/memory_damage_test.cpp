@@ -1,4 +1,4 @@
-// What the firmware does when a bit of it, or of its parameters, has changed by itself.
+// Reaction of the firmware to bit errors in its code or parameters.
 #include <doctest/doctest.h>
 
 #include <cstddef>
@@ -26,7 +26,7 @@ std::string text_of(std::uint32_t address) { return std::to_string(address); }
 
 bool is_in_fault(const device::Pose& pose) { return pose.state == State::fault; }
 
-/// A bit of each place flips under a pressing hand.
+/// Flips a bit at each address while the hand presses.
 void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int bit) {
   BoardRig rig;
   press_into_wall(rig);
@@ -36,7 +36,7 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   CHECK(rig.pose().fault == Fault::memory_damaged);
   CHECK_FALSE(bridges_enabled(rig.control));
 
-  // It is as damaged as before: the fault can not be cleared.
+  // The damage is still present, so the fault cannot be cleared.
   rig.command(protocol::Command::clear_fault);
   rig.run(0.05);
   CHECK(rig.pose().state == State::fault);
@@ -46,17 +46,18 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
-/// In a set of parameters, a byte of the force limit whose highest bit makes it twice or half of what it was.
+/// Offset of the byte of the force limit whose highest bit doubles or halves the value.
 constexpr std::uint32_t byte_of_force_limit = sizeof(float) * static_cast<std::uint32_t>(Parameter::force_limit_N) + 2;
 
-/// The link begins with the parameters that are held; behind their store comes what the next start would give them.
+/// The link object starts with the current parameters. The values for the next start-up follow after its
+/// ParameterStore.
 std::uint32_t held_force_limit() { return firmware_symbol("host_link") + byte_of_force_limit; }
 std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{sizeof(link::ParameterStore)}; }
 
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
-  // Each where nothing is read or run meanwhile: it is to be found before it does harm.
+  // Locations that are neither read nor executed in this state, so that the error is detected before it has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
                                   firmware_symbol("leave_out"), firmware_symbol("nowhere")};
@@ -67,10 +68,11 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
 }
 
 TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
-  // Behind the parameters lie the two places of the settings, of which the interrupt uses one.
+  // The two copies of the settings follow the parameters; the interrupt uses one of them.
   const std::uint32_t settings = firmware_symbol("host_link") + sizeof(link::Guarded<protocol::ParameterSet>);
   constexpr std::uint32_t bytes = sizeof(control::Settings);
-  // The last bit of a limit that is far away: it is to be found before it does harm.
+  // The test flips the lowest bit of a limit that is not reached, so that the error is detected before it has an
+  // effect.
   constexpr std::uint32_t limit =
       offsetof(control::Settings, limits) + offsetof(control::Limits, speed_limit_squared_m2_per_s2);
   check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
@@ -124,19 +126,19 @@ TEST_CASE("a bit that flips in what the next start would give is told, and is no
 TEST_CASE("a flash that is damaged when the board starts is found before the first pulse, and before the main loop") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });  // the self-test has driven the bridges
-  // The last word that is looked at: the check in the main loop alone would take too long to come to it.
+  // The last word of the check. The check in the main loop alone would reach this word too late.
   rig.control.inject({"flash_bit", text_of(firmware_symbol("image_check")), 0});
   const double reset_s = rig.board_time_s();
   rig.control.reset();
   reconnect(rig);
-  rig.run(0.3);  // a round of the check is over by then, and so would be a self-test
+  rig.run(0.3);  // by this time one round of the check and a self-test would be over
   CHECK(rig.pose().fault == Fault::memory_damaged);
   const double driven_until_s = rig.control.truth().at("bridges_driven_until_s").get<double>();
   CHECK(driven_until_s > 0.0);
   CHECK(driven_until_s < reset_s);
   const auto box = rig.device->black_box();
   CHECK(box.fault == Fault::memory_damaged);
-  CHECK(box.rows_before == 0);  // of the 1.5 ms that the main loop looks back to as it begins
+  CHECK(box.rows_before == 0);  // of the 1.5 ms that the main loop records at its start
 }
 
 TEST_CASE("a bit that flips in the flash switches the force off, and no reset brings it back while it is wrong") {

@@ -1,5 +1,5 @@
-// That voltage, current and speed of sound motors fit together whatever a hand and a program do with the arm, and how
-// near they come to a fault. What happens when they do not fit is in campaign_test.cpp.
+// Consistency of voltage, current and speed of healthy motors in all uses of the arm, and the margin to a fault.
+// campaign_test.cpp tests the detection of mismatches.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,10 +27,11 @@ using protocol::ForceMode;
 using protocol::Parameter;
 using protocol::Signal;
 
-/// Looks at the streamed signals of all three motors as the firmware does, which keeps its own sums to itself.
+/// Repeats the firmware's check with the streamed signals of all three motors, because the sums of the firmware are not
+/// streamed.
 class WatchedRig : public BoardRig {
  public:
-  /// By so much hotter are the motors when they are tested.
+  /// `hotter_K`: additional motor temperature during the self-test.
   explicit WatchedRig(double hotter_K = 0.0) {
     set({{Parameter::force_ramp_s, 0.0f}, {Parameter::speed_limit_m_per_s, 10.0f}});
     heat(hotter_K);
@@ -74,7 +75,7 @@ class WatchedRig : public BoardRig {
     settings_ = control::prepare(device->parameters());
   }
 
-  /// Lets board time pass while `each_millisecond` does something.
+  /// Advances board time and runs `each_millisecond` every millisecond.
   template <class Action>
   void watch(double time_s, const Action& each_millisecond) {
     for (auto left = std::lround(1000 * time_s); left > 0; --left) {
@@ -83,21 +84,21 @@ class WatchedRig : public BoardRig {
     }
   }
   void watch(double time_s) {
-    constexpr double slice_s = 0.01;  // the streams are held for longer
+    constexpr double slice_s = 0.01;  // the stream buffers are larger
     for (auto left = std::lround(time_s / slice_s); left > 0; --left) {
       device->send(protocol::Command::heartbeat);
       pass(slice_s);
     }
   }
 
-  /// Of MotorWatch::bearable_sum_V, at which a fault is told.
+  /// Largest sum, relative to the fault threshold MotorWatch::bearable_sum_V.
   float nearest_V = 0.0f;
-  /// In a single look: what resistance and speed leave of the voltage, and what of it is more than is bearable then.
+  /// Single check: the voltage that resistance and speed do not explain, and its part beyond the tolerance.
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
-  /// Of a current in a control period, and what neither its loop nor its speed explains; CurrentJump::bearable_A is
-  /// told.
+  /// Largest current change per control period, and its part that loop and speed do not explain. The fault threshold is
+  /// CurrentJump::bearable_A.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:
@@ -152,8 +153,8 @@ class WatchedRig : public BoardRig {
   }
 
   control::Settings settings_ = control::prepare(protocol::default_parameters());
-  std::vector<float> before_;         ///< the values of the period before
-  control::MeasuredMotors measured_;  ///< by the self-test; the firmware takes the motors for cold then
+  std::vector<float> before_;         ///< values of the previous period
+  control::MeasuredMotors measured_;  ///< from the self-test; the firmware assumes cold motors there
   MotorWatch watch_;
   std::deque<control::Triple> told_V_;
   std::size_t period_ = 0;
@@ -165,14 +166,14 @@ void check(WatchedRig& rig, const std::string& what) {
           rig.largest_left_V, " V, at most ", rig.largest_beyond_V, " V more than is bearable; a current changed by ",
           rig.largest_change_A, " A in a period, by ", rig.largest_sudden_A, " A without a reason");
   CHECK(rig.force_is_on);
-  CHECK(rig.largest_left_V > 0.1f);  // it was looked at
+  CHECK(rig.largest_left_V > 0.1f);  // the check was active
   CHECK(rig.largest_change_A > 0.01f);
   CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::bearable_A);
   CHECK(rig.nearest_V < 0.2f * MotorWatch::bearable_sum_V);
   rig.start_anew();
 }
 
-/// The hand goes to and fro between two points, so many times a second.
+/// Moves the hand back and forth between two points, `times` times.
 void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
            double stiffness_N_per_m = 1500, double damping_Ns_per_m = 12) {
   rig.control.hand({true, from_m, stiffness_N_per_m, damping_Ns_per_m});

@@ -1,4 +1,4 @@
-// Not a test: tools/pictures runs this to photograph the window's panes, with the virtual board under the mouse.
+// Takes pictures of the window's panes with the virtual board, for tools/pictures. This file is not a test.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,10 +19,10 @@ std::string picture_file(const std::string& name) {
   return (folder == nullptr ? std::string(".") : std::string(folder)) + "/" + name + ".png";
 }
 
-/// Where the mouse hides nothing and asks for no help.
+/// A position where the mouse covers nothing and opens no help.
 constexpr Point aside{700, 60};
 
-/// The hand presses the sphere into the right wall and the floor, and moves it along the edge between them.
+/// The hand presses the sphere into the right wall and the floor, and moves the sphere along their common edge.
 void push_into_two_walls(WindowRig& rig) {
   rig.switch_force_on();
   const auto sight = rig.look();
@@ -38,7 +38,7 @@ void push_into_two_walls(WindowRig& rig) {
   }
 }
 
-/// Gently, so that the force law's line shows; the hand stays there.
+/// Presses gently, so that the line of the force law is visible. The hand remains there.
 void press_against_the_right_wall(WindowRig& rig) {
   const auto start_m = rig.true_probe_m();
   rig.control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
@@ -70,7 +70,7 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
                           build_directory() + "/drop-in-well"});
   program.read_line();
   rig.look_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
-  // Slower and slower, so that the hand rests at last.
+  // With decreasing speed, so that the hand finally rests.
   for (int step = 1; step <= 60; ++step) {
     const double part = step / 60.0, angle_rad = 3 * std::numbers::pi * part * (2 - part);
     rig.move_to({sphere.x + 30 + 60 * std::sin(angle_rad), sphere.y - 50 + 35 * (1 - std::cos(angle_rad))});
@@ -135,7 +135,7 @@ TEST_CASE("pictures: the sliders of every group of parameters" * doctest::skip()
       if (row.group != group) action(row.name, group = row.group);
   };
   each_group([&](std::string_view first, std::string_view group) {
-    if (rig.look().has(item(first))) rig.click(item(group));  // closes it
+    if (rig.look().has(item(first))) rig.click(item(group));  // closes the group
   });
   each_group([&](std::string_view, std::string_view group) {
     rig.click(item(group));

@@ -1,4 +1,4 @@
-// Pins of the virtual board that have no command of their own, read and driven by its control socket.
+// Reading and driving pins of the virtual board through its control socket.
 #include <doctest/doctest.h>
 
 #include <device/control_client.hpp>
@@ -14,7 +14,7 @@ TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it 
   const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
   auto control = board.control();
   CHECK(control.pin("PC10").chip_drives == "floating");
-  // This firmware drives PC10 high, and counts edges of PB13 that fall, by interrupt 40, once the flash is erased.
+  // This firmware drives PC10 high. After the flash erase the firmware counts falling edges of PB13 in interrupt 40.
   control.run(0.3);
   CHECK(control.pin("PC10").chip_drives == "high");
   CHECK(control.pin("PC10").level == "high");
@@ -29,7 +29,7 @@ TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it 
   CHECK(control.drive_pin("PB13", "low").level == "low");
   control.run(0.0001);
   CHECK(interrupts());
-  CHECK(control.drive_pin("PB13", "floating").level == "high");  // its pull-up
+  CHECK(control.drive_pin("PB13", "floating").level == "high");  // pull-up
 }
 
 TEST_CASE("what is no pin, or no level, is refused with a sentence") {

@@ -1,4 +1,4 @@
-// The ports of a running virtual board: who is let in, who is not, and what is left of them.
+// The ports of a running virtual board: accepted and refused clients, and the files that remain.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A board with every port, whose firmware echoes what it hears on a UART.
+/// A board with all ports, whose firmware echoes the received UART bytes.
 class BoardWithPorts {
  public:
   explicit BoardWithPorts(const std::string& port) : program_(words(port)) {
@@ -53,7 +53,7 @@ class BoardWithPorts {
   }
 
  private:
-  /// With as many files as a system may leave to a program.
+  /// Limits the number of open files of the program.
   static std::vector<std::string> words(const std::string& port) {
     return {"sh", "-c",
             "ulimit -n 256; exec " + build_directory() + "/virtual-board --elf " + build_directory() +
@@ -84,7 +84,7 @@ TEST_CASE("no port accepts a browser, and idle clients block no other client") {
       PlainClient browser(board.address(port));
       browser.send(std::string(method) + " / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
       browser.send("{\"command\":\"quit\"}\n$k#6b");
-      if (port == "control") browser.line();  // what it should have sent
+      if (port == "control") browser.line();  // the greeting
       CHECK(browser.is_closed());
     }
   }
@@ -114,7 +114,7 @@ TEST_CASE("each port can be a Unix socket that only its user can open, in a fold
   CHECK_NOTHROW(device::find_usbip_devices(board.address("usbip")));
   {
     PlainClient terminal(board.address("uart1"));
-    terminal.send("GET /\n");  // only this user can have sent it
+    terminal.send("GET /\n");  // can only be sent by this user
     CHECK(terminal.receive(6) == "GET /\n");
     PlainClient gdb(board.address("gdb"));
     gdb.send("+$qSupported#37");

@@ -1,4 +1,4 @@
-// The longest interrupt, instruction by instruction, and the picture of it.
+// The profile of the longest interrupt per instruction, and its flame graph.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -22,7 +22,7 @@ TEST_CASE("a profile holds the whole control interrupt, and tools/flame-graph dr
   std::string address;
   for (std::ifstream lines(profile); lines >> address >> count; ++instructions) cycles += count;
   CHECK(instructions > 500);
-  CHECK(cycles > instructions / 2);  // an IT may cost nothing
+  CHECK(cycles > instructions / 2);  // an IT instruction may take no cycle
   CHECK(cycles < board::servo_cycles);
 
   const std::string tool = build_directory() + "/../../tools/flame-graph", picture = directory.file("picture.svg");

@@ -1,4 +1,4 @@
-// Runs programs: one of the built ones to its end, or one that is talked to while it runs.
+// Runs a built program to its end, or interacts with a running program.
 #pragma once
 
 #include <chrono>
@@ -10,34 +10,34 @@
 
 namespace inkwell::tests {
 
-/// How long a whole program, and one answer of it, may take: they end what hangs and are no measure of speed, so a
-/// machine that does thirty other things is still quick enough.
+/// Time limits for a whole program and for one answer. These limits only stop hanging programs and are long enough for
+/// a heavily loaded machine.
 inline constexpr std::chrono::seconds hang_guard{1200}, patience{300};
 
 struct ProgramResult {
-  int exit_code;  ///< -1 if the program was ended by a signal or by the time limit
+  int exit_code;  ///< -1 if a signal or the time limit stopped the program
   std::string out;
   std::string err;
 };
 
-/// Runs build/pc/`program`, or the program of an absolute path, with the arguments. Ends it after `limit`, which no
-/// healthy run reaches.
+/// Runs build/pc/`program`, or the program with an absolute path. Stops the program after `limit`, which a working
+/// program does not reach.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           std::chrono::seconds limit = hang_guard);
 
-/// A program that runs until this object ends it. Its standard error goes where the test's goes.
+/// A program that runs during the lifetime of this object. The program shares the standard error of the test.
 class RunningProgram {
  public:
-  /// `words`: the program, by name or by path, and its arguments. `environment`: "NAME=VALUE", added to the test's.
+  /// `words`: name or path of the program, and its arguments. `environment`: "NAME=VALUE", added to that of the test.
   RunningProgram(const std::vector<std::string>& words, const std::vector<std::string>& environment = {});
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   void write_line(const std::string& line);
-  /// The next line of standard output; throws std::runtime_error if none comes within `limit`.
+  /// Returns the next line of standard output; throws std::runtime_error after `limit`.
   std::string read_line(std::chrono::seconds limit = patience);
-  /// Waits for its end; the exit code, or none if it was ended by a signal or still runs after `limit`.
+  /// Waits for the exit code. Empty if a signal stopped the program or if it still runs after `limit`.
   std::optional<int> wait(std::chrono::seconds limit = patience);
   int process() const { return process_; }
 
@@ -49,7 +49,7 @@ class RunningProgram {
   std::string received_;
 };
 
-/// The directory of this executable: build/pc.
+/// Directory of this executable: build/pc.
 std::string build_directory();
 
 }  // namespace inkwell::tests

@@ -1,4 +1,5 @@
-// Companion and firmware of different versions of the protocol: each refuses the other, says why, and moves nothing.
+// Companion and firmware with different protocol versions: each refuses the other, states the reason, and moves
+// nothing.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -69,7 +70,7 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
   CHECK_FALSE(std::filesystem::exists(directory.file("parameters.toml")));
   CHECK_FALSE(std::filesystem::exists(directory.file("recording.h5")));
 
-  // Not one transaction reached it, and no motor had current at any control period.
+  // The board received no transaction, and no motor had current in any control period.
   const auto transport = device::open_transport(*board.find());
   CHECK(feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction).transactions == 0);
   control.trace_stop();
@@ -115,7 +116,7 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   CHECK(told.refusal == protocol::Refusal::wrong_version);
   CHECK(std::string(info(told.refusal).remedy).find("companion") != std::string::npos);
 
-  // A command of that version is not carried out: no token comes back, the force stays off.
+  // A command with this version is not executed: its token is not returned, and the force remains off.
   protocol::CommandReport enable{};
   enable.command = protocol::Command::enable_force;
   enable.version = static_cast<std::uint8_t>(next_version);
@@ -129,7 +130,7 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   }
   CHECK(largest_current_A(rig.control) < 0.02);
 
-  // The same report in this version is, so it was the version that kept it out.
+  // The same report with the right version is accepted, so the version was the reason for the refusal.
   enable.version = static_cast<std::uint8_t>(protocol::protocol_version);
   transport->write_report(std::as_bytes(std::span(&enable, 1)));
   for (int i = 0; i < 100 && !protocol::force_is_on(pose.state); ++i)

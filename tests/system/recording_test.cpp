@@ -1,4 +1,4 @@
-// Recordings through the command line: from the virtual board to the file, back, and on paper.
+// Recordings on the command line: from the virtual board to a file, to a replay and to a plot.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -52,7 +52,7 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
   CHECK(recording.information.serial_number.size() == 24);
   CHECK(recording.information.parameters == protocol::default_parameters());
   CHECK(recording.information.signals == recording::standard_signals());
-  // The stylus rests in the inkwell: the joints do not move, the measured currents are noise of the converter.
+  // The stylus rests in the inkwell: the joints are stationary, and the measured currents are noise.
   const auto& joint_rad = recording.column(Signal::joint_2_rad);
   CHECK(joint_rad.back() ==
         doctest::Approx(recording.information.parameters[protocol::Parameter::inkwell_joint_2_rad]).epsilon(0.02));
@@ -108,7 +108,7 @@ TEST_CASE("a recording on a board that has run on since another one holds nothin
   constexpr double recorded_s = 0.3;
   for (const double pause_s : {0.0, 0.1, 2 * recorded_s}) {
     CAPTURE(pause_s);
-    std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));  // board time passes at least as fast
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));  // board time advances at least equally fast
     const std::string file = directory.file(std::to_string(pause_s) + ".h5");
     const auto run = run_program("inkwell", {"record", file, "--seconds", std::to_string(recorded_s), "--json",
                                              "--usbip", board.usbip().text()});

@@ -1,4 +1,4 @@
-// The same seed and the same calls give the same run, in both modes, however slow the computer is.
+// The same seed and the same calls give the same run in both modes, independent of the speed of the computer.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using protocol::Signal;
 
 namespace {
 
-/// All that a run leaves behind.
+/// All recorded results of a run.
 struct Story {
   std::vector<std::string> poses;
   std::vector<float> samples;
@@ -28,7 +28,7 @@ struct Story {
   std::uint64_t instructions = 0;
 };
 
-/// Of the members, without the padding between them. An unknown position is not a number, and equal to itself here.
+/// Returns the bytes of the members without padding. NaN (an unknown position) is equal to itself here.
 std::string bytes_of(const device::Pose& pose) {
   std::string bytes;
   const auto append = [&](const auto&... members) {
@@ -42,7 +42,7 @@ std::string bytes_of(const device::Pose& pose) {
 
 constexpr std::size_t story_signals = 5;
 
-/// A stylus is taken out of the inkwell and pressed into a wall. `dawdling`: what the host does between its calls.
+/// Takes a stylus out of the inkwell and presses it into a wall. `dawdling`: delays of the host between its calls.
 template <class Dawdling>
 Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
   BoardRig rig(mode, seed);
@@ -93,7 +93,7 @@ struct Cycles {
   double mean, longest;
 };
 
-/// Of the control interrupt, the last of the signals that a story takes.
+/// Cycles of the control interrupt, the last signal of a story.
 Cycles servo_cycles(const Story& story) {
   double sum = 0, longest = 0;
   std::size_t count = 0;
@@ -108,9 +108,9 @@ Cycles servo_cycles(const Story& story) {
 
 TEST_CASE("a run begins with all that the host sent and ends with all that the device sent") {
   BoardRig rig;
-  rig.control.run(0.0001);  // each run then ends just after a frame's report, which has no time to spare
+  rig.control.run(0.0001);  // each run then ends just after the report of a frame, the most critical case
   int late_reports = 0;
-  std::set<int> delays;  // of commands, in runs
+  std::set<int> delays;  // delay of the commands, in runs
   for (int round = 0; round < 1000; ++round) {
     const int token = rig.device->send(protocol::Command::heartbeat);
     rig.control.run(0.001);

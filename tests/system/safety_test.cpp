@@ -1,4 +1,4 @@
-// What keeps a hand safe: no force before the reference, none without a host, bridges off on a fault.
+// Safety of the hand: no force without a reference or without a host, and bridges off on a fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ TEST_CASE("an arm that has not been in the inkwell gets no force") {
   CHECK(rig.pose().state == State::unreferenced);
   CHECK(largest_current_A(rig.control) < 0.02);
 
-  // Back in the inkwell it learns where it is.
+  // The arm is referenced in the inkwell again.
   rig.control.dock(true);
   rig.control.hand({.holds = false});
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
@@ -76,7 +76,7 @@ TEST_CASE("a test's pulse goes off with a stop, a host that falls silent and a c
 TEST_CASE("a supply that fails switches the bridges off and says so") {
   BoardRig rig;
   rig.make_active();
-  rig.control.supply(9.0);  // the board's capacitors hold the bridges up for a while
+  rig.control.supply(9.0);  // the board's capacitors supply the bridges for a while
   rig.run_until([](const auto& pose) { return pose.state == State::fault; });
   CHECK(rig.pose().fault == protocol::Fault::supply_low);
   CHECK(largest_current_A(rig.control) < 0.02);
@@ -101,7 +101,7 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"bridge_fault"});
-  rig.control.run(1.5 * control_period_s);  // until the next control interrupt, and for as long as that may take
+  rig.control.run(1.5 * control_period_s);  // until the next control interrupt has finished
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   rig.run(0.02);
@@ -109,7 +109,7 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   CHECK(rig.pose().fault == protocol::Fault::bridge_fault);
   CHECK(largest_current_A(rig.control) < 0.02);
 
-  // While the cause lasts the fault cannot be cleared.
+  // The fault cannot be cleared while its cause lasts.
   rig.command(protocol::Command::clear_fault);
   rig.run(0.05);
   CHECK(rig.pose().state == State::fault);
@@ -145,13 +145,13 @@ TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it
 
 namespace {
 
-/// A hand that goes on swinging while the host has fallen silent.
+/// The hand continues to swing after the host has stopped sending.
 void let_host_fall_silent(BoardRig& rig) {
   rig.make_active();
   rig.take_to(free_point_m);
   rig.control.hand_path({{0.1, {0.0, 0.06, -0.03}}, {0.25, {0.0, -0.06, -0.03}}, {0.4, {0.0, 0.06, -0.03}}});
   rig.run(0.13);
-  rig.set({{Parameter::host_timeout_s, 0.05f}});  // its last word
+  rig.set({{Parameter::host_timeout_s, 0.05f}});  // last message of the host
 }
 
 }  // namespace
@@ -176,8 +176,8 @@ TEST_CASE("an arm whose host fell silent while a hand swings it is braked now an
   CHECK(on > 50);
   CHECK(off > 50);
   CHECK(largest_A > 0.1);
-  // As long as the hand is fast, a period is enough to be let go; of bridges that came on, or went, half a period later
-  // it would be half a period more.
+  // While the hand is fast, the brake is released within one control period. A delay of half a period at either edge
+  // would be detected.
   CHECK(longest_parts >= parts - 2);
   CHECK(longest_parts <= parts + 2);
   rig.control.run(0.5);
@@ -224,10 +224,10 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
   rig.control.inject({"program_astray", std::to_string(nothing_there)});
   constexpr double step_s = 50e-9;
   for (int step = 0; step < 20 && bridges_enabled(rig.control); ++step) rig.control.run(step_s);
-  rig.control.run(5 * step_s);  // the writes that switch both timers' outputs off cross to APB2
+  rig.control.run(5 * step_s);  // the writes that switch off the outputs of both timers pass the APB2 bus
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high(rig.control));
-  CHECK(restarts(rig.control) == 0);  // so it was the handler that switched them off, not the reset
+  CHECK(restarts(rig.control) == 0);  // the handler switched the outputs off, not a reset
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);
@@ -245,7 +245,7 @@ TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog,
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
-  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  rig.control.run(0.04);  // the slowest watchdog of the data sheet expires after 38 ms
   CHECK(watchdog_bites(rig.control) == 1);
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));

@@ -1,4 +1,4 @@
-// The control interrupt's cost, and the heat of the motors.
+// Processor load of the control interrupt, and motor heat.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -49,8 +49,8 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 
 namespace {
 
-/// Half of the period, and what the limits of energy and change, a change of state at the same time, and where code
-/// comes to lie, may add to it.
+/// Half of the period, plus a margin for the energy and rate limits, a simultaneous state change, and the code
+/// placement.
 constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 500;
 
 }  // namespace
@@ -63,7 +63,7 @@ TEST_CASE(
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
   rig.device->select_signals(signals);
   rig.take_to(free_point_m);
-  // Inside three walls, and moving through them.
+  // Moves inside three walls.
   rig.set(
       {{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}, {Parameter::box_maximum_y_m, 0.0f}});
   rig.take_to({0.02, 0.02, -0.045}, 0.3);
@@ -73,25 +73,25 @@ TEST_CASE(
   const auto report = rig.device->information().report;
   MESSAGE("simulation: longest control interrupt ", report.servo_cycles_longest, " of ", board::servo_cycles,
           " cycles");
-  CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
+  CHECK(report.servo_cycles_longest > 500);  // the interrupt ran and was measured
   CHECK(report.servo_cycles_longest < bearable_cycles);
   check_figure_on_cycles_page("longest control interrupt", report.servo_cycles_longest);
   CHECK(report.servo_overruns == 0);
-  // The poses tell of the longest as well, in parts of 255 of a period.
+  // The poses also contain the longest time, in units of 1/255 period.
   const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
   const double told_cycles = largest / 255.0 * board::servo_cycles;
   CHECK(told_cycles <= report.servo_cycles_longest);
   CHECK(told_cycles > 0.9 * report.servo_cycles_longest);
-  // Prefetch and cache of the flash are what the main loop has this from; the interrupts run without them.
+  // The main loop benefits from flash prefetch and cache; the interrupts run without them.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
-  // Where its functions come to lie in the lines of that cache moves it by some hundredths.
+  // The alignment of its functions to the cache lines changes the result by a few percent.
   CHECK(sleep_share > 0.11);
 }
 
 namespace {
 
-/// The longest contact stage of the next 0.1 s.
+/// Returns the longest contact stage within the next 0.1 s.
 float contact_cycles(BoardRig& rig) {
   while (rig.device->read_scope(std::chrono::milliseconds(0))) {
   }
@@ -102,7 +102,7 @@ float contact_cycles(BoardRig& rig) {
   return longest;
 }
 
-/// Eight planes around a point, the first `touched` of them a millimetre beyond it.
+/// Returns eight planes around a point, the first `touched` of them one millimeter beyond it.
 device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched, float friction) {
   device::Shapes shapes;
   for (std::size_t i = 0; i < shapes.planes.size(); ++i) {
@@ -150,7 +150,7 @@ TEST_CASE(
   const auto heartbeat = instructions_in({"Bridges12begin_period", "Bridges10end_period"});
   const auto heat = instructions_in({"7control11update_heat"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
-  // The motors' watch goes by it as well; every 128th look of a motor.
+  // The motor check also uses this function, in every 128th check of a motor.
   const auto resistance = instructions_in({"Controller15know_resistance"});
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {
@@ -160,8 +160,8 @@ TEST_CASE(
     });
   };
   const auto jumps = conditioning_by("encoders.hpp");
-  // The debugging information has the comparison and its branch, four instructions, in the line that asks. Three stores
-  // are there without it.
+  // The debug information assigns the comparison and branch, four instructions, to the calling line. Three store
+  // instructions of other code are included.
   const auto current_jumps = conditioning_by("current_jump.hpp") + 4 - 3;
   const auto change_of_state = instructions_in({"Controller12change_state", "7control7advanceERKNS0_10Supervisor"});
   MESSAGE("simulation: of ", executed.size(), " instructions ", watching, " supervise, ", heartbeat,
@@ -174,7 +174,7 @@ TEST_CASE(
   CHECK(jumps > 10);
   CHECK(current_jumps > 10);
   CHECK(heat > 10);
-  // The longest may be one in which a limit is reached or left.
+  // The longest interrupt may include a change of a limit's state.
   CHECK(watching + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 420 : 300));
   CHECK(bounds > 10);
   CHECK(bounds + resistance <= 100);
@@ -236,7 +236,7 @@ TEST_CASE("a motor that was warm before a restart is as warm after it, but not a
   rig.run(1.0);
   const auto hottest = [&] { return std::ranges::max(rig.device->information().report.motor_heat); };
   const auto is_kept = [&](float before) {
-    // With the parameters that a start has the heat goes in many seconds.
+    // With the default parameters the heat decays within many seconds.
     const float after = hottest();
     MESSAGE("simulation: heat ", before, " before the restart, ", after, " after it");
     CHECK(after > 0.9f * before);
@@ -260,10 +260,10 @@ TEST_CASE("a motor that was warm before a restart is as warm after it, but not a
   }
   rig.control.cut_power();
   reconnect(rig);
-  CHECK(hottest() < 1e-3f);  // of the self-test
+  CHECK(hottest() < 1e-3f);  // heat of the self-test
   rig.control.reset();
   reconnect(rig);
-  CHECK(hottest() < 1e-3f);  // of the self-test
+  CHECK(hottest() < 1e-3f);  // heat of the self-test
 }
 
 TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way together, and nothing trips") {
@@ -300,7 +300,7 @@ TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way t
   CHECK(protocol::force_is_on(rig.pose().state));
   CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::heat));
   CHECK(largest_current_A(rig.control) == doctest::Approx(0.5).epsilon(0.1));
-  // The force has kept its direction. The hand has moved a little.
+  // The force has kept its direction, and the hand has moved slightly.
   const auto now_A = currents_A();
   const double along = std::inner_product(now_A.begin(), now_A.end(), while_cool_A.begin(), 0.0);
   const auto length = [](const auto& v) { return std::hypot(v[0], v[1], v[2]); };

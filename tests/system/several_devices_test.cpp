@@ -1,4 +1,4 @@
-// Two arms at once, each known by its serial number: what is done to one does not touch the other.
+// Two simultaneous arms with different serial numbers do not influence each other.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -28,14 +28,14 @@ device::VirtualBoardOptions individual(std::uint64_t seed, const board::Facts& b
   return options;
 }
 
-/// Two individuals on two kinds of boards.
+/// Two devices on two kinds of boards.
 struct TwoArms {
   BoardRig first{individual(1, board::omni_driver)}, second{individual(2, board::bench_modules)};
   std::string first_number = first.device->information().serial_number,
               second_number = second.device->information().serial_number;
 };
 
-/// The newest sample of the one signal that was selected.
+/// Returns the newest sample of the only selected signal.
 float newest(device::Device& device) {
   float value = 0.0f;
   std::size_t count = 0;

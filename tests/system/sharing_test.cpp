@@ -1,4 +1,4 @@
-// Two programs at one arm: one drives, the other looks on.
+// Two programs with one arm: one is the driver, the other observes.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -21,7 +21,6 @@ using protocol::Signal;
 
 constexpr std::array scope_signals{Signal::force_x_N, Signal::program_force_x_N};
 
-/// The poses that have come.
 std::vector<device::Pose> read_poses(device::Device& device) {
   std::vector<device::Pose> poses;
   while (auto pose = device.read_pose(0ms)) poses.push_back(*pose);

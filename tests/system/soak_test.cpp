@@ -1,5 +1,5 @@
-// A short soak: each kind of phase at least once, with the firmware that is flashed. tools/soak runs an hour of it. And
-// that a soak lasts as long as was asked for.
+// A short soak test with each kind of phase and the flashed firmware; tools/soak runs one hour. The test also checks
+// that a soak test has the requested duration.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
     return press.at("force_N").get<double>() / press.at("limit_N").get<double>();
   };
   CHECK(part_of_limit("hardest_press") > 0.5);
-  // How hard the hand happens to be pressed as a fault is put in.
+  // These fractions depend on the force of the hand at the time of the fault.
   CHECK(part_of_limit("hardest_press_with_fault") > 0.02);
   CHECK(part_of_limit("hardest_press_with_fault_over_ms") > 0.02);
   CHECK(sitting.at("transactions").get<int>() > 10);
@@ -75,7 +75,7 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
   CHECK(json.at("stopped") == false);
   CHECK(soak("again.json", "2") == json);
   const auto alone = [&](const std::string& number) {
-    // The last one of an option counts, as with options behind those of tools/soak.
+    // The last value of a repeated option is used, as with additional options of tools/soak.
     return run_program("inkwell", {"soak", "--seconds", "3600", "--seconds", "3", "--sitting-seconds", "2", "--seed",
                                    "7", "--sitting", number, "--out", directory.file("alone.json")});
   };
@@ -119,7 +119,7 @@ TEST_CASE("a soak that is stopped writes what is known so far") {
   const std::string file = directory.file("soak.json");
   RunningProgram run(
       {build_directory() + "/inkwell", "soak", "--seconds", "100000", "--use-seconds", "0.4", "--out", file});
-  run.read_line();  // its first phase is over
+  run.read_line();  // its first phase has finished
   CHECK_FALSE(std::filesystem::exists(file));
   kill(run.process(), SIGINT);
   CHECK(run.wait() == 0);

@@ -1,5 +1,5 @@
-// What the board keeps of its parameters over its power, from a terminal: `inkwell parameters store` and its
-// neighbours, beside a board that is switched off and on.
+// The stored parameters from a terminal: `inkwell parameters store` and related commands, with a board that is switched
+// off and on.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -19,7 +19,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board with a flash that stays, and the companion beside it.
+/// A board with persistent flash, and companion commands that connect to it.
 struct RememberingBoard {
   TemporaryDirectory directory;
   std::string flash = directory.file("flash.bin");

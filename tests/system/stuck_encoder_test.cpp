@@ -1,5 +1,5 @@
-// An encoder that stands still: told by the current that no longer turns its joint, or by the voltage of a motor that
-// turns. What sound encoders show while a hand and a program do the same is taken for neither.
+// A stuck encoder is detected from a current that does not move its joint, or from the voltage of a turning motor.
+// Healthy encoders in the same situations raise no fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,10 +26,11 @@ Fault fault_of(BoardRig& rig) {
   return rig.pose().fault;
 }
 
-/// A program pulls for a second, harder and harder up to 6 N, then less, then harder again, while the hand holds on.
+/// A program pulls for one second with a force that rises to 6 N, falls and rises again, while the hand holds the
+/// stylus.
 void pull(BoardRig& rig, const std::array<float, 3>& along) {
   for (int millisecond = 0; millisecond < 1'000; ++millisecond) {
-    const float part = std::fmod(0.0015f * static_cast<float>(millisecond), 1.0f);  // of up and down
+    const float part = std::fmod(0.0015f * static_cast<float>(millisecond), 1.0f);  // phase of the rise and fall
     const float force_N = 12.0f * std::min(part, 1.0f - part);
     rig.push(
         {.force_N = {force_N * along[0], force_N * along[1], force_N * along[2]}, .mode = ForceMode::beside_walls});
@@ -47,7 +48,7 @@ void make_strong(BoardRig& rig) {
 TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it away, and the place of the arm with it") {
   struct Pulled {
     std::string joint;
-    std::array<float, 3> along;  ///< a direction that its motor takes a good part of
+    std::array<float, 3> along;  ///< a direction in which this motor contributes much of the force
   };
   for (const Pulled& pulled : {Pulled{"1", {1.0f, 0.0f, 0.0f}}, {"2", {0.0f, 0.7f, -0.7f}}, {"3", {0.0f, 0.7f, 0.7f}}})
     for (const bool sound : {true, false}) {

@@ -1,5 +1,5 @@
-// The pure tests, compiled for the Cortex-M4F, on the virtual board: the images that QEMU runs, unchanged. Two
-// emulators that agree on a quarter of a million checks are more likely to be right than one.
+// The pure tests, compiled for the Cortex-M4F and run on the virtual board with the same images as QEMU. Agreement of
+// two emulators in 250,000 checks makes a common error unlikely.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,8 +31,8 @@ TEST_CASE("the target's tests pass on the virtual board in fast mode") {
                         "target-tests-requests", "target-tests-streams", "target-tests-poses"});
 }
 
-// Without those of the control law, which run for minutes of board time: exact mode is the one that the experiment,
-// with the same law, runs in.
+// Excludes the control tests, which run for minutes of board time. The experiment covers the same control law in exact
+// mode.
 TEST_CASE("the target's tests pass on the virtual board in exact mode") {
   check_images("exact", {"target-tests-link", "target-tests-self-test", "target-tests-usb", "target-tests-requests",
                          "target-tests-streams", "target-tests-poses"});

@@ -1,4 +1,4 @@
-// UARTs of the virtual board on this program's pipes, on a terminal of their own and on a socket.
+// UARTs of the virtual board on this program's pipes, on a pseudo-terminal and on a socket.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -19,7 +19,7 @@ RunningProgram board_with_uart(const std::string& place) {
                          "--uart", "usart1=" + place});
 }
 
-/// What comes back for `text` on an open descriptor.
+/// Returns the echo of `text` on an open descriptor.
 std::string echo(int descriptor, const std::string& text) {
   REQUIRE(::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
   std::string answer;
@@ -50,7 +50,7 @@ TEST_CASE("a UART on a terminal of its own, which goes with the board") {
     board.read_line();
     const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY);
     REQUIRE(terminal >= 0);
-    CHECK(echo(terminal, "a\nb\r\x03!") == "A\nB\r\x03!");  // nothing is edited on the way
+    CHECK(echo(terminal, "a\nb\r\x03!") == "A\nB\r\x03!");  // bytes pass unchanged
     ::close(terminal);
     const auto taken = run_program("virtual-board", {"--elf", build_directory() + "/chip-firmware/echo.elf", "--uart",
                                                      "usart1=" + path.string(), "--seconds", "0.001"});

@@ -1,4 +1,4 @@
-// The window and a device that comes and goes; recordings and guides as the user runs them.
+// The window during disconnections of the device; recordings and guides as a user runs them.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -35,7 +35,7 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   plug_in(rig, "fault");
   CHECK(rig.look().says("The USB connection was lost while the force was on"));
   rig.click("banner/Clear fault");
-  // The arm still knows where it is, and the force is off.
+  // The arm is still referenced, and the force is off.
   rig.look_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().can_click("status/Switch force on"));
   CHECK_FALSE(rig.look().says("No arm was found"));
@@ -87,7 +87,7 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
 
   const auto recording = recording::read(file);
   CHECK(recording.complete);
-  CHECK(recording.size() > 10'000);  // half a second and what the clicks took
+  CHECK(recording.size() > 10'000);  // half a second and the duration of the clicks
   CHECK(recording.lost() == 0);
   CHECK(recording.information.simulation);
   REQUIRE(recording.marks.size() == 1);
@@ -125,7 +125,7 @@ TEST_CASE("a guide whose device is unplugged says so, and the parameters on tria
   WindowRig rig;
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");
-  // Each step waits for a confirmation; gains are on trial once a transaction was applied.
+  // Each step waits for a confirmation. Trial gains are active after the first transaction.
   const auto before = rig.look().applied_at_periods();
   rig.look_until("gains are on trial", [&](const Sight& now) {
     if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());

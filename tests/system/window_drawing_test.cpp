@@ -1,4 +1,4 @@
-// Of the window only what has changed is drawn, and nobody sees that it is drawn in parts.
+// Only changed parts of the window are redrawn, without a visible difference.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 double drawn_part(const Sight& sight) { return sight.all.at("drawn_part"); }
 
-/// In it stands how many poses come in a second, which falls while the board stands still.
+/// The status bar shows the pose rate, which falls while the board is paused.
 bool same_below_the_status_bar(const Image& one, const Image& other) {
   constexpr std::size_t status_pixels = 54;
   const auto from = static_cast<std::ptrdiff_t>(3 * status_pixels * one.width);
@@ -40,8 +40,8 @@ TEST_CASE("while the sphere moves and the plots scroll, the pane beside them is 
     least = std::min(least, part);
     most = std::max(most, part);
   }
-  CHECK(most > 0.2);   // the scene is
-  CHECK(least < 0.8);  // the column of panes is a quarter of the window
+  CHECK(most > 0.2);   // the scene is redrawn
+  CHECK(least < 0.8);  // the pane column, a quarter of the window, is not redrawn
 }
 
 TEST_CASE("what was drawn in parts looks as if it were drawn as a whole") {
@@ -59,7 +59,7 @@ TEST_CASE("what was drawn in parts looks as if it were drawn as a whole") {
   rig.look_until("the page is there", [](const Sight& now) { return now.has("Keys and mouse/Close"); });
   rig.click("Keys and mouse/Close");
   rig.move_to({700, 60});
-  rig.control.run(0.05);  // and stands still
+  rig.control.run(0.05);  // stationary afterwards
   const Image in_parts = rig.picture();
   rig.resize(1200, 700);
   rig.resize(1280, 800);

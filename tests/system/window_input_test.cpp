@@ -1,4 +1,4 @@
-// The user's hands on the window: sliders, files, the stop button, and how quickly it all takes effect.
+// User input in the window: sliders, files, the stop button, and the latency of their effects.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ using protocol::Parameter;
 namespace {
 
 const std::string stiffness_handle = "tuning/wall_stiffness_N_per_m handle";
-constexpr double points_of_whole_range = 1000;  // that a handle is dragged by
+constexpr double points_of_whole_range = 1000;  // drag distance of a handle over the whole range
 constexpr std::uint32_t periods_per_usb_frame = protocol::servo_rate_Hz / 1000;
 
-/// The control period in which the board is, as the board itself counts: its trace has a row for each.
+/// The current control period of the board, read from its trace, which has one row per period.
 class BoardClock {
  public:
   explicit BoardClock(device::ControlClient& control) : control_(control) { control_.trace_start(); }
@@ -56,7 +56,7 @@ TEST_CASE("the device holds the value to which a handle was dragged, with Shift 
     if (!key.empty()) rig.release_key(key);
     points += by_points * factor;
   }
-  rig.control.run(0.1);  // for the last of its transactions
+  rig.control.run(0.1);  // for its last transaction
   rig.control.resume();
   const auto held = rig.close_and_read_parameters();
   const auto& info = protocol::info(Parameter::wall_stiffness_N_per_m);
@@ -64,7 +64,7 @@ TEST_CASE("the device holds the value to which a handle was dragged, with Shift 
   CHECK(held[Parameter::wall_stiffness_N_per_m] == doctest::Approx(info.default_value + way).epsilon(0.003));
   auto expected = rig.parameters_at_start();
   expected[Parameter::wall_stiffness_N_per_m] = held[Parameter::wall_stiffness_N_per_m];
-  CHECK(held == expected);  // and nothing else changed
+  CHECK(held == expected);  // no other parameter has changed
 }
 
 TEST_CASE("a dragged value is in the interrupt within two USB frames of board time") {
@@ -78,8 +78,8 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.press_mouse();
     rig.move_to({handle.x + 20, handle.y});
     rig.look_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-    // Board time stands still while the event is made and handled, each time in another part of a USB frame, and
-    // passes while the transaction is under way: what a busy computer takes between is not counted.
+    // Board time stands by while the event is generated and handled, each time at another phase of the USB frame. Only
+    // the transaction is measured, so that a busy computer does not change the result.
     rig.control.run(2e-4 * (attempt + 1));
     const auto moved_at = clock.newest_period();
     rig.control.stand_by();
@@ -101,7 +101,7 @@ TEST_CASE("a frame shows the newest pose that had arrived when it began") {
   for (int frame = 0; frame < 50; ++frame) {
     const auto sight = rig.look().all;
     const std::int64_t shown = sight.at("pose_at_periods"), arrived = sight.at("arrived_at_periods");
-    CHECK(shown >= arrived);  // or one that came while the frame was begun
+    CHECK(shown >= arrived);  // or a pose that arrived at the start of the frame
   }
 }
 
@@ -111,13 +111,13 @@ TEST_CASE("a pose is at most three USB frames of board time old when it can be d
   std::vector<std::int64_t> ages;
   for (int attempt = 0; attempt < 9; ++attempt) {
     rig.control.run(0.015 + 1e-4 * attempt);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the reports that are on their way to the window
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the reports in transit to the window
     ages.push_back(clock.newest_period() - rig.look().all.at("pose_at_periods").get<std::int64_t>());
     rig.control.resume();
   }
   std::ranges::sort(ages);
   MESSAGE("simulation: the drawn pose is ", ages.front(), " to ", ages.back(), " control periods old");
-  CHECK(ages[ages.size() / 2] <= 3 * periods_per_usb_frame);  // it waits to be asked for, is sent, and is handed over
+  CHECK(ages[ages.size() / 2] <= 3 * periods_per_usb_frame);  // request, transmission and transfer to the window
 }
 
 TEST_CASE("a parameter file loaded in the window is what the device then holds, and unknown names are told") {
@@ -161,7 +161,7 @@ TEST_CASE("the stop button and the space bar switch the force off, the button al
   rig.look_until("the space bar stopped it", has_stopped);
 
   rig.switch_force_on();
-  rig.click("tuning/Load");  // a dialog over everything, which has the keyboard
+  rig.click("tuning/Load");  // a modal dialog with the keyboard focus
   rig.press_key("Escape");
   rig.look_until("Escape stopped it and closed the dialog",
                  [&](const Sight& now) { return has_stopped(now) && !now.has("choose a file/Cancel"); });

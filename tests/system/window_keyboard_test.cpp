@@ -1,4 +1,4 @@
-// The window without a mouse: from part to part, from thing to thing, and what the arrows do with a modifier.
+// The window without a mouse: moving between parts and controls, and the arrow keys with modifiers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 std::string part_of(const std::string& item) { return item.substr(0, item.find('/')); }
 
-/// The parts that have the keyboard one after the other while the key is pressed, until the first has it again.
+/// Presses the key repeatedly and returns the parts that receive the keyboard focus, until the first part has it again.
 std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
   std::vector<std::string> parts;
   for (int step = 0; step < 12; ++step) {
@@ -34,7 +34,7 @@ void go_to_part(WindowRig& rig, const std::string& part) {
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
-/// Presses the key until the thing has the keyboard; what had it on the way.
+/// Presses the key until the item has the keyboard focus. Returns the items that had the focus before.
 std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::string& item, int steps_maximum) {
   std::set<std::string> on_the_way;
   for (int step = 0; step < steps_maximum; ++step) {
@@ -104,7 +104,7 @@ TEST_CASE("a signal gets a plot of its own by Enter") {
   rig.tap_key("Return");
   go_to(rig, "Down", "scope/supply_V", 12);
   rig.tap_key("Return");
-  rig.click("scope/Signals");  // without the list only the plot's title has that name
+  rig.click("scope/Signals");  // without the list only the plot's title has this name
   rig.look_until("the list is gone", [](const Sight& now) { return !now.has("scope/search"); });
   CHECK(rig.look().has("scope/supply_V"));
 }
@@ -159,7 +159,7 @@ TEST_CASE("the space bar stops the force and does not press the focused control"
   CHECK_FALSE(rig.look().is_active("scope/Signals"));
   rig.release_key("space");
   CHECK_FALSE(rig.look().has("scope/search"));
-  rig.tap_key("Return");  // the control does react to the key that presses it
+  rig.tap_key("Return");  // the control reacts to the key that presses it
   CHECK(rig.look().has("scope/search"));
 }
 
@@ -179,6 +179,6 @@ TEST_CASE("the page of keys is whole in the smallest window") {
   const auto close =
       rig.look_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
           .item("Keys and mouse/Close");
-  CHECK(close.y + close.height < 550);  // and nothing has to be scrolled to
+  CHECK(close.y + close.height < 550);  // no scrolling is needed
   CHECK(rig.look().says("Choose what a plot shows"));
 }

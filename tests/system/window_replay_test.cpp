@@ -1,4 +1,4 @@
-// Two recordings in the window: one that is replayed, and one that is laid over it.
+// Two recordings in the window: a replayed recording and an overlaid recording.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using protocol::Signal;
 
 namespace {
 
-/// Half a second in which the force swings between -1 N and 1 N so many times.
+/// Writes a recording of half a second in which the force oscillates between -1 N and 1 N, `times` times.
 void write_swing(const std::string& file, double times) {
   constexpr std::uint32_t periods = protocol::servo_rate_Hz / 2, first_period = 1000;
   const auto signals = recording::standard_signals();
@@ -42,14 +42,14 @@ Sight lay_over(WindowRig& rig, const std::string& file) {
   return rig.look_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
 }
 
-/// The window while nothing in it is under the mouse.
+/// Returns a picture of the window with no item under the mouse.
 Image picture_of(WindowRig& rig) {
   rig.move_to({700, 60});
   rig.look();
   return rig.picture();
 }
 
-/// Pixels that differ below the replay's bar and beside the panes, where the plots are.
+/// Number of different pixels in the area of the plots, below the replay bar and next to the panes.
 std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& other) {
   const Sight sight = rig.look();
   const Item bar = sight.item("replay/Close"), panes = sight.item("tabs/Tuning");
@@ -62,7 +62,7 @@ std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& othe
   return changed;
 }
 
-/// More than change when the curves move by a sample, as they may when they are read anew.
+/// A shift of the curves by one sample, which may occur after a new read, changes fewer pixels.
 constexpr std::size_t of_a_sample = 100;
 
 }  // namespace
@@ -95,7 +95,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   };
   const std::string at_the_end = position(rig.look());
   REQUIRE(!at_the_end.empty());
-  rig.tap_key("shift+Left");  // the replay's bar was clicked last, so it has the keyboard
+  rig.tap_key("shift+Left");  // the replay bar was clicked last and has the keyboard focus
   CHECK(position(rig.look()) != at_the_end);
 }
 

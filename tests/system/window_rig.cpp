@@ -20,7 +20,7 @@ device::VirtualBoardOptions board_options(const std::filesystem::path& elf = {},
   options.elf = elf;
   options.board = board_name;
   options.mode = device::SimulationMode::fast;
-  options.real_time = true;  // the mouse is the hand, so board time must be the user's time
+  options.real_time = true;  // the mouse moves the hand, so board time must be real time
   return options;
 }
 
@@ -39,8 +39,8 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
   return words;
 }
 
-// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
-// keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
+// The display prints its number once it is ready; messages about used numbers are not errors. Key repeat is off (-r),
+// because a busy computer may delay the release of a key.
 std::vector<std::string> display_command(const std::string& screen) {
   return {"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 " + screen + "x24 -nolisten tcp 2>/dev/null"};
 }
@@ -85,7 +85,7 @@ WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control
 
 protocol::ParameterSet WindowRig::parameters_at_start() {
   auto set = protocol::default_parameters();
-  set[protocol::Parameter::host_timeout_s] = 2.0f;  // tests decide when the host is silent; a busy machine does not
+  set[protocol::Parameter::host_timeout_s] = 2.0f;  // the tests decide when the host is silent, not a busy machine
   return set;
 }
 
@@ -118,7 +118,7 @@ Image WindowRig::picture() {
   return read_png(file);
 }
 
-// Each event is followed by a frame: in one frame a click's press and release would cancel each other out.
+// A frame follows each event, because a press and a release in the same frame would cancel each other.
 void WindowRig::play(const std::vector<std::string>& events) {
   std::vector<std::string> words{display_name_, "xdotool"};
   words.insert(words.end(), events.begin(), events.end());

@@ -1,4 +1,4 @@
-// A window on a display of 192 dots per inch is twice as big as its text.
+// On a display of 192 dots per inch, window and text have twice the size.
 #include <doctest/doctest.h>
 
 #include <string>

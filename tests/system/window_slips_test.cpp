@@ -1,5 +1,4 @@
-// What a slip of the hand does to the arm: numbers that are half typed, commas, the wrong key, a replay over a live
-// arm.
+// Effects of user mistakes on the arm: incomplete numbers, commas, wrong keys, and a replay over a live arm.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -25,14 +24,14 @@ const float stiffness_at_start = protocol::info(Parameter::wall_stiffness_N_per_
 const auto force_is_on = [](const Sight& now) { return now.state() == "active"; };
 const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; };
 
-/// Changes something, and waits until the device holds it.
+/// Makes a change and waits until it is active in the device.
 void change_and_wait(WindowRig& rig, const std::function<void()>& change) {
   const auto before = rig.look().applied_at_periods();
   change();
   rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
 }
 
-/// After a frame in which nothing more can be on its way, the value that the device holds at the end of the test.
+/// Returns the device's value at the end of the test, after all pending changes.
 float stiffness_held_at_the_end(WindowRig& rig) {
   rig.control.run(0.1);
   rig.control.resume();
@@ -45,7 +44,7 @@ TEST_CASE("a number is not sent while it is typed, but when Enter ends it") {
   WindowRig rig;
   const auto before = rig.look().applied_at_periods();
   rig.enter(stiffness, "1500");
-  rig.control.run(0.2);  // in which a half-typed number would arrive
+  rig.control.run(0.2);  // time for a half-typed number to arrive
   rig.control.resume();
   CHECK(rig.look().applied_at_periods() == before);
   rig.press_key("Return");
@@ -56,7 +55,7 @@ TEST_CASE("a number is not sent while it is typed, but when Enter ends it") {
 TEST_CASE("a click selects the whole number and sends nothing") {
   WindowRig rig;
   rig.click(stiffness);
-  rig.type("900");  // takes the place of what was selected
+  rig.type("900");  // replaces the selected text
   rig.click("tabs/Tuning");
   CHECK(stiffness_held_at_the_end(rig) == 900.0f);
 }
@@ -124,7 +123,7 @@ TEST_CASE("space is a space while a text is typed; Escape and F12 switch the for
     CAPTURE(key);
     rig.switch_force_on();
     rig.enter("recording/file", "two words");
-    rig.control.run(0.1);  // for a command on its way
+    rig.control.run(0.1);  // for a command in transit
     rig.control.resume();
     CHECK(rig.look().state() == "active");
     rig.press_key(key);
@@ -201,19 +200,19 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
     rig.look_until("it asks", asks);
   };
   const auto check_no_replay = [&] {
-    rig.control.run(0.1);  // in which the replay would begin
+    rig.control.run(0.1);  // time for the replay to start
     rig.control.resume();
     CHECK_FALSE(rig.look().says("REPLAY"));
   };
   ask_with_force();
-  rig.click("status/STOP");  // is no answer
+  rig.click("status/STOP");  // does not answer the question
   rig.look_until("the force is off", force_is_off);
   check_no_replay();
   CHECK(asks(rig.look()));
   rig.click("force before replay/Cancel");
 
   ask_with_force();
-  rig.press_key("Escape");  // is no
+  rig.press_key("Escape");  // answers no
   rig.look_until("the force is off", force_is_off);
   CHECK_FALSE(asks(rig.look()));
   check_no_replay();
@@ -228,7 +227,7 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.click("force before replay/Switch off and replay");
   const auto replay = rig.look_until("the replay says what it is", [](const Sight& now) { return now.says("REPLAY"); });
   CHECK(replay.state() == "ready");
-  CHECK_FALSE(replay.can_click("status/Switch force on"));  // not while the arm is out of sight
+  CHECK_FALSE(replay.can_click("status/Switch force on"));  // impossible during a replay
   CHECK_FALSE(replay.has("scene/Switch force on"));
   rig.control.run(0.1);
   rig.control.resume();

@@ -1,4 +1,4 @@
-// What the window says of values that are not stored on the board, and of those that are others after a loss.
+// Display of values that are not stored on the board, and of values that differ after a reconnection.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -15,7 +15,7 @@ constexpr float stiff_N_per_m = 1500.0f;
 
 const auto says = [](const std::string& words) { return [words](const Sight& now) { return now.says(words); }; };
 
-/// The window sends one value of its own at its start; the preset makes that three.
+/// The window sends one value at its start; the preset makes a total of three.
 void make_stiff(WindowRig& rig) {
   rig.look_until("one value waits", says("1 value is not stored"));
   rig.click("tuning/Stiff");
@@ -27,7 +27,7 @@ void store(WindowRig& rig) {
   rig.look_until("they are stored", says("All values are stored"));
 }
 
-/// As a power cut does, after which the arm is in its inkwell.
+/// Restarts the board like a power cut, after which the arm is in its inkwell.
 void restart(WindowRig& rig) {
   rig.control.reset();
   rig.look_until("the window is connected again",
@@ -118,7 +118,7 @@ TEST_CASE("a question about a device that goes away goes with it") {
   };
   go_away_and_come("tuning/Factory reset", "factory reset");
   go_away_and_come("tuning/Restore", "restore stored values");
-  rig.click("tuning/Viscous");  // which a question that is still there would keep from the mouse
+  rig.click("tuning/Viscous");  // an open question would block the mouse
   rig.look_until("it is chosen", [](const Sight& now) { return now.applied_at_periods() != 0; });
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("after a loss of power the window lists what is not as before, and sen
   CHECK(sight.says("Connected again, with 3 other values"));
   CHECK(sight.says("Wall stiffness"));
   CHECK(sight.says("800, was 1500 N/m"));
-  rig.control.run(0.5);  // in which something that is sent by itself would arrive
+  rig.control.run(0.5);  // time for an automatic change to arrive
   rig.control.resume();
   CHECK(rig.look().applied_at_periods() == 0);
   SUBCASE("the old ones") {

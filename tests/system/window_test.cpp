@@ -1,4 +1,4 @@
-// What the real window draws, on software OpenGL under Xvfb: looked for by colour, judged by the board's truth.
+// Pictures of the real window with software OpenGL under Xvfb, checked by color and compared with the board's truth.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -19,7 +19,7 @@ std::size_t count(const Image& image, window::Colour colour) {
   return image.count({colour.red, colour.green, colour.blue}, 2);
 }
 
-/// The part of the picture with the arm, the sphere and the walls: the scope has lines of the same colours.
+/// Returns the part of the picture with arm, sphere and walls, because the scope has lines of the same colors.
 Image scene_of(WindowRig& rig) {
   const Image whole = rig.picture();
   const auto scene = rig.look().item("scene/view");
@@ -35,7 +35,7 @@ Image scene_of(WindowRig& rig) {
 const float wall_x_m = protocol::info(Parameter::box_maximum_x_m).default_value;
 const float radius_m = protocol::info(Parameter::sphere_radius_m).default_value;
 
-/// Drags the sphere from where it is to the middle of the box, and from there through the wall on the right.
+/// Drags the sphere to the center of the box, and then through the right wall.
 void drag_through_the_right_wall(WindowRig& rig) {
   const auto sight = rig.look();
   const auto left = sight.item("scene/box_minimum_x_m").centre(), right = sight.item("scene/box_maximum_x_m").centre();
@@ -75,12 +75,12 @@ TEST_CASE("with the force on the hand goes on, the sphere stays at the wall, and
   rig.look_until("the hand is behind the wall", [&](const Sight&) { return hand_target_x_m(rig) > wall_x_m + 0.004; });
   rig.control.run(0.5);  // the arm comes to rest
   const double probe_x_m = rig.true_probe_m()[0];
-  CHECK(probe_x_m > wall_x_m - radius_m);          // the wall is touched,
-  CHECK(probe_x_m < wall_x_m - radius_m + 0.008);  // and gives way no more than a spring of its stiffness does
+  CHECK(probe_x_m > wall_x_m - radius_m);          // in contact with the wall
+  CHECK(probe_x_m < wall_x_m - radius_m + 0.008);  // within the deflection of its stiffness
   CHECK(hand_target_x_m(rig) > probe_x_m + 0.008);
   rig.control.resume();
   const auto scene = scene_of(rig);
   CHECK(count(scene, colours::wall_touched) > 100);
-  CHECK(count(scene, colours::wall_idle) > 100);  // the others stay as they were
-  CHECK(count(scene, colours::hand) > 20);        // the spring to the hand
+  CHECK(count(scene, colours::wall_idle) > 100);  // the other walls are unchanged
+  CHECK(count(scene, colours::hand) > 20);        // the spring of the hand
 }

@@ -1,4 +1,4 @@
-// What the window shows: its log, signals that are dragged, formulas, another recording laid over, big displays.
+// Views of the window: event log, dragged signals, formulas, an overlaid recording, large displays.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -17,7 +17,7 @@ std::uint32_t call(Operation operation, const void* parameters) {
   return r0;
 }
 
-/// The runner's standard output has the name ":tt", opened for writing (mode 4).
+/// The standard output of the simulator has the name ":tt", opened for writing (mode 4).
 std::uint32_t standard_output() {
   static const struct {
     const char* name;
@@ -54,7 +54,7 @@ void write(const char* text) { write(text, __builtin_strlen(text)); }
 
 }  // namespace inkwell::semihosting
 
-// What newlib asks of an operating system, as far as tests need it.
+// Operating system functions that newlib requires for the tests.
 extern "C" {
 
 extern char heap_start, heap_end;
@@ -94,6 +94,6 @@ int _kill(int, int) {
   return -1;
 }
 
-// Clocks mean nothing here: tests count instructions.
+// Time is not available, because tests count instructions.
 int _gettimeofday(void*, void*) { return -1; }
 }

@@ -6,13 +6,13 @@
 
 namespace inkwell::semihosting {
 
-/// Writes text that ends in a zero byte to the terminal of the program that runs the image.
+/// Writes a zero-terminated text to the terminal of the simulator.
 void write(const char* text);
 
 /// Writes bytes to the terminal.
 void write(const char* bytes, std::size_t count);
 
-/// Ends the program that runs the image with this exit code.
+/// Stops the simulator with this exit code.
 [[noreturn]] void exit(int code);
 
 }  // namespace inkwell::semihosting

@@ -1,4 +1,4 @@
-// Start-up of a test image on a bare Cortex-M4F, and what happens when a test crashes it.
+// Start-up code of a test image on a bare Cortex-M4F, and the handler for CPU faults.
 #include <cstdint>
 #include <cstdlib>
 
@@ -25,10 +25,10 @@ int run_tests();
   inkwell::semihosting::exit(99);
 }
 
-// Names this image to the destructors of static objects; there is only one image.
+// Identifies the image for destructors of static objects. There is only one image.
 void* __dso_handle = nullptr;
 
-// Called by __libc_init_array; all constructors are in the init array.
+// Called by __libc_init_array. Empty, because all constructors are in the init array.
 void _init() {}
 void _fini() {}
 

@@ -1,5 +1,5 @@
-// Instructions that one step of the controller takes on the Cortex-M4F. QEMU runs the image with one
-// instruction a nanosecond, so SysTick counts instructions in units of 168 MHz / 1 GHz.
+// Instructions per step of the controller on the Cortex-M4F. QEMU executes one instruction per nanosecond, so SysTick
+// counts instructions in units of 168 MHz / 1 GHz.
 #include <doctest/doctest.h>
 
 #include <firmware/control/arms.hpp>
@@ -9,14 +9,14 @@ namespace {
 
 using namespace inkwell;
 
-/// SysTick, counting down at the processor's clock (PM0214, "SysTick timer").
+/// SysTick, counting down with the processor clock (PM0214, "SysTick timer").
 class InstructionCounter {
  public:
   InstructionCounter() {
     reload() = 0xFFFFFF;
     value() = 0;
     control() = 5;
-    // A loop of a known number of instructions gives the scale.
+    // A loop with a known number of instructions provides the scale.
     constexpr std::uint32_t rounds = 50'000;
     const std::uint32_t begin = ticks();
     std::uint32_t left = rounds;
@@ -41,7 +41,7 @@ class InstructionCounter {
   float instructions_per_tick_;
 };
 
-/// The controller's stage clock in ticks: as cheap as the board's, which reads a counter too.
+/// Stage clock of the controller in SysTick ticks. Its cost is that of the board's clock, which also reads a counter.
 struct StageClock {
   const InstructionCounter& counter;
   std::uint32_t begin = counter.ticks();
@@ -53,8 +53,8 @@ struct StageClock {
   }
 };
 
-/// A box far from the arm, so that every step is in contact with three walls and at the force limit. The motors are
-/// none: no current flows, and they turn without a voltage.
+/// A box far from the arm, so that every step has contact with three walls and reaches the force limit. No motors are
+/// simulated, so no current flows although the joints move.
 protocol::ParameterSet parameters_out_of_box() {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
@@ -80,7 +80,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2400 instr
   constexpr int steps = 400;
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
-    // An edge in two of three periods on every joint: the velocity windows are at their longest walk.
+    // An edge in two of three periods on every joint causes the longest search of the velocity windows.
     for (std::int32_t& counts : samples.encoder_counts) counts += i % 3 != 0 ? 1 : 0;
     StageClock clock{counter};
     const std::uint32_t begin = counter.ticks();
@@ -99,8 +99,8 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2400 instr
   CHECK(controller.signals()[protocol::Signal::force_N] > 0.0f);
   CHECK(controller.signals()[protocol::Signal::joint_speed_3_rad_s] > 0.0f);
   CHECK(longest > 300.0f);
-  // Under QEMU these are instructions; the virtual board counts cycles where memory hardly waits. What the interrupt
-  // may take of its period is judged with the whole firmware, in cycles.
+  // QEMU counts instructions. The virtual board counts cycles, and a test with the complete firmware checks the
+  // duration of the interrupt.
   CHECK(longest < 2400.0f);
 }
 

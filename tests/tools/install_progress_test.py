@@ -9,7 +9,7 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1))
 
-# Each package that dpkg knows is a file of the folder "packages", with its status in it.
+# Each package that the fake dpkg knows is a file with its status in the folder "packages".
 FAKE_PROGRAMS = {
     "apt-get": """
 case "$*" in

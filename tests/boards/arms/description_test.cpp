@@ -12,7 +12,7 @@ namespace {
 using namespace inkwell;
 using protocol::Parameter;
 
-/// Arms of the repository.
+/// Arm descriptions of this repository.
 const std::filesystem::path arms_directory = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
 
 std::string omni() {
@@ -20,7 +20,7 @@ std::string omni() {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// The Omni's description with one piece of text replaced.
+/// Returns the Omni's description with one part of the text replaced.
 std::string omni_with(const std::string& piece, const std::string& instead) {
   std::string text = omni();
   const auto at = text.find(piece);
@@ -28,7 +28,7 @@ std::string omni_with(const std::string& piece, const std::string& instead) {
   return text.replace(at, piece.size(), instead);
 }
 
-/// What parse() says about a text, or "" if it takes it.
+/// Returns the error message of parse(), or "" if the text is accepted.
 std::string complaint(const std::string& text) {
   return tests::message_of<arms::DescriptionError>([&] { arms::parse(text, "some.toml"); });
 }
@@ -115,7 +115,7 @@ TEST_CASE("an unknown key gets the nearest known one, its line and its section")
   CHECK_SAYS(complaint(omni_with("inductance_H", "inductanse_H")), "did you mean inductance_H?");
   CHECK_SAYS(complaint(omni_with("gear_ratio_1 = ", "zzz = ")), "omni.toml");
   CHECK_SAYS(complaint(omni_with("\n[motor]\n", "\n[motor]\nzzz = 1\n")), "known here: inductance_H");
-  // A row of the table that is not the arm's is no key of an arm either.
+  // A parameter that does not belong to the arm is not a valid key of an arm description.
   CHECK_SAYS(complaint(omni_with("\n[parameters]\n", "\n[parameters]\nwall_stiffness_N_per_m = 3\n")), "has no key");
 }
 

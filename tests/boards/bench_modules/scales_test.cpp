@@ -1,4 +1,4 @@
-// The board's scales in numbers of their own, from the parts and wires that its README.md names.
+// Checks the board's scales against separate numbers from the parts and wires in its README.md.
 #include <bench_modules/facts.hpp>
 
 #include <doctest/doctest.h>
@@ -40,7 +40,7 @@ TEST_CASE("bench modules: the LED is between the supply and its pin") { CHECK(fa
 TEST_CASE("bench modules: what stands at the pins for one ampere, for the supply and for a potentiometer") {
   test::DrivenPlant driven(test::omni(), {}, facts);
   CHECK(driven.read_V(facts.supply) == Approx(18.0 / 9.2).epsilon(0.01));
-  for (const auto& wiper : facts.gimbal) CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
+  for (const auto& wiper : facts.gimbal) CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // mid-scale
   driven.enable(true);
   driven.run(0.003, {0.2, -0.2, 0.0});
   const auto truth = driven.plant.truth(driven.now);
@@ -48,8 +48,8 @@ TEST_CASE("bench modules: what stands at the pins for one ampere, for the supply
   REQUIRE(truth.current_A[1] < -0.8);
   for (const int motor : {0, 1})
     CHECK(driven.read_V(facts.motor_current[motor]) == Approx(1.65 + 0.25 * truth.current_A[motor]).epsilon(0.02));
-  CHECK(driven.inputs.at({'B', 3}) == virtual_board::PinLevel::low);       // the stylus rests in the inkwell
-  CHECK(driven.inputs.at({'B', 8}) == virtual_board::PinLevel::floating);  // no button is pressed
+  CHECK(driven.inputs.at({'B', 3}) == virtual_board::PinLevel::low);       // the stylus is in the inkwell
+  CHECK(driven.inputs.at({'B', 8}) == virtual_board::PinLevel::floating);  // button not pressed
 }
 
 }  // namespace

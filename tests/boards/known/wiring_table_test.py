@@ -1,4 +1,4 @@
-"""The wiring table that a builder follows agrees with the facts that the firmware is made from.
+"""The wiring table for builders agrees with the board facts that the firmware is built from.
 
 usage: wiring_table_test.py BOARD_FACTS BOARD, the program that prints the facts and the board's name
 """
@@ -19,7 +19,7 @@ LQFP64 = {
     **{f"PC{n}": place for n, place in enumerate((8, 9, 10, 11, 24, 25, 37, 38, 39, 40, 51, 52, 53, 2, 3, 4))},
 }
 
-# STM32World/hardware, mcustm32f405, connectors J2 and J3: the pins two by two, as they stand there.
+# STM32World/hardware, mcustm32f405, connectors J2 and J3: the pins in pairs, in the order of the connectors.
 HEADERS = {
     "J2": "- - - - PC1 PC0 PC3 PC2 PA1 PA0 PA3 PA2 PA5 PA4 PA7 PA6 PC5 PC4 PB1 PB0 - PB2 PB11 PB10 PB13 PB12 PB15 PB14 PC7 "
           "PC6 PC9 PC8",
@@ -28,7 +28,7 @@ HEADERS = {
 }
 MODULE = {pin: f"{header}.{place}" for header, pins in HEADERS.items() for place, pin in enumerate(pins.split(), 1)}
 
-# What a table says of where a pin is.
+# Position of each pin in a wiring table.
 PLACES = {"omni_driver": LQFP64, "bench_modules": MODULE}
 
 

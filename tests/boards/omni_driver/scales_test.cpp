@@ -1,5 +1,5 @@
-// The board's scales in numbers of their own. Firmware and simulation are both made from the board's facts, so a wrong
-// fact would not show between them: these numbers come from the parts and wires that README.md names.
+// Checks the board's scales against separate numbers from the parts and wires in README.md. Firmware and simulation
+// both use the board's facts, so comparing them with each other would not reveal a wrong fact.
 #include <omni_driver/facts.hpp>
 
 #include <numbers>
@@ -56,7 +56,7 @@ TEST_CASE("what stands at the pins for one ampere, for the supply and for a pote
   test::DrivenPlant driven(test::omni());
   CHECK(driven.read_V(board::omni_driver.supply) == Approx(18.0 / 11.0).epsilon(0.01));
   for (const auto& wiper : board::omni_driver.gimbal)
-    CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
+    CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // mid-scale
   driven.enable(true);
   driven.run(0.003, {0.2, -0.2, 0.0});
   const auto truth = driven.plant.truth(driven.now);
@@ -83,7 +83,7 @@ TEST_CASE("encoder filter: 0.38 us, and each arm's fastest edges hold an input t
     for (unsigned motor = 0; motor < 3; ++motor) {
       CAPTURE(arm.name);
       CAPTURE(motor);
-      // No motor turns faster than without a load at the highest supply; an input holds its level for two counts.
+      // No motor exceeds its no-load speed at the highest supply voltage. An input keeps its level for two counts.
       const double fastest_rad_per_s = static_cast<double>(board::supply_maximum_V / torque_constants[motor]);
       const double counts_per_s =
           fastest_rad_per_s / (2.0 * std::numbers::pi) * static_cast<double>(counts_per_turn[motor]);

@@ -1,6 +1,6 @@
-// Looks for a device and drives it as CHAI3D 3 does: both libraries by dlopen(), every symbol, and in its order.
-// Makes a mistake of its own beside it. Tells what it saw, a line each; with an argument it asks for that many newtons
-// to the right.
+// Searches for a device and uses it in the same order of calls as CHAI3D 3: both libraries by dlopen(), with every
+// symbol. It also makes one deliberate error. Prints one line per result; an argument sets a force to the right in
+// newtons.
 #include <dlfcn.h>
 
 #include <cstdio>
@@ -61,7 +61,7 @@ int main(int count, char** arguments) {
   const int has_radius = get_radius(0, &radius), has_type = get_type(0, type);
   std::printf("radius %d %.4f\ntype %d %s\n", has_radius, radius, has_type, type);
   std::printf("open %d %d\n", open(devices), open(0));
-  symbol<decltype(hdEndFrame)>("hdEndFrame")(no_device);  // an error of the program's own
+  symbol<decltype(hdEndFrame)>("hdEndFrame")(no_device);  // a deliberate error
   const double force = count > 1 ? std::atof(arguments[1]) : 0.0, none = 0.0;
   int refused = 0;
   for (int i = 0; i < 1000; ++i) refused += set_force_and_torque(0, &none, &force, &none, &none, &none, &none) != 0;

@@ -1,6 +1,6 @@
-// Forks while the scheduler runs, through HDAPI or through libhdPhantom, many times in its main thread and once in its
-// callback. A child uses its parent's device, closes it, and ends with all destructors. Prints what is not as it should
-// be, then whether the parent still has its arm.
+// Forks while the scheduler runs, through HDAPI or libhdPhantom: many times in the main thread and once in the
+// callback. A child uses its parent's device, closes it, and exits with all destructors. The program prints each
+// deviation, then the state of the parent's arm.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -79,7 +79,7 @@ void use_phantom_in_child() {
   check(hdPhantomOpen(0) == -1, "a child has taken the arm");
 }
 
-/// The exit code; 99 if a signal ended it, as the alarm does if it hangs.
+/// The exit code; 99 if a signal, such as the alarm after a deadlock, ended the child.
 int wait_for(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);
@@ -107,7 +107,7 @@ int main(int count, char** arguments) {
     if (child == 0) {
       alarm(120);
       if (round % 2 == 0) is_hdapi ? use_hdapi_in_child() : use_phantom_in_child();
-      std::exit(0);  // else its destructors meet the device as it is
+      std::exit(0);  // in odd rounds the destructors find the device unchanged
     }
     if (const int code = wait_for(child); code != 0) std::printf("the child of round %d ends with %d\n", round, code);
   }

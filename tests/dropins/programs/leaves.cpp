@@ -1,5 +1,5 @@
-// Leaves main() while its callback is listed, or ends in the callback itself. The callback uses an object that lives as
-// long as the program, and whose part that it needs is gone while the rest still goes.
+// Returns from main() while its callback is scheduled, or exits in the callback. The callback uses a global object
+// whose derived part is destroyed 200 ms before its base.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 using namespace std::chrono_literals;
 
-// Not in a namespace without a name: the compiler would know who is called, and need no table for it.
+// These types have external linkage, so that the compiler cannot replace the virtual call by a direct call.
 struct Effect {
   virtual ~Effect() { std::this_thread::sleep_for(200ms); }
   virtual void act() = 0;

@@ -1,4 +1,4 @@
-// A program of HDAPI as users write them: a spring of 100 N/m to the middle of the box, in HDAPI's millimetres.
+// A typical HDAPI program: a spring of 100 N/m to the middle of the box, in HDAPI's millimeters.
 #include <cstdio>
 
 #include "../hdapi.hpp"

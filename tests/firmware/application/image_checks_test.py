@@ -1,4 +1,4 @@
-"""The checks of the firmware's image find what is planted into a small image made for the purpose."""
+"""The checks of the firmware image find errors in small images that are built with these errors."""
 
 import pathlib
 import subprocess
@@ -11,7 +11,7 @@ PLACEMENT = REPOSITORY / "firmware/placement/include"
 LINKER_SCRIPT = REPOSITORY / "boards/facts/stm32f405.ld"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
-# The least that the tools take for a firmware. `work` stands for what is under test.
+# The minimum program that the tools accept as a firmware. `work` is the code under test.
 FRAME = """
 #include <placement/interrupt.hpp>
 extern "C" {
@@ -27,7 +27,7 @@ void reset_handler() { for (;;) work(); }
 
 class ImageChecks(unittest.TestCase):
     def check(self, source: str) -> tuple[subprocess.CompletedProcess, subprocess.CompletedProcess]:
-        """Builds an image and returns what check_image and stack_bound say about it."""
+        """Builds an image and returns the output of check_image and stack_bound."""
         with tempfile.TemporaryDirectory() as folder:
             file, elf = pathlib.Path(folder) / "image.cpp", pathlib.Path(folder) / "image.elf"
             file.write_text(FRAME + source)
@@ -77,7 +77,7 @@ class ImageChecks(unittest.TestCase):
         check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { other(); sink = 2; }")
         self.assert_refused(check_image, "which lies outside .interrupt_text: mark it INKWELL_INTERRUPT or do without it")
         check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { sink = 2; other(); }")
-        self.assert_refused(check_image, "which lies outside .interrupt_text")  # a jump at the end is a call as well
+        self.assert_refused(check_image, "which lies outside .interrupt_text")  # a tail call also counts as a call
 
     def test_what_reads_the_flash_in_an_interrupt_is_found(self):
         reads = "work runs in an interrupt and reads the flash: its tables belong into .interrupt_tables"
@@ -97,7 +97,7 @@ class ImageChecks(unittest.TestCase):
     def test_the_handler_behind_every_interrupt_is_part_of_the_main_loop(self):
         source = ("void behind() { value = 1.0f / value; asm volatile(\"dsb\"); }\nvoid work() { sink = 2; }\n"
                   "[[gnu::section(\".vectors\"), gnu::used]] void (*const more[])() = {%s};")
-        words_before = ["control_interrupt"] * 14  # the compiler puts the newest table first
+        words_before = ["control_interrupt"] * 14  # the compiler places the newest table first
         check_image, stack_bound = self.check(source % ", ".join([*words_before, "behind"]))
         self.assertEqual(check_image.returncode, 0, check_image.stderr)
         self.assertIn("behind", stack_bound.stdout)

@@ -1,4 +1,4 @@
-"""The firmware's first instructions: no stack before the clock of the memory in which it lies.
+"""The first instructions of the firmware use no stack before the clock of the stack's memory is enabled.
 
     start_test.py ELF
 """

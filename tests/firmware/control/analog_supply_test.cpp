@@ -1,4 +1,4 @@
-// Which VDDA is too far off, with a chip whose reference was measured and with one where that is lost.
+// Detection of a wrong VDDA, for chips with a valid factory calibration of the reference and for chips without one.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
   return static_cast<std::uint16_t>(std::min(4096.0f * reference_V / analog_supply_V, 4095.0f));
 }
 
-/// How many looks it takes with this VDDA, on a chip whose VREFINT is `true_V`.
+/// Returns the number of checks until detection with this VDDA, on a chip whose VREFINT is `true_V`.
 int looks(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
   for (int look = 1; look < never; ++look)
@@ -50,7 +50,7 @@ TEST_CASE("a calibration that was never written or is lost makes the watch coars
       CHECK(looks(1.12f * nominal_V, reference_V, calibrated_counts) == noticed);
     }
   }
-  // A part at the edge of the data sheet whose maker measured it 3 per mille off is known all the same.
+  // A reference at the limit of the data sheet with a calibration error of 3 per mille is also checked correctly.
   CHECK(looks(0.94f * nominal_V, 1.18f, counts_of(1.177f, nominal_V)) == noticed);
   CHECK(looks(1.06f * nominal_V, 1.24f, counts_of(1.243f, nominal_V)) == noticed);
 }

@@ -1,4 +1,4 @@
-// The arms that the tests run on, and a repeatable source of random numbers.
+// The arms of the tests, and a reproducible random number generator.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Arm {
   protocol::ParameterSet parameters;
 };
 
-/// Every arm in boards/arms/, as its description sets the table.
+/// Returns all arms of boards/arms/ with the parameters of their descriptions.
 inline std::vector<Arm> all_arms() {
   std::vector<Arm> arms;
   for (const ArmFile& file : arm_files) {
@@ -38,7 +38,7 @@ inline protocol::ParameterSet omni_parameters() { return parameters_of("omni"); 
 /// The serial Denavit-Hartenberg arm of the paper's Table 1.
 inline protocol::ParameterSet paper_parameters() { return parameters_of("paper"); }
 
-/// Uniform numbers, the same on every machine (a 32-bit linear congruential generator, upper bits).
+/// Uniform random numbers, equal on all machines (upper bits of a 32-bit linear congruential generator).
 class Random {
  public:
   explicit Random(std::uint32_t seed) : state_(seed) {}
@@ -51,7 +51,7 @@ class Random {
   std::uint32_t state_;
 };
 
-/// Joint angles anywhere between the stops.
+/// Returns random joint angles between the stops.
 inline control::Triple random_joints(const protocol::ParameterSet& set, Random& random) {
   using enum protocol::Parameter;
   const float joint_1_rad = random.between(set[joint_1_minimum_rad], set[joint_1_maximum_rad]);

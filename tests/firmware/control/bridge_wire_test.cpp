@@ -1,4 +1,4 @@
-// At which levels of their pins the bridges' wires touch something.
+// Detection of shorted bridge wires from their pin levels.
 #include <doctest/doctest.h>
 
 #include <control/bridge_wire.hpp>
@@ -10,7 +10,7 @@ using inkwell::control::BridgeWire;
 using inkwell::control::look_at;
 using inkwell::control::touches;
 
-/// How many looks at the same pins it takes; 0 is never.
+/// Returns the number of checks of constant pins until detection; 0 is never.
 int looks(const BridgePins& pins) {
   BridgeWire wire;
   for (int look = 1; look < 1'000; ++look) {

@@ -67,7 +67,7 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK(filter.closed == 5);
   show(0, 3);
   CHECK(filter.closed == 5);
-  // One that changes back in the very moment in which it was believed is followed too.
+  // A switch that reverts in the same moment in which its change was accepted is also followed.
   for (std::uint32_t later = 0; later < 6; ++later) {
     CAPTURE(later);
     SwitchFilter other;
@@ -76,7 +76,7 @@ TEST_CASE("switches count after 5 ms without change") {
     for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) debounce(other, 0, i % SwitchFilter::count);
     CHECK(other.closed == 0);
   }
-  // Whatever the others do.
+  // The other switches have no influence.
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 5 : 4, 1);
   CHECK((filter.closed & 4) == 4);
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 1 : 0, 1);
@@ -89,12 +89,12 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   for (int i = 0; i < 5'000; ++i) CHECK_FALSE(update_reference(reference, counts, false));
   CHECK_FALSE(reference.valid);
 
-  // Moving while the switch is closed: no reference.
+  // No reference while the arm moves with a closed switch.
   for (int i = 0; i < 3'000; ++i) {
     if (i % 1'000 == 0) counts[1] += i == 1'000 ? -2 : 2;
     CHECK_FALSE(update_reference(reference, counts, true));
   }
-  // Still but for a dither of one count.
+  // A dither of one count does not prevent the reference.
   int taken = 0;
   for (int i = 0; i < 20'000; ++i) {
     counts[2] = 7 + i % 2;
@@ -105,13 +105,13 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   CHECK(reference.counts[0] == 100);
   CHECK(reference.counts[1] == -18);
 
-  // Out, moved, in again: a new reference.
+  // Removed, moved and inserted again: a new reference.
   update_reference(reference, counts, false);
   counts[0] = 104;
   for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
   CHECK(reference.counts[0] == 104);
 
-  // Forgotten while the stylus rests there: it is taken once more after as long.
+  // After forget() with the stylus in the inkwell, the reference is recorded again after the same time.
   forget(reference, false);
   CHECK_FALSE(reference.valid);
   for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)

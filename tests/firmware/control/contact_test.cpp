@@ -71,7 +71,7 @@ TEST_CASE("a wall never pulls, whatever the speed of leaving") {
     const Vector3& out = contact.penetration_m;
     if (force_N.x * out.x < 0 || force_N.y * out.y < 0 || force_N.z * out.z < 0) ++pulled_back;
     if (out.x != 0 && force_N.x == 0) ++let_go;
-    // An axis out of contact takes no part, even while another touches.
+    // An axis without contact has no force, even while another axis is in contact.
     if (out.x == 0) CHECK(force_N.x == 0.0f);
   }
   CHECK(pulled_back == 0);

@@ -1,4 +1,4 @@
-// The whole signal path, from samples to duties.
+// The complete signal path, from samples to duty cycles.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using protocol::State;
 using tests::run_with_host;
 using tests::settings_near_wall;
 
-/// Joint 2 back and joint 3 up, so that the probe goes out along x, in steps slow enough for the speed limit.
+/// Moves joint 2 back and joint 3 up, so that the probe moves outward along x below the speed limit.
 void push_into_wall(Controller& controller, Samples& samples, const Settings& settings) {
   for (int i = 0; i < 100; ++i) {
     if (i % 2 == 0) --samples.encoder_counts[1];
@@ -80,7 +80,7 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   run_with_host(controller, samples, settings, 4'000);
   CHECK(controller.signals()[Signal::force_N] == 0.0f);
   push_into_wall(controller, samples, settings);
-  run_with_host(controller, samples, settings, 12'000);  // at rest, speed zero
+  run_with_host(controller, samples, settings, 12'000);  // at rest with zero speed
 
   const protocol::SignalValues& signals = controller.signals();
   REQUIRE(protocol::force_is_on(controller.state()));
@@ -98,7 +98,7 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::torque_3_Nm] == torque[2]);
   CHECK(signals[Signal::current_reference_3_A] == doctest::Approx(torque[2] * settings.motors.ampere_per_Nm[2]));
   CHECK(signals[Signal::velocity_x_m_s] == 0.0f);
-  // No current flows in this rig, so the loops push with all the voltage that they may, in the reference's direction.
+  // No current flows in this test, so the current loops apply the maximum voltage in the direction of the reference.
   CHECK(signals[Signal::duty_2] * signals[Signal::current_reference_2_A] > 0.0f);
   CHECK(std::abs(signals[Signal::duty_2]) ==
         doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-3));

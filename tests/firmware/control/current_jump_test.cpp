@@ -1,4 +1,4 @@
-// What a winding's current may change by in a control period, and what is told at once.
+// The allowed change of a motor current per control period, and its immediate detection.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using control::Triple;
 using protocol::Fault;
 using protocol::Parameter;
 
-/// Held still in the inkwell, pressed into three walls; its motors behind bridges and shunts.
+/// An arm held in the inkwell and pressed into three walls, with bridges and shunts at its motors.
 struct HeldArm {
   protocol::ParameterSet parameters = tests::pressed_into_three_walls({0.002f, 0.001f, 0.002f}, 2000.0f);
   control::Settings settings = control::prepare(parameters);
@@ -26,7 +26,7 @@ struct HeldArm {
   control::Samples samples = tests::samples_at_rest();
   tests::SimulatedMotors motors;
   control::Drive drive;
-  float largest_change_A = 0.0f;  ///< of a reading in a period
+  float largest_change_A = 0.0f;  ///< of a reading per period
 
   void set(Parameter parameter, float value) {
     parameters[parameter] = value;
@@ -34,7 +34,7 @@ struct HeldArm {
     controller.settings_changed();
   }
 
-  /// Periods until it is no longer driven, at most so many.
+  /// Runs at most `periods`, and returns the number of periods until the bridges are off.
   int run(int periods) {
     for (int period = 0; period < periods; ++period) {
       Triple voltage_V{};
@@ -50,7 +50,7 @@ struct HeldArm {
     return periods;
   }
 
-  /// So that this motor's reading becomes that.
+  /// Adjusts the wall stiffness until the reading of this motor is `current_A`.
   void press(std::size_t motor, float current_A) {
     for (int i = 0; i < 10; ++i) {
       REQUIRE(run(3'000) == 3'000);
@@ -102,7 +102,7 @@ TEST_CASE("a motor that comes open takes the force away in the period in which i
 }
 
 TEST_CASE("a sensor whose gain halves or doubles at 0.7 A is told in the period in which it is read") {
-  for (const std::size_t motor : {std::size_t{0}, std::size_t{2}})  // the second is pressed less here
+  for (const std::size_t motor : {std::size_t{0}, std::size_t{2}})  // the current of the second motor is lower here
     for (const float gain : {0.5f, 2.0f}) {
       CAPTURE(motor);
       CAPTURE(gain);
@@ -156,13 +156,13 @@ TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and 
     arm.samples.encoder_counts[0] += i % 4 < 2 ? 10 : -10;
     REQUIRE(arm.run(60) == 60);
   }
-  CHECK(arm.largest_change_A > 0.5f * CurrentJump::bearable_A);  // it was tried
+  CHECK(arm.largest_change_A > 0.5f * CurrentJump::bearable_A);  // a large change was tested
 }
 
 TEST_CASE("a brake goes on whatever currents come and go, and so does a force that is asked for while a pulse runs") {
   HeldArm arm;
   arm.press(0, 1.0f);
-  // Faster than the speed limit, and braked then: another current in each reading.
+  // Above the speed limit the arm is braked, with a different current in each reading.
   int braked = 0;
   for (int i = 0; i < 200; ++i) {
     arm.samples.encoder_counts[1] += 8;
@@ -209,7 +209,7 @@ TEST_CASE("a motor that turns as the force comes on has a current of its back EM
           if (is_turning) arm.samples.encoder_counts[motor] += counts_per_period;
           arm.run(1);
           if (arm.drive.enabled) continue;
-          for (auto& each : arm.motors.motors) each.current_A = 0.0f;  // no current with the bridges off
+          for (auto& each : arm.motors.motors) each.current_A = 0.0f;  // no current while the bridges are off
         }
       };
       arm.controller.carry_out(tests::command(protocol::Command::stop));

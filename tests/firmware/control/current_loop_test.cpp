@@ -1,4 +1,4 @@
-// The current loop with the arm's gains on the arm's motor: resistance, inductance and back EMF.
+// The current loop with the arm's gains and motor model: resistance, inductance and back-EMF.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr double inductance_H = arm_defaults::motor::inductance_H;
 struct Motor {
   double current_A = 0;
 
-  /// Exact for a constant voltage over the time.
+  /// Exact solution for a constant voltage.
   void run(double voltage_V, double time_s) {
     const double settled_A = voltage_V / resistance_ohm;
     current_A = settled_A + (current_A - settled_A) * std::exp(-time_s * resistance_ohm / inductance_H);
@@ -32,9 +32,9 @@ struct RegulatedMotor {
   Motor motor;
   CurrentLoop loop;
   CurrentLoopGains gains = control::prepare(tests::omni_parameters()).current_loop;
-  double next_V = 0;  ///< what the controller asked for takes effect one period later
+  double next_V = 0;  ///< the controller's output becomes active one period later
 
-  /// One control period; returns the current that the controller saw.
+  /// Runs one control period and returns the current measured by the controller.
   double step(double reference_A, double back_emf_V = 0, double bound_V = 16) {
     const double seen_A = motor.current_A;
     const control::CurrentLoopStep result =
@@ -72,7 +72,7 @@ TEST_CASE("back EMF of a fast and of an accelerating hand is compensated") {
   // 10 rad/s at the joint is 133 rad/s and 3.1 V at the motor.
   for (int period = 0; period < 100; ++period) regulated.step(1.0, 3.1);
   CHECK(regulated.motor.current_A == doctest::Approx(1.0).epsilon(1e-3));
-  // 40 rad/s^2 at the joint: the integral follows a ramp with a steady error of slope / integral gain.
+  // 40 rad/s^2 at the joint: the integrator follows the ramp with a steady-state error of slope / integral gain.
   double seen = 0;
   for (int period = 0; period < 2'000; ++period) seen = regulated.step(1.0, 3.1 - 12.4 * period / 20'000.0);
   CHECK(std::abs(seen - 1.0) < 0.002);
@@ -87,7 +87,7 @@ TEST_CASE("the voltage is bounded, and the integral does not wind up meanwhile")
   CHECK(regulated.motor.current_A == doctest::Approx(4.0 / resistance_ohm).epsilon(1e-3));
   int periods = 0;
   while (std::abs(regulated.step(0.5, 0, 4.0) - 0.5) > 0.05 && periods < 1'000) ++periods;
-  CHECK(periods <= 14);  // 0.7 ms; a wound-up integral would take as long to unwind as it wound up
+  CHECK(periods <= 14);  // 0.7 ms; a wound-up integrator would need as long to unwind as to wind up
   double lowest = 1;
   for (int period = 0; period < 100; ++period) lowest = std::min(lowest, regulated.step(0.5, 0, 4.0));
   CHECK(lowest > 0.4);
@@ -110,15 +110,15 @@ TEST_CASE(
   CHECK(still.most_V == doctest::Approx(1.05 * 3.0 + 0.4));
   CHECK(still.least_V == -still.most_V);
   const auto turning = control::voltage_range(1.5f, measured, -2.0f, 0.4f, 16.0f);
-  // A quarter of the back EMF more to either side, as magnets are not known better.
+  // The range is extended by a quarter of the back-EMF on both sides, the tolerance of the torque constant.
   CHECK(turning.most_V == doctest::Approx(still.most_V - 2.0f + 0.5f));
   CHECK(turning.least_V == doctest::Approx(still.least_V - 2.0f - 0.5f));
-  // With what the parameters say there is more.
+  // With the resistance of the parameters the range is wider.
   CHECK(control::voltage_range(1.5f, control::Resistance::of(0.0f, 0.0f, 2.0f), 0.0f, 0.4f, 16.0f).most_V ==
         doctest::Approx(1.1075 * 3.0 + 0.4));
   for (const float back_emf_V : {-30.0f, 0.0f, 30.0f}) {
     const auto [least_V, most_V] = control::voltage_range(1.5f, measured, back_emf_V, 0.4f, 3.0f);
-    // A speed that is wrong may ask for less, for a brake at most, and never for a drive.
+    // A wrong speed may only reduce the voltage down to a brake, and never reverse the drive.
     CHECK(least_V == (back_emf_V > 0.0f ? 0.0f : -3.0f));
     CHECK(most_V == (back_emf_V < 0.0f ? 0.0f : 3.0f));
   }

@@ -1,4 +1,4 @@
-// How a count goes with a dead wire, and what else goes to and fro.
+// Counts of an encoder with a dead wire, and other alternating counts.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -16,12 +16,12 @@ using control::periods_in;
 
 constexpr std::uint32_t never = periods_in(2.0f);
 
-/// What a timer in encoder mode makes of the disc's counts if one wire stands: it sees every second edge, one up and
-/// one down.
+/// Count of a timer in encoder mode if one wire is stuck: every second edge is seen, alternately up and down.
 std::uint16_t with_dead_wire(std::int64_t count) { return static_cast<std::uint16_t>((count >> 1) & 1); }
 std::uint16_t sound(std::int64_t count) { return static_cast<std::uint16_t>(count); }
 
-/// Looks at `count(time_s)`, every `every` periods from `begin` on; after how many periods the wire is dead.
+/// Checks `count(time_s)` every `every` periods from `begin` on. Returns the number of periods until the wire is
+/// reported as dead.
 template <class Count>
 std::uint32_t periods_until_dead(Count count, std::uint32_t begin = 0, std::uint32_t every = 1) {
   EncoderWire wire;
@@ -33,7 +33,7 @@ std::uint32_t periods_until_dead(Count count, std::uint32_t begin = 0, std::uint
 auto turning(float counts_per_s, std::uint16_t (*seen)(std::int64_t)) {
   return [=](float time_s) { return seen(std::llround(counts_per_s * time_s)); };
 }
-/// To and fro between two neighbours of 16 bits, so many times a second.
+/// Alternates between two adjacent 16-bit counts at this rate.
 auto dithering(float rate_Hz, std::uint16_t lower = 100) {
   return [=](float time_s) { return static_cast<std::uint16_t>(lower + (std::fmod(time_s * rate_Hz, 1.0f) < 0.5f)); };
 }
@@ -53,7 +53,7 @@ TEST_CASE("a motion that was slow for a while is noticed once it is fast") {
   const auto faster = [](float time_s) { return with_dead_wire(std::llround(2'000.0f * time_s * time_s)); };
   const auto noticed_s = static_cast<float>(periods_until_dead(faster)) * protocol::servo_period_s;
   CHECK(noticed_s > 0.5f);
-  CHECK(noticed_s < 0.8f);  // 2400 counts a second at 0.6 s
+  CHECK(noticed_s < 0.8f);  // 2400 counts per second at 0.6 s
 }
 
 TEST_CASE("the lower neighbour may be the upper one of the timer's range") {

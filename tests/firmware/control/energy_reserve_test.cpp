@@ -1,4 +1,4 @@
-// What the arm may give the hand: the sum of it, what gives way, and how fast a force may change.
+// The energy limit of the arm: integration, force reduction, and the maximum rate of change of the force.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ TEST_CASE("what the force gave on the probe's way is taken out, and what the han
   for (int i = 0; i < 100; ++i) account(reserve, {}, reserve.position_m, limits);
   CHECK(reserve.left_J == doctest::Approx(0.0221f + 100 * 5e-5f));
 
-  account(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for long
+  account(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for a long time
   CHECK(reserve.left_J == limits.reserve_J);
   account(reserve, {8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
   CHECK(reserve.left_J == 0.0f);
@@ -48,8 +48,8 @@ TEST_CASE("only what drives the motion gives way, from a quarter of the reserve 
         doctest::Approx(0.5f * power_W).scale(0).epsilon(2e-3));
   const Vector3 rest_N = without_drive(force_N, power_W, velocity_m_per_s, 1.0f);
   CHECK(dot(rest_N, velocity_m_per_s) < 2e-3f * power_W);
-  CHECK(rest_N.y == force_N.y);  // across the motion nothing changes
-  // At rest there is no direction, so there is no jump when a hand turns round.
+  CHECK(rest_N.y == force_N.y);  // the component across the motion does not change
+  // There is no direction at rest, so the force does not jump when the hand reverses.
   const Vector3 still_N = without_drive(force_N, 2e-6f, {1e-6f, 0.0f, 0.0f}, 1.0f);
   CHECK(still_N.x == doctest::Approx(force_N.x));
 }
@@ -61,15 +61,16 @@ TEST_CASE("a program that pushes along with every motion gives the reserve and t
   const auto pushes = [](const Vector3& velocity_m_per_s) { return along(velocity_m_per_s, 2.0f); };
   arm.turn(4.0f, pushes);
   MESSAGE("given in 4 s: ", arm.given_J, " J");
-  CHECK(arm.given_J > 0.9f * (0.05f + 4.0f * 0.1f));  // it may have that
-  CHECK(arm.given_J < 0.05f + 4.0f * 0.1f + 0.01f);   // what an arm that turns round gives at its slowest
+  CHECK(arm.given_J > 0.9f * (0.05f + 4.0f * 0.1f));  // the allowed energy
+  CHECK(arm.given_J < 0.05f + 4.0f * 0.1f + 0.01f);   // an arm may exceed this energy slightly at low speed during a
+                                                      // reversal
   CHECK(arm.reached(Limit::energy));
 
   TurningArm unbounded;
   unbounded.set[Parameter::power_given_W] = 20.0f;
   unbounded.settings = control::prepare(unbounded.set);
   unbounded.turn(4.0f, pushes);
-  CHECK(unbounded.given_J > 0.8f);  // what it would have given
+  CHECK(unbounded.given_J > 0.8f);
   CHECK_FALSE(unbounded.reached(Limit::energy));
 }
 
@@ -90,11 +91,11 @@ TEST_CASE("whatever a force comes from, it changes by no more than it may") {
   arm.settings = control::prepare(arm.set);
   float sign = 1.0f;
   const auto throws = [&](const Vector3&) { return Vector3{0.0f, (sign = -sign) * 3.0f, 0.0f}; };
-  arm.turn(1.0f, throws);  // whole turns, or the encoder jumps
+  arm.turn(1.0f, throws);  // whole turns, because the encoder must not jump
   CHECK(arm.largest_change_N == doctest::Approx(0.1f).scale(0).epsilon(0.01));
   CHECK(arm.reached(Limit::change));
 
-  // Its limit holds at once all the same.
+  // The force limit still applies immediately.
   arm.turn(0.1f, [](const Vector3&) { return Vector3{0.0f, 3.0f, 0.0f}; });
   CHECK(arm.controller.signals()[Signal::force_N] > 2.5f);
   arm.set[Parameter::force_limit_N] = 1.0f;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints every arm description's rows of the parameter table as a header, for tests that run where no file can be read.
+"""Prints a header with the parameters of every arm description, for tests that cannot read files.
 
 usage: generate_arms.py ARM.toml...
 """

@@ -1,5 +1,5 @@
-// Kinematics and virtual work against an independent reference in double: chains of rotation matrices, the
-// paper's as Denavit-Hartenberg transforms, the Omni's as published by the Ubitrack project.
+// Kinematics and virtual work compared with an independent double-precision reference of rotation matrices. The paper's
+// arm uses Denavit-Hartenberg transforms, the Omni the transforms published by the Ubitrack project.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using protocol::Parameter;
 #ifdef INKWELL_ON_PC
 constexpr int pose_count = 100'000;
 #else
-constexpr int pose_count = 100;  // double is software there
+constexpr int pose_count = 100;  // double precision is slow there
 #endif
 
 struct Point {
@@ -35,7 +35,7 @@ double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a
 Point point(const Vector3& v) { return {v.x, v.y, v.z}; }
 Joints joints(const Triple& t) { return {t[0], t[1], t[2]}; }
 
-/// Published kinematics of the Omni with an absolute third angle, written out; origin as in the description.
+/// Published kinematics of the Omni with an absolute third angle; same origin as in the arm description.
 Point omni_reference(const Joints& q, const protocol::ParameterSet& set) {
   const double l1 = set[Parameter::link_2_m], l2 = set[Parameter::link_3_m];
   const double s1 = std::sin(q[0]), c1 = std::cos(q[0]);
@@ -60,7 +60,7 @@ struct ArmCase {
   Reference reference;
 };
 
-/// Two links in a plane that joint 1 turns: what every description in boards/arms/ is an instance of.
+/// Two links in a plane that joint 1 rotates: the general form of all descriptions in boards/arms/.
 Point family_reference(const Joints& q, const protocol::ParameterSet& set) {
   const double phi_2 = q[1];
   const double phi_3 = q[2] + set[Parameter::elbow_offset_rad] + (set[Parameter::transmission] == 0.0f ? q[1] : 0.0);
@@ -73,7 +73,7 @@ Point family_reference(const Joints& q, const protocol::ParameterSet& set) {
   return {origin.x - side, origin.y + height, origin.z + forward};
 }
 
-/// Every arm as one of its family, and the two that are published as they are published.
+/// Returns all arms with the general form, and the two published arms with their published kinematics.
 std::vector<ArmCase> arm_cases() {
   std::vector<ArmCase> cases{{"published Omni", tests::omni_parameters(), omni_reference},
                              {"published paper", tests::paper_parameters(), paper_reference}};
@@ -82,7 +82,7 @@ std::vector<ArmCase> arm_cases() {
   return cases;
 }
 
-/// dx/dq of the reference by central differences of the fourth order: exact to about 1e-11.
+/// Returns dx/dq of the reference by fourth-order central differences, with an error of about 1e-11.
 std::array<Point, 3> reference_jacobian(const ArmCase& arm, const Joints& q) {
   constexpr double h = 1e-3;
   std::array<Point, 3> columns{};
@@ -205,9 +205,9 @@ TEST_CASE("the links' ends: constant lengths, and the last one is the probe") {
   }
 }
 
-/// The paper's Eq. 10 to 15 word for word: z, x and x component of (L1 + L2 + L3) x F, (L2 + L3) x F and L3 x F, with
-/// L1 = 0. For a serial arm in the paper's frame it is exact for joint 1 everywhere, and for joints 2 and 3 at
-/// q1 = pi/2 only; joint_torques() is the general law.
+/// The paper's Eq. 10 to 15: z, x and x component of (L1 + L2 + L3) x F, (L2 + L3) x F and L3 x F, with L1 = 0. For a
+/// serial arm in the paper's frame, these equations are exact for joint 1. For joints 2 and 3, the equations are exact
+/// only at q1 = pi/2. joint_torques() is the general law.
 Triple paper_torques(const control::LinkEnds& ends, const Vector3& force_N) {
   const Vector3 link_2_m = ends.elbow_m - ends.shoulder_m;
   const Vector3 link_3_m = ends.probe_m - ends.elbow_m;

@@ -1,5 +1,5 @@
-// Where the controller learns that its counts are wrong: the place of the arm is void then, whatever else is told, and
-// only a switch that was seen open gives it back.
+// Detection of wrong encoder counts. The reference is then void whatever fault is reported. Only an inkwell switch that
+// was open and closes again restores the reference.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,14 +25,14 @@ using protocol::State;
 constexpr auto inkwell_closed = static_cast<std::uint8_t>(protocol::Switch::inkwell);
 constexpr std::uint32_t rest_periods = InkwellReference::still_periods + SwitchFilter::settle_periods + 10;
 
-/// Nothing is touched, and no motor's voltage is missed.
+/// Settings without contact and with a voltage limit below the detection of a missing motor.
 Settings free_space(protocol::ParameterSet set = tests::omni_parameters()) {
   set = tests::without_motors(set);
   set[protocol::Parameter::wall_stiffness_N_per_m] = set[protocol::Parameter::wall_damping_Ns_per_m] = 0.0f;
   return control::prepare(set);
 }
 
-/// As fast as an arm may move with the force on.
+/// Maximum speed of an arm with the force on.
 constexpr std::int32_t step_counts = 1;
 constexpr std::uint32_t step_periods = 4;
 
@@ -160,7 +160,7 @@ TEST_CASE("a switch that was closed elsewhere gives no reference before it was s
   tests::run(controller, samples, settings, rest_periods);
   REQUIRE(controller.fault() == Fault::inkwell_implausible);
   REQUIRE(state_after_clearing(controller, samples, settings) == State::unreferenced);
-  // The wire still touches ground, and the arm rests in many places.
+  // The wire still touches ground, and the arm rests at several positions.
   for (const std::int32_t counts : {600, 900, 0}) {
     tests::move_to(controller, samples, {counts, 0, 0}, settings, step_counts, step_periods);
     tests::run(controller, samples, settings, 3 * rest_periods);

@@ -17,7 +17,7 @@ constexpr float continuous_A = 1.24f;
 
 using protocol::Parameter;
 
-/// A motor whose heat is all the winding's.
+/// Returns a motor model in which all heat is in the winding.
 protocol::ParameterSet winding_only(float time_constant_s) {
   protocol::ParameterSet set = tests::omni_parameters();
   set[Parameter::continuous_current_1_A] = continuous_A;
@@ -28,7 +28,8 @@ protocol::ParameterSet winding_only(float time_constant_s) {
 control::HeatScale scale(float time_constant_s) { return control::prepare(winding_only(time_constant_s)).heat; }
 
 void run(MotorHeat& motors, const Triple& current_A, const control::HeatScale& scale, float time_s) {
-  const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz) / 3 * 3;  // whole rounds of the motors
+  const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz) / 3 * 3;  // complete rounds of the three
+                                                                                    // motors
   for (int period = 0; period < periods; ++period) {
     const auto motor = static_cast<std::size_t>(period % 3);
     control::update_heat(motors, motor, current_A[motor], scale);
@@ -68,7 +69,7 @@ TEST_CASE("the winding warms quickly over its housing, the housing slowly over t
   const control::HeatScale both = control::prepare(set).heat;
   MotorHeat motors;
   run(motors, {2.0f * continuous_A, 0.0f, 0.0f}, both, 0.5f);
-  // 4 times the heat: 0.2 of it at once, 0.8 of it with the housing.
+  // Four times the heat: a share of 0.2 immediately and of 0.8 with the housing.
   const float housing = 4.0f * 0.8f * (1.0f - std::exp(-0.5f / 2.0f));
   CHECK(motors.heat[0] == doctest::Approx(4.0f * 0.2f + housing).scale(0).epsilon(0.02));
   run(motors, {}, both, 0.5f);
@@ -90,7 +91,7 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   set[Parameter::current_limit_1_A] = 0.9f * continuous_A;
   CHECK(control::prepare(set).motors.allowed_A(0, motors.beyond) == 0.9f * continuous_A);
 
-  // Who asks for the limit gets what is allowed, and the motor settles just below what it bears.
+  // A demand at the limit receives the allowed current, and the heat settles just below its limit.
   set[Parameter::winding_time_constant_s] = 1.0f;
   const control::HeatScale slower = control::prepare(set).heat;
   motors = {};

@@ -1,4 +1,4 @@
-// What a sound motor may differ by from R i + k w, what it may not, and that the controller asks all three.
+// The tolerated deviation of a motor voltage from R i + k w, and the check of all three motors by the controller.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -21,13 +21,13 @@ using protocol::Fault;
 constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
 constexpr int never = 100'000;
 
-/// As the parameters say.
+/// Returns the resistance from the parameters.
 Resistance unmeasured(std::size_t motor) { return Resistance::of(0.0f, 0.0f, model.resistance_ohm[motor]); }
 
 std::array<Resistance, 3> all(const Resistance& resistance) { return {resistance, resistance, resistance}; }
 const std::array<Resistance, 3> all_unmeasured{unmeasured(0), unmeasured(1), unmeasured(2)};
 
-/// Looks at one motor in which nothing changes; how many it takes until it does not fit.
+/// Checks one motor with constant values. Returns the number of checks until a mismatch is reported.
 int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, BridgeLoss loss,
           const Resistance& resistance) {
   MotorWatch watch;
@@ -50,7 +50,7 @@ TEST_CASE("a motor with the voltage of its resistance and its speed fits, in eit
   CHECK(looks(1, 10.0f, 2.5f, 0.0f) == never);
   CHECK(looks(0, 6.0f, 0.0f, 20.0f) == never);
   CHECK(looks(1, -4.0f, 0.0f, 20.0f) == never);
-  CHECK(looks(2, 0.0f, -0.25f, 20.0f) == never);  // shorted, and turned by a hand
+  CHECK(looks(2, 0.0f, -0.25f, 20.0f) == never);  // shorted and turned by a hand
 }
 
 TEST_CASE("a motor at rest without current may have the bearable voltage, and what dead time takes, and no more") {
@@ -67,7 +67,7 @@ TEST_CASE("a motor at rest without current may have the bearable voltage, and wh
 TEST_CASE("what a bridge takes at least is missed in a voltage that is too small for a current with one sign") {
   constexpr BridgeLoss loss{0.4f, 0.5f};
   for (const float sign : {1.0f, -1.0f}) {
-    // 2 V for the resistance, of which 28 % may be missing.
+    // 2 V for the resistance, which may be too high by 28 %.
     for (const float bridge_V : {0.4f, 0.5f})
       CHECK(looks(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
     const float least_V = 2.0f + 0.4f - MotorWatch::bearable_V - 0.56f;
@@ -76,10 +76,10 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
     const float most_V = 2.0f + 0.5f + MotorWatch::bearable_V + 0.86f;
     CHECK(looks(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(looks(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
-    // Brushes take as well, but not for sure: what is missed is no more than what dead time takes.
+    // Brushes also cause a voltage drop, but not reliably: the tolerance is not larger than the dead-time loss.
     CHECK(looks(0, sign * (2.0f + 0.5f - MotorWatch::bearable_V - 0.56f + 0.02f), sign * 1.0f, 0.0f, {0.9f, 0.5f}) ==
           never);
-    // A small current may turn round in each period of the PWM, and the bridge then gives as much as it takes.
+    // A small current may change sign in each PWM period, and the dead time then has no net effect.
     const float steady_A = MotorWatch::steady_A;
     const float small_V = -0.5f - MotorWatch::bearable_V + 0.72f * 2.0f * steady_A + 0.02f;
     CHECK(looks(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
@@ -105,24 +105,24 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
     const auto fits_with = [sign](const Resistance& resistance, float voltage_V) {
       return looks(0, sign * voltage_V, sign * 2.5f, 0.0f, {}, resistance) == never;
     };
-    // 2.5 ohm of the motor, whatever the parameters say.
+    // A measured motor resistance of 2.5 ohm overrides the parameters.
     const auto as_measured = Resistance::of(2.5f, 0.0f, 2.0f);
     CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorWatch::bearable_V));
     CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorWatch::bearable_V));
     CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorWatch::bearable_V));
     CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorWatch::bearable_V));
-    // By what its continuous current leads to: 39 % more.
+    // Correction with the heating at the continuous current: 39 % more.
     const auto warmer = Resistance::of(2.5f, 1.0f, 2.0f);
     CHECK(warmer.value_ohm == doctest::Approx(1.39 * 2.5));
     CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorWatch::bearable_V));
     CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorWatch::bearable_V));
-    // Whether one that is taken for cooler is so is not believed.
+    // A colder motor does not reduce the resistance.
     CHECK(Resistance::of(2.5f, -1.0f, 2.0f).value_ohm == 2.5f);
   }
 }
 
 TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
-  // Beyond by 4 V, a look of three periods each.
+  // 4 V beyond the tolerance, with one check every three periods.
   const float voltage_V = 4.0f + MotorWatch::bearable_V;
   const float look_Vs = 4.0f * 3.0f * protocol::servo_period_s;
   CHECK(looks(0, voltage_V, 0.0f, 0.0f) == static_cast<int>(MotorWatch::bearable_flux_Vs / look_Vs) + 1);
@@ -138,7 +138,7 @@ TEST_CASE("a current that turns round from one limit to the other in no time is 
   };
   for (int turn = 0; turn < 1'000; ++turn) {
     const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
-    CHECK(look(16.0f * sign, -1.0f * sign));  // in a period 16 V move the current of 0.24 mH by more than this
+    CHECK(look(16.0f * sign, -1.0f * sign));  // 16 V change the current of 0.24 mH by more than this in one period
     for (int rest = 0; rest < 15; ++rest) CHECK(look(5.43f * sign, 2.5f * sign));
   }
 }
@@ -173,8 +173,8 @@ TEST_CASE("the model of each arm: its resistances, and the torque constants with
           doctest::Approx(std::max(set[link_2_m], set[link_3_m]) * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
-/// Pressed into three walls, so hard that no motor's voltage would do for another's; the reading of `lying` stands
-/// still.
+/// An arm pressed into three walls so hard that each motor needs a different voltage. The reading of motor `lying` does
+/// not change.
 struct PressedArm {
   protocol::ParameterSet parameters = [] {
     using enum protocol::Parameter;
@@ -186,11 +186,12 @@ struct PressedArm {
   control::Settings settings = control::prepare(parameters);
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();
-  control::Drive drive, next;  // a duty takes effect one period after its samples
+  control::Drive drive, next;  // a duty cycle becomes active one period after its samples
   Triple speed_rad_per_s{};
-  float back_emf_share = 1.0f;  // that the windings have of what belongs to their speed
+  float back_emf_share = 1.0f;  // actual back-EMF relative to its value at the measured speed
 
-  /// Periods until it is no longer driven, at most so many. The windings are quick: a current is there in a period.
+  /// Runs at most `periods`, and returns the number of periods until the bridges are off. The winding currents settle
+  /// within one period.
   int run(int periods, std::size_t lying = 3, Triple joint_counts_per_period = {}) {
     for (int period = 0; period < periods; ++period) {
       controller.host_alive();
@@ -201,7 +202,7 @@ struct PressedArm {
       }
       for (std::size_t i = 0; i < 3; ++i) {
         samples.encoder_counts[i] += static_cast<std::int32_t>(joint_counts_per_period[i]);
-        // An arm does not begin to turn at once.
+        // The arm accelerates gradually.
         speed_rad_per_s[i] +=
             0.3f * (joint_counts_per_period[i] * settings.encoders.rad_per_count[i] / protocol::servo_period_s -
                     speed_rad_per_s[i]);
@@ -221,7 +222,7 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     PressedArm arm;
     REQUIRE(arm.run(4'000) == 4'000);
     CHECK(std::fabs(arm.samples.current_A[motor]) > 0.02f);
-    for (int i = 0; i < 20; ++i) {  // not so fast that it would be a jump
+    for (int i = 0; i < 20; ++i) {  // slow enough not to be detected as a jump
       arm.samples.current_A[motor] *= 0.966f;
       REQUIRE(arm.run(1, motor) == 1);
     }
@@ -237,17 +238,17 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     tests::run(arm.controller, arm.samples, arm.settings,
                control::SwitchFilter::settle_periods + control::InkwellReference::still_periods + 10);
     CHECK(arm.controller.state() == protocol::State::ready);
-    // What was summed is forgotten: sound again, it stays on.
+    // The sum was cleared: with a healthy motor the force remains on.
     arm.controller.carry_out(tests::command(protocol::Command::enable_force));
     arm.run(1);
     CHECK(arm.run(4'000) == 4'000);
   }
 }
 
-/// A self-test has found the resistance of PressedArm, and bridges that take next to nothing.
+/// Self-test result: the resistance of PressedArm, and bridges with a negligible voltage drop.
 const control::MeasuredMotors measured{{1e-4f, 1e-4f, 1e-4f}, {2.18f, 2.18f, 2.18f}, {}};
 
-/// By the voltage that motor has in the end, without a back EMF.
+/// Returns the steady-state current at the motor's voltage without back-EMF.
 float settled_A(const PressedArm& arm, std::size_t motor) {
   return arm.drive.duty[motor] * arm.samples.supply_V / 2.18f;
 }
@@ -266,7 +267,7 @@ TEST_CASE("at the force limit a reading that tells too little makes no more curr
       arm.controller = tests::active_controller(arm.settings, is_measured ? measured : control::MeasuredMotors{});
       REQUIRE(arm.run(4'000) == 4'000);
       REQUIRE(protocol::is_reached(arm.controller.limits(), protocol::Limit::force));
-      // As the loops of sound motors want it.
+      // The current loops of healthy motors reach their references.
       for (std::size_t i = 0; i < 3; ++i)
         CHECK(settled_A(arm, i) == doctest::Approx(reference_A(arm, i)).scale(0).epsilon(0.01));
       arm.samples.current_A[motor] *= 0.98f;
@@ -279,7 +280,7 @@ TEST_CASE("at the force limit a reading that tells too little makes no more curr
 }
 
 TEST_CASE("what a test has measured is known at once, also where the force comes on with the next period") {
-  for (const int idle_periods : {0, 100, 200, 300}) {  // the model of the heat goes on each 384 periods
+  for (const int idle_periods : {0, 100, 200, 300}) {  // the heat model is updated every 384 periods
     CAPTURE(idle_periods);
     PressedArm arm;
     arm.parameters[protocol::Parameter::force_limit_N] = 4.0f;
@@ -287,7 +288,7 @@ TEST_CASE("what a test has measured is known at once, also where the force comes
     arm.controller = tests::ready_controller(arm.settings);
     tests::run(arm.controller, arm.samples, arm.settings, static_cast<std::uint32_t>(idle_periods));
     arm.controller.pass_self_test(measured);
-    tests::run(arm.controller, arm.samples, arm.settings, 3);  // motors take turns
+    tests::run(arm.controller, arm.samples, arm.settings, 3);  // the motors are checked in turn
     arm.controller.carry_out(tests::command(protocol::Command::enable_force));
     REQUIRE(arm.run(60) == 60);
     arm.samples.current_A[0] *= 0.9f;

@@ -1,4 +1,4 @@
-// An arm whose inkwell is close to a wall, and a host that is there.
+// An arm whose inkwell is close to a wall, and a host that sends signs of life.
 #pragma once
 
 #include <firmware/control/arms.hpp>
@@ -6,7 +6,7 @@
 
 namespace inkwell::tests {
 
-/// The paper's arm with a box in which the inkwell's pose is 2 mm inside the upper x wall, without damping.
+/// The paper's arm in a box without damping. The inkwell's pose is 2 mm inside the upper x wall.
 inline control::Settings settings_near_wall() {
   using enum protocol::Parameter;
   protocol::ParameterSet set = without_motors(paper_parameters());
@@ -24,7 +24,7 @@ inline control::Settings settings_near_wall() {
   return control::prepare(set);
 }
 
-/// An Omni whose inkwell is beyond three walls by `depth_m`, at a force limit of 8 N.
+/// An Omni whose inkwell is beyond three walls by `depth_m`, with a force limit of 8 N.
 inline protocol::ParameterSet pressed_into_three_walls(const control::Vector3& depth_m, float stiffness_N_per_m) {
   using enum protocol::Parameter;
   protocol::ParameterSet set = omni_parameters();

@@ -1,4 +1,4 @@
-// The count of control periods wraps after 59 hours: the signal path must not notice.
+// The count of control periods wraps after 59 hours without an effect on the signal path.
 #include <doctest/doctest.h>
 
 #include <firmware/control/near_wall.hpp>
@@ -11,7 +11,7 @@ using protocol::Signal;
 
 constexpr std::uint32_t periods_before_wrap = 500;
 
-/// A plane that the probe is behind, for 20 ms longer than the count takes to wrap.
+/// Returns a plane in contact with the probe whose life ends 20 ms after the wrap.
 control::Shapes plane_over_the_wrap(const control::Vector3& probe_m) {
   control::Shapes shapes;
   shapes.planes[0] = {.normal = {0.0f, 0.0f, 1.0f}, .offset_m = probe_m.z + 0.002f};
@@ -33,7 +33,7 @@ TEST_CASE("over the wrap of the count of periods the signal path goes on as at a
 
   int differing = 0;
   for (std::uint32_t i = 0; i < 2 * periods_before_wrap; ++i) {
-    if (i % 20 == 0) {  // in the very period of the wrap, too
+    if (i % 20 == 0) {  // also in the period of the wrap
       --samples.encoder_counts[1];
       ++samples.encoder_counts[2];
     }
@@ -56,7 +56,7 @@ TEST_CASE("over the wrap of the count of periods the signal path goes on as at a
   CHECK(protocol::force_is_on(wraps.state()));
   CHECK(wraps.signals()[Signal::force_N] > 0.1f);
   CHECK((wraps.force_sources() & static_cast<unsigned>(protocol::ForceSource::program)) != 0);
-  CHECK((wraps.force_sources() & static_cast<unsigned>(protocol::ForceSource::shapes)) == 0);  // its life is over
+  CHECK((wraps.force_sources() & static_cast<unsigned>(protocol::ForceSource::shapes)) == 0);  // its life has expired
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_CASE("between two reports the force goes in a straight line") {
     CHECK(program.force_N.x == doctest::Approx(0.02f * static_cast<float>(period)).epsilon(1e-5));
     CHECK(program.force_N.z == doctest::Approx(-0.01f * static_cast<float>(period)).epsilon(1e-5));
   }
-  // There it stays until the next report.
+  // The force remains constant until the next report.
   for (int period = 0; period < 100; ++period) control::advance(program, limits);
   CHECK(program.force_N.x == doctest::Approx(0.4f).epsilon(1e-5));
   control::head_for(program, target({0.0f, 0.0f, -0.2f}, 40), limits);
@@ -121,7 +121,7 @@ TEST_CASE("late is more than a millisecond after the interval that the program n
   CHECK(!next_after(20));
   CHECK(!next_after(40));
   CHECK(next_after(41));
-  // Silence until it has expired is an end, not a delay.
+  // Silence until expiry is not counted as a delay.
   CHECK(!next_after(3000));
 }
 

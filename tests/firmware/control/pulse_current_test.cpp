@@ -1,4 +1,4 @@
-// What current is borne while the self-test's pulses run.
+// Allowed currents during the pulses of the self-test.
 #include <doctest/doctest.h>
 
 #include <firmware/control/arms.hpp>
@@ -14,7 +14,7 @@ using protocol::Fault;
 
 Settings plain_settings() { return control::prepare(tests::paper_parameters()); }
 
-/// A few control periods after they have begun.
+/// A few control periods after the start of the pulses.
 Controller controller_in_pulses(const Settings& settings) {
   Controller controller = tests::ready_controller(settings);
   tests::run(controller, tests::samples_at_rest(), settings, 300);

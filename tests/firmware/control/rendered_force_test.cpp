@@ -1,4 +1,4 @@
-// What the controller makes of walls, shapes and a program's force together.
+// The combined force of walls, shapes and a program in the controller.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using protocol::Signal;
 
 constexpr float wall_depth_m = 0.001f;
 
-/// The inkwell lies 1 mm deep in the lower wall along z and far from the others; walls are all spring.
+/// The inkwell is 1 mm deep in the lower z wall and far from the other walls. The walls have no damping.
 protocol::ParameterSet parameters_in_wall() {
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   const control::Settings settings = control::prepare(set);
@@ -31,7 +31,7 @@ protocol::ParameterSet parameters_in_wall() {
   return set;
 }
 
-/// A board whose arm stands still, the force on and ramped in.
+/// A board with a stationary arm, after the force ramp.
 struct StillArm {
   protocol::ParameterSet parameters = parameters_in_wall();
   control::Settings settings = control::prepare(parameters);
@@ -62,7 +62,7 @@ struct StillArm {
     return {signals[Signal::force_x_N], signals[Signal::force_y_N], signals[Signal::force_z_N]};
   }
 
-  /// The largest change of the force from one millisecond to the next.
+  /// Returns the largest change of the force within one millisecond.
   float largest_step_N(std::uint32_t milliseconds) {
     float largest_N = 0.0f;
     for (std::uint32_t i = 0; i < milliseconds; ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("a program that takes the walls' place, and gives it back, is felt wit
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);
-  // The program falls silent: after its expiry the walls are back.
+  // The program stops sending: after the expiry of its force, the walls act again.
   CHECK(arm.largest_step_N(100) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   CHECK(arm.controller.force_sources() == bit(ForceSource::walls));

@@ -30,7 +30,7 @@ Surface rough(float static_friction, float dynamic_friction) {
 
 constexpr std::uint32_t for_long = 1'000'000;
 
-/// Plane `place` at height `z_m`, free above.
+/// Sets plane `place` at height `z_m`, with free space above it.
 void put_floor(Shapes& shapes, std::size_t place, float z_m, const Surface& surface,
                std::uint32_t life_periods = for_long) {
   shapes.planes[place] = {{0.0f, 0.0f, 1.0f}, z_m};
@@ -61,7 +61,7 @@ TEST_CASE("a plane pushes along its normal with spring and damper, and never pul
   TouchedShapes touched;
   touched.replace(shapes);
   CHECK(touched.any());
-  CHECK(touched.force_N({0.01f, 0.3f, 0.01f}, {}) == Vector3{});  // 4 mm above it
+  CHECK(touched.force_N({0.01f, 0.3f, 0.01f}, {}) == Vector3{});  // 4 mm above the plane
   const Vector3 force_N = touched.force_N({0.0f, 0.3f, 0.0f}, {0.0f, 1.0f, -0.5f});
   const float expected_N = 1000.0f * 0.01f + 2.0f * 0.8f * 0.5f;
   CHECK(force_N.x == doctest::Approx(0.6f * expected_N));
@@ -119,7 +119,7 @@ TEST_CASE("friction sticks up to its static bound, then slides with the dynamic 
   CHECK(grip.slides);
   CHECK(force_at(0.0020f).x == doctest::Approx(-0.5f));
   CHECK(force_at(0.0021f).x == doctest::Approx(-0.5f));
-  CHECK(force_at(0.0020f).x == doctest::Approx(-0.4f));  // back: it holds where it stopped
+  CHECK(force_at(0.0020f).x == doctest::Approx(-0.4f));  // reversed: static friction from the stopping point
   CHECK(!grip.slides);
   CHECK(force_at(0.0012f).x == doctest::Approx(0.4f));
   CHECK(force_at(0.0012f).z == doctest::Approx(1.0f));

@@ -1,4 +1,4 @@
-// What several tests of the controller need: a clock, samples, and a controller brought into a state.
+// Common parts of the controller tests: a clock, samples, and controllers in given states.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace inkwell::tests {
 
-/// Every stage takes as many cycles as its number says: 1, 2, 3, ...
+/// Each stage takes one more cycle than the previous stage: 1, 2, 3, ...
 struct FakeClock {
   std::uint32_t laps = 0;
   std::uint32_t lap() { return ++laps; }
@@ -41,13 +41,13 @@ inline protocol::CommandReport command(protocol::Command which) {
   return report;
 }
 
-/// For a rig in which no current flows: its loops may ask for less voltage than may be missed in a motor.
+/// For tests without motor currents: the voltage limit is below the detection of a missing motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
   set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::bearable_V;
   return set;
 }
 
-/// Steps with unchanged samples.
+/// Runs the controller with unchanged samples.
 inline control::Drive run(control::Controller& controller, const control::Samples& samples,
                           const control::Settings& settings, std::uint32_t periods) {
   FakeClock clock;
@@ -59,7 +59,7 @@ inline control::Drive run(control::Controller& controller, const control::Sample
   return drive;
 }
 
-/// What the encoders count at these angles, from the inkwell on.
+/// Returns the encoder counts at these angles, relative to the inkwell.
 inline std::array<std::int32_t, 3> counts_at(const control::Triple& joint_rad, const control::Settings& settings) {
   std::array<std::int32_t, 3> counts;
   for (std::size_t i = 0; i < 3; ++i)
@@ -68,7 +68,7 @@ inline std::array<std::int32_t, 3> counts_at(const control::Triple& joint_rad, c
   return counts;
 }
 
-/// To these counts from where the samples are, by at most so many in so many periods; the host stays.
+/// Moves to these counts in steps of at most `step_counts` per `step_periods`, with signs of life of the host.
 inline void move_to(control::Controller& controller, control::Samples& samples,
                     const std::array<std::int32_t, 3>& there_counts, const control::Settings& settings,
                     std::int32_t step_counts = 15, std::uint32_t step_periods = 1) {
@@ -81,7 +81,7 @@ inline void move_to(control::Controller& controller, control::Samples& samples,
   }
 }
 
-/// Past the measurement of the offsets and a self-test that passes: state `unreferenced`.
+/// After the offset measurement and a passed self-test: state `unreferenced`.
 inline control::Controller started_controller(const control::Settings& settings,
                                               const control::MeasuredMotors& measured = {},
                                               std::uint32_t first_period = 0) {
@@ -92,7 +92,7 @@ inline control::Controller started_controller(const control::Settings& settings,
   return controller;
 }
 
-/// Referenced at counts of zero, stylus out of the inkwell: state `ready`.
+/// Referenced at counts of zero, with the stylus out of the inkwell: state `ready`.
 inline control::Controller ready_controller(const control::Settings& settings,
                                             const control::MeasuredMotors& measured = {},
                                             std::uint32_t first_period = 0) {

@@ -1,4 +1,4 @@
-// Three motors at rest behind their bridges and shunts, for tests of what pulses them.
+// Three motors at rest with bridges and shunts, for tests with pulses.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 namespace inkwell::tests {
 
 struct SimulatedMotor {
-  float resistance_ohm = 2.27f;  ///< that of the Omni's motors, with shunt and switches
+  float resistance_ohm = 2.27f;  ///< Omni motor with shunt and switches
   float inductance_H = 0.238e-3f;
   float dead_V = board::omni_driver.bridge_dead_time_part() * board::supply_nominal_V;
   float back_emf_V = 0.0f;
   float back_emf_V_per_s = 0.0f;
   float sensor_gain = 1.0f;
-  std::size_t sensor = 0;  ///< that its shunt is wired to, 0..2
+  std::size_t sensor = 0;  ///< index of the connected shunt, 0..2
   bool is_open = false;
   float current_A = 0.0f;
 };
@@ -28,7 +28,7 @@ class SimulatedMotors {
     for (std::size_t i = 0; i < 3; ++i) motors[i].sensor = i;
   }
 
-  /// One control period: the voltages that were told in the period before act, these act in the next.
+  /// Runs one control period. The voltages of the previous call act now; the new voltages act in the next period.
   control::Triple step(const control::Triple& told_V) {
     control::Triple reading_A{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ class SimulatedMotors {
   std::array<SimulatedMotor, 3> motors;
 
  private:
-  // The dead time takes from a voltage what drives the current, and all of a small one.
+  // The dead time reduces the driving voltage, and suppresses a small voltage completely.
   static void advance(SimulatedMotor& motor, float voltage_V) {
     motor.back_emf_V += motor.back_emf_V_per_s * protocol::servo_period_s;
     if (motor.is_open) return;

@@ -1,4 +1,4 @@
-// What drives a probe that is nearly too fast gives way, before it is a fault.
+// The force component along the motion is reduced near the speed limit, before a fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,8 +31,8 @@ TEST_CASE("nothing gives way up to 0.8 of the speed limit, all of what drives fr
   CHECK(gives_way(100.0f, limit) == 1.0f);
 }
 
-/// The waist turns for a second, its probe up to 0.19 m/s fast, under a force of 2 N along with the motion or against
-/// it.
+/// The waist joint turns for one second with a probe speed of up to 0.19 m/s. A 2 N force acts with or against the
+/// motion.
 struct FastArm : TurningArm {
   FastArm(float speed_limit_m_per_s, float force_N) {
     set[Parameter::speed_limit_m_per_s] = speed_limit_m_per_s;
@@ -44,7 +44,7 @@ struct FastArm : TurningArm {
       fastest_m_per_s = std::max(fastest_m_per_s, speed_m_per_s);
       const float along_N = speed_m_per_s > 0.01f ? dot(force, velocity_m_per_s) / speed_m_per_s : 0.0f;
       const float part = speed_m_per_s / speed_limit_m_per_s;
-      // The force moves from one to the next in 1 ms, so a moment is left out between the two.
+      // The force takes 1 ms to change, so the range in between is not evaluated.
       if (part > 0.92f) at_fast_N = std::max(at_fast_N, std::fabs(along_N));
       if (part < 0.78f) at_slow_N = std::max(at_slow_N, std::fabs(along_N));
       return along(velocity_m_per_s, force_N);

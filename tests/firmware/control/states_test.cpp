@@ -1,5 +1,5 @@
-// The controller's way through its states: what is told while the force rises and is held back, what becomes of the
-// motors when it goes.
+// The state transitions of the controller: reported states while the force rises and is limited, and the motors when
+// the force is switched off.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ protocol::ParameterSet parameters() {
   return set;
 }
 
-/// A box far from the arm: its walls ask for more force than the limit allows.
+/// A box far from the arm, whose walls would require more than the force limit.
 Settings held_back() {
   protocol::ParameterSet set = parameters();
   set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = 0.4f;
@@ -35,7 +35,7 @@ Settings held_back() {
   return control::prepare(set);
 }
 
-/// Nothing is touched.
+/// Settings without contact.
 Settings free_space() {
   protocol::ParameterSet set = parameters();
   set[wall_stiffness_N_per_m] = set[wall_damping_Ns_per_m] = 0.0f;
@@ -88,7 +88,7 @@ TEST_CASE("in an orderly end the force falls as softly as it is told, and only t
           doctest::Approx(set[force_limit_N] * static_cast<float>(landing_periods - period) / landing_periods)
               .epsilon(1e-3));
   }
-  CHECK_FALSE(tests::run(controller, samples, pushed, 2).enabled);  // a rounding may take one more
+  CHECK_FALSE(tests::run(controller, samples, pushed, 2).enabled);  // rounding may add one period
   CHECK(controller.state() == State::ready);
 
   SUBCASE("a stop in its middle takes away what is left") {
@@ -129,7 +129,7 @@ float speed_m_per_s(const Controller& controller) {
                     signals[protocol::Signal::velocity_z_m_s]);
 }
 
-/// Spins the waist until the probe is faster than its limit.
+/// Rotates the waist until the probe exceeds its speed limit.
 control::Drive let_loose(Controller& controller, Samples& samples, const Settings& settings) {
   control::Drive drive;
   for (int i = 0; i < 60 && controller.state() != State::fault; ++i) {
@@ -159,7 +159,7 @@ TEST_CASE("an arm whose host fell silent is braked gently: not in a period in wh
   settings.limits.host_timeout_periods = 40;
   control::Drive drive;
   for (int i = 0; i < 100 && controller.state() != State::fault; ++i) {
-    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    samples.encoder_counts[0] += i % 2;  // about 0.3 m/s, below the limit
     drive = tests::run(controller, samples, settings, 1);
   }
   REQUIRE(controller.fault() == Fault::host_silent);
@@ -183,7 +183,7 @@ TEST_CASE(
   Samples samples = tests::samples_at_rest();
   Controller controller = tests::active_controller(settings);
   for (int i = 0; i < 20; ++i) {
-    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    samples.encoder_counts[0] += i % 2;  // about 0.3 m/s, below the limit
     tests::run(controller, samples, settings, 1);
   }
   const auto usb_goes = [&](Controller& of) {
@@ -213,7 +213,7 @@ TEST_CASE("an arm whose force a user stops is not braked, however fast it is") {
   Samples samples = tests::samples_at_rest();
   Controller controller = tests::active_controller(settings);
   for (int i = 0; i < 20; ++i) {
-    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    samples.encoder_counts[0] += i % 2;  // about 0.3 m/s, below the limit
     tests::run(controller, samples, settings, 1);
   }
   controller.carry_out(tests::command(Command::stop));

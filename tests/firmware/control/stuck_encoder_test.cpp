@@ -1,4 +1,4 @@
-// What an encoder that stands may be told by, and what must not be taken for one.
+// Detection of a stuck encoder, and motions that must not be detected as one.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using control::StuckEncoder;
 constexpr float moving_A = 1.0f;
 constexpr int looks_per_s = static_cast<int>(protocol::servo_rate_Hz) / 3;
 
-/// Looks for a second at `counts(time_s)` and `current_A(time_s)`.
+/// Checks `counts(time_s)` and `current_A(time_s)` for one second.
 template <class Counts, class Current>
 bool told(Counts counts, Current current_A, bool held = false, std::int32_t begin = 0) {
   StuckEncoder encoder{.counts = begin};
@@ -30,7 +30,7 @@ bool told(Counts counts, Current current_A, bool held = false, std::int32_t begi
   return false;
 }
 
-/// From one current to the next and so on, each within 0.15 s, from 0.2 s on.
+/// Returns a current that passes through these values from 0.2 s on, with 0.15 s per change.
 template <std::size_t size>
 auto through(const std::array<float, size>& currents_A) {
   return [=](float time_s) {
@@ -42,7 +42,7 @@ auto through(const std::array<float, size>& currents_A) {
     return current_A;
   };
 }
-/// From one current to another, between 0.2 and 0.7 s.
+/// Returns a current that changes linearly between 0.2 and 0.7 s.
 auto rising(float from_A, float to_A) {
   return [=](float time_s) { return from_A + (to_A - from_A) * std::clamp(2.0f * time_s - 0.4f, 0.0f, 1.0f); };
 }
@@ -64,7 +64,7 @@ TEST_CASE("pressed, let go and pressed again: two changes are borne, whichever w
 }
 
 TEST_CASE("what changed before it came to stand does not count") {
-  // From 0 to 5.8 A, but with a step of two counts when half of it is there.
+  // From 0 to 5.8 A, with a step of two counts in the middle.
   const auto stepping = [](float time_s) { return time_s < 0.45f ? 100 : 102; };
   CHECK(told(standing, rising(0.0f, 5.8f)));
   CHECK_FALSE(told(stepping, rising(0.0f, 5.8f)));
@@ -73,7 +73,7 @@ TEST_CASE("what changed before it came to stand does not count") {
 }
 
 TEST_CASE("what changed up to the look in which a joint breaks loose does not count for where it stands next") {
-  // The first change is there somewhere among these looks; two more come when the joint stands again.
+  // The joint moves somewhere within the current rise. Two more current changes follow while the joint is stationary.
   const auto current_A = [](int look) {
     if (look >= 3'500) return look < 5'000 ? 0.0f : 0.8f;
     return 0.8f * std::clamp(static_cast<float>(look - 2'000) / 400.0f, 0.0f, 1.0f);
@@ -89,7 +89,8 @@ TEST_CASE("what changed up to the look in which a joint breaks loose does not co
 }
 
 TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
-  // It comes to stand at 0.2 s, when the current begins to rise by 8 A: within that time, and within twice as long.
+  // The joint stops at 0.2 s, when the current starts to rise by 8 A. The joint reverses within the allowed time, or
+  // after twice this time.
   for (const float stands_s : {0.09f, 0.2f}) {
     const auto turning_round = [=](float time_s) {
       return time_s < 0.2f ? static_cast<std::int32_t>(1e4f * time_s)

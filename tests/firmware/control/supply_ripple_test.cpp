@@ -1,4 +1,4 @@
-// Which swings of the supply are ripple, and which of its ways are a step, a load or an arm that is braked.
+// Detection of supply ripple, and its distinction from steps, loads and a braked arm.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,8 @@ std::uint16_t counts_of(float supply_V) { return static_cast<std::uint16_t>(supp
 
 constexpr std::uint32_t never = periods_in(2.0f);
 
-/// Looks at `supply_V(time_s)`, every `every` periods from `begin` on; after how many periods it ripples.
+/// Checks `supply_V(time_s)` every `every` periods from `begin` on. Returns the number of periods until ripple is
+/// reported.
 template <class Supply>
 std::uint32_t periods_until_ripple(Supply supply_V, std::uint32_t begin = 0, std::uint32_t every = 1) {
   SupplyRipple ripple = watch;
@@ -62,7 +63,7 @@ TEST_CASE("a step, a sag, a spike and a supply that is cut are no ripple") {
               return time_s < 0.5f || time_s > 0.5f + length_s ? nominal_V : other_V;
             }) == never);
   }
-  // Switched on while it is looked at.
+  // Power-on during the check.
   CHECK(periods_until_ripple([](float time_s) { return time_s < 0.5f ? 0.0f : nominal_V; }) == never);
 }
 
@@ -85,7 +86,7 @@ TEST_CASE("looks that are skipped, and a count of periods that wraps, change not
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0xFFFF'FF00u) == sound);
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0, 5) == doctest::Approx(sound).epsilon(0.02));
   CHECK(periods_until_ripple(swing(5.0f, 20.0f), 0xFFFF'0000u, 5) == never);
-  // The mean follows by time: what it has not followed by then would be beyond the bound for longer.
+  // The mean follows with a time constant; the remaining deviation would exceed the bound for longer.
   for (const std::uint32_t every : {1u, 7u}) {
     SupplyRipple ripple = watch;
     ripples(ripple, counts_of(12.0f), 0);

@@ -1,4 +1,4 @@
-// Test pulses of one motor, and what stops them.
+// Test pulses of one motor, and the conditions that stop them.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ protocol::CommandReport pulse(Command which, std::uint8_t motor, float amplitude
   return report;
 }
 
-/// What force_limit_N allows a motor in the inkwell: its torque pushes where the other joints cannot give way.
+/// Current that force_limit_N allows in the inkwell. The motor's torque pushes in the direction in which the other
+/// joints cannot move.
 float test_limit_A(const Settings& settings, std::size_t motor) {
   const auto jacobian = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).jacobian;
   const control::Vector3 normal = control::cross(jacobian.column[(motor + 1) % 3], jacobian.column[(motor + 2) % 3]);
@@ -55,7 +56,7 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   }
 }
 
-/// Of a hand that holds the probe against one motor's torque and none of the others: J' F = torque, by Cramer's rule.
+/// Force of a hand that balances the torque of one motor and none of the other motors: J' F = torque, by Cramer's rule.
 double held_N(const control::Jacobian& jacobian, std::size_t motor, double torque_Nm) {
   const auto column = [&](std::size_t i) {
     const control::Vector3& v = jacobian.column[i % 3];
@@ -122,7 +123,7 @@ TEST_CASE(
       applied_V = drive.enabled ? drive.duty[1] * samples.supply_V : 0.0f;
     }
     CHECK(controller.state() == State::ready);
-    // It is known a period late, and acts a period later.
+    // The current is measured one period late, and the reaction follows one period later.
     CHECK(largest_A < limit_A + 2.0f * amplitude_V * protocol::servo_period_s / inductance_H);
     CHECK(largest_A > 0.9f * std::min(limit_A, amplitude_V / resistance_ohm));
   }
@@ -170,7 +171,7 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
         doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-4));
 }
 
-/// What the sensor of a motor shows: its amplifier follows the current to 0.2 V below its rails, here 3.6 A.
+/// Sensor reading: the amplifier saturates 0.2 V below its rails, here at 3.6 A.
 float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
 
 TEST_CASE("a current that its sensor cannot show trips within two control periods, at the largest limit too") {
@@ -268,7 +269,7 @@ TEST_CASE(
   const float step_J =
       std::fabs(current_A * settings.motor_model.back_emf_Vs_per_rad[1] * settings.encoders.rad_per_count[1]);
   for (const Command which : {Command::test_current, Command::test_voltage})
-    for (const int periods_per_count : {4, -4, 0}) {  // some 4 rad/s
+    for (const int periods_per_count : {4, -4, 0}) {  // about 4 rad/s
       CAPTURE(static_cast<int>(which));
       CAPTURE(periods_per_count);
       Controller controller = tests::ready_controller(settings);
@@ -304,7 +305,7 @@ TEST_CASE("a hot motor's pulse is held back") {
   set[protocol::Parameter::winding_heat_part] = 1.0f;
   const float bears_A = set[protocol::Parameter::continuous_current_2_A];
   Settings settings = control::prepare(set);
-  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
+  settings.motor_model.resistance_ohm = {};  // otherwise the motor check reports the current as implausible
   Controller controller = tests::ready_controller(settings);
   auto warm = tests::samples_at_rest();
   warm.current_A[1] += bears_A;

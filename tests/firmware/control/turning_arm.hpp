@@ -1,4 +1,4 @@
-// An arm in free space that somebody turns while a program asks for forces.
+// A hand moves this arm in free space while a program requests forces.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -16,8 +16,8 @@ using protocol::Limit;
 using protocol::Parameter;
 using protocol::Signal;
 
-/// The waist turns to and fro by 12 degrees, once a second, with the force on; no walls, and a program that asks for
-/// what `force_N` makes of the velocity.
+/// The waist oscillates by 12 degrees at 1 Hz with the force on. There are no walls. The program requests the force
+/// `force_N(velocity)`.
 struct TurningArm {
   protocol::ParameterSet set = free_space();
   control::Settings settings = control::prepare(set);
@@ -33,7 +33,7 @@ struct TurningArm {
     set[Parameter::wall_stiffness_N_per_m] = set[Parameter::wall_damping_Ns_per_m] = 0.0f;
     set[Parameter::program_force_change_N_per_s] = 20'000.0f;
     set[Parameter::force_ramp_s] = 0.0f;
-    set[Parameter::voltage_limit_V] = 0.2f;  // with the back EMF still less than may be missed in a motor
+    set[Parameter::voltage_limit_V] = 0.2f;  // with the back-EMF still below the detection of a missing motor
     return set;
   }
   Vector3 three(Signal first) const {
@@ -68,7 +68,7 @@ struct TurningArm {
   bool reached(Limit limit) const { return protocol::is_reached(limits, limit); }
 };
 
-/// A force along with the motion, or against it; none at rest.
+/// Returns a force with or against the motion; zero at rest.
 inline Vector3 along(const Vector3& velocity_m_per_s, float force_N) {
   const float speed_m_per_s = std::sqrt(dot(velocity_m_per_s, velocity_m_per_s));
   return speed_m_per_s > 0.01f ? (force_N / speed_m_per_s) * velocity_m_per_s : Vector3{};

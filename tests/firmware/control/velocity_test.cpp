@@ -1,5 +1,5 @@
-// The adaptive window against motions whose speed is known. Speeds are in counts a period; on the Omni one
-// count is about 0.05 mm at the probe, so that one count a period is 1.1 m/s.
+// The adaptive-window estimator with motions of known speed. Speeds are in counts per period. On the Omni one count is
+// about 0.05 mm at the probe, so one count per period is 1.1 m/s.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ constexpr double pi = 3.14159265358979;
 std::int32_t counts_at(double position) { return static_cast<std::int32_t>(std::floor(position)); }
 
 struct Quality {
-  double rms;              ///< of the estimate's error, counts a second
-  double raw_rms;          ///< of the error of the raw difference of two samples
-  double lag_s;            ///< time shift that a sine's phase stands for
-  double amplitude_ratio;  ///< estimate's sine against the true one
+  double rms;              ///< of the estimation error, in counts per second
+  double raw_rms;          ///< of the error of the difference of two samples
+  double lag_s;            ///< time shift equivalent to the phase of the sine
+  double amplitude_ratio;  ///< estimated amplitude relative to the true amplitude
 };
 
-/// Estimates the speed of `amplitude_counts` sin(2 pi f t) over whole periods, after one to settle.
+/// Estimates the speed of `amplitude_counts` sin(2 pi f t) over whole periods, after one settling period.
 Quality follow_sine(double amplitude_counts, double frequency_Hz) {
   const double omega = 2 * pi * frequency_Hz;
   const auto turn = static_cast<std::uint32_t>(rate_Hz / frequency_Hz);
@@ -87,7 +87,7 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
         if (period > periods / 2)
           worst = std::max(worst, std::abs(estimate.counts_per_period * rate_Hz - sign * counts_per_s) / counts_per_s);
       }
-      // One period of uncertainty, or one count if that is less, over a window of 56 periods and four counts.
+      // An uncertainty of one period, or one count if that is less, over a window of 56 periods and four counts.
       const double window_periods = std::max(56.0, 3.9 * rate_Hz / counts_per_s);
       CHECK(worst < 1.0 / window_periods / std::max(1.0, counts_per_s / rate_Hz));
     }
@@ -146,7 +146,7 @@ TEST_CASE("between edges the value rests: it changes in few of the periods") {
   float before = 0.0f;
   constexpr std::uint32_t periods = 20'000;
   for (std::uint32_t period = 1; period <= periods; ++period) {
-    // 500 counts a second, slowing down and standing still for the second half.
+    // 500 counts per second that decrease to standstill in the first half.
     const double t = std::min(period / rate_Hz, 0.5);
     control::update(estimate, counts_at(500 * t - 250 * t * t), period);
     if (estimate.counts_per_period != before) ++changes;

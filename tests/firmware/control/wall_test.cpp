@@ -1,6 +1,6 @@
-// The controller closed over a simulated arm: motors with winding and back EMF, joints with inertia and
-// friction, encoders that count, and a hand that pulls the probe to a target. Inertia is taken constant and
-// gravity is left out; the virtual board simulates both.
+// The controller in a closed loop with a simulated arm. The arm has motors with winding and back-EMF, joints with
+// inertia and friction, and encoders. A simulated hand pulls the probe to a target. The inertia is constant and gravity
+// is omitted; the virtual board simulates both.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class SimulatedArm {
     hand_m = control::forward_kinematics(joint_rad_, settings_.arm).position_m;
   }
 
-  Vector3 hand_m;  ///< where the hand wants the probe
+  Vector3 hand_m;  ///< target of the hand for the probe
 
   control::Samples samples() const {
     control::Samples samples = tests::samples_at_rest();
@@ -36,7 +36,7 @@ class SimulatedArm {
     return samples;
   }
 
-  /// One control period with the duty that the bridges have now.
+  /// Simulates one control period with the current duty cycles of the bridges.
   void run(const control::Drive& drive) {
     constexpr int steps = 10;
     constexpr float step_s = protocol::servo_period_s / steps;
@@ -78,18 +78,18 @@ class SimulatedArm {
   Triple current_A_{};
 };
 
-/// One push: what the device itself reported on the way.
+/// Measurements of one push, as reported by the device.
 struct Push {
   float largest_force_N = 0.0f;
   float deepest_m = 0.0f;
-  float law_error_N = 0.0f;      ///< of F = k d + c d' against the logged values
-  float current_error_A = 0.0f;  ///< of the current against its reference, in the mean while the hand is steady
+  float law_error_N = 0.0f;      ///< deviation from F = k d + c d' with the logged values
+  float current_error_A = 0.0f;  ///< mean deviation from the reference while the hand is steady
   float lowest_steady_m = 1.0f;
   float highest_steady_m = -1.0f;
   protocol::State state;
 };
 
-/// The hand moves 14 mm along x in 0.3 s, the last 10 mm of it beyond the wall, and then holds still.
+/// The hand moves 14 mm along x in 0.3 s, the last 10 mm beyond the wall, and then stops.
 Push push_against_wall(protocol::ParameterSet parameters) {
   parameters[Parameter::sphere_radius_m] = 0.0f;
   parameters[Parameter::force_ramp_s] = 0.02f;
@@ -104,7 +104,7 @@ Push push_against_wall(protocol::ParameterSet parameters) {
   tests::FakeClock clock;
 
   Push push;
-  control::Drive next;  // a duty takes effect one period after its samples
+  control::Drive next;  // a duty cycle becomes active one period after its samples
   constexpr int move_periods = 6'000, settle_periods = 2'000, steady_periods = 4'000, ramp_periods = 500;
   for (int period = -ramp_periods; period < move_periods + settle_periods + steady_periods; ++period) {
     const float part = control::clamp(static_cast<float>(period) / move_periods, 0.0f, 1.0f);
@@ -127,7 +127,7 @@ Push push_against_wall(protocol::ParameterSet parameters) {
     if (period < move_periods + settle_periods) continue;
     push.lowest_steady_m = std::min(push.lowest_steady_m, signals[Signal::position_x_m]);
     push.highest_steady_m = std::max(push.highest_steady_m, signals[Signal::position_x_m]);
-    // In the mean: where the probe rests on the edge between two counts, the reference steps to and fro for ever.
+    // The mean is used, because the reference alternates continuously when the probe rests between two counts.
     push.current_error_A +=
         (signals[Signal::current_1_A] - signals[Signal::current_reference_1_A]) / static_cast<float>(steady_periods);
   }

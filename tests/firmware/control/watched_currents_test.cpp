@@ -1,4 +1,4 @@
-// Readings of the current sensors: their offsets, their drift, and what they may show.
+// Current sensor readings: offsets, drift and plausibility.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_CASE("a current sensor that drifts off zero while the bridges are off is to
     CHECK(controller.fault() == Fault::none);
     samples.current_A[2] = -1.1f * drift_A;
     tests::run(controller, samples, settings, control::CurrentOffsets::patience_periods - 1);
-    samples.current_A[2] = 0.0f;  // the current of a winding that was switched off has ended by then
+    samples.current_A[2] = 0.0f;  // the current of the switched-off winding has decayed by then
     tests::run(controller, samples, settings, 1);
     CHECK(controller.fault() == Fault::none);
     samples.current_A[2] = -1.1f * drift_A;
@@ -88,7 +88,7 @@ TEST_CASE(
   CHECK(controller.state() == State::ready);
 
   Controller starting{tests::board_limits};
-  samples.current_A[1] = 1.0f;  // an amplifier that settles
+  samples.current_A[1] = 1.0f;  // settling of an amplifier
   tests::run(starting, samples, settings, patience_periods + 50);
   samples.current_A[1] = 0.0f;
   tests::run(starting, samples, settings, control::CurrentOffsets::duration_periods);
@@ -155,7 +155,7 @@ TEST_CASE("a current limit that is restored before the bound has come down holds
 
 TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
   Settings settings = settings_near_wall();
-  settings.motor_model.resistance_ohm = {};  // or the current that nothing drives would be told, and its jumps
+  settings.motor_model.resistance_ohm = {};  // otherwise the motor check reports the current and its jumps
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   constexpr float current_A = 2.0f;
@@ -166,7 +166,7 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   settings.limits.over_current_A[1] = lowered_A;
   run_with_host(controller, samples, settings, 1);
   CHECK(controller.force_is_on());
-  // A current that falls by 15 mA in a period.
+  // A current that falls by 15 mA per period.
   for (float left_A = current_A; left_A > lowered_A; left_A -= 0.015f) {
     samples.current_A[1] = left_A;
     run_with_host(controller, samples, settings, 1);
@@ -175,7 +175,7 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   samples.current_A[1] = lowered_A - 0.01f;
   run_with_host(controller, samples, settings, 300);
   CHECK(controller.force_is_on());
-  // Raised, it holds before a current can have followed.
+  // A raised limit applies before the current can have followed.
   settings.limits.over_current_A[1] = current_A + 0.01f;
   run_with_host(controller, samples, settings, 3);
   samples.current_A[1] = current_A;

@@ -1,4 +1,4 @@
-// Samples that show that something is wrong, and what is told of it.
+// Faulty samples and the faults that they raise.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using protocol::State;
 using tests::run_with_host;
 using tests::settings_near_wall;
 
-/// Samples that must switch an active controller off in the very period in which they come.
+/// Samples that must switch off an active controller in the same period.
 struct BadSample {
   Fault fault;
   void (*spoil)(Samples&);
@@ -77,8 +77,8 @@ TEST_CASE("a supply that dips or rises for a control period, but not far, is bor
   }
 }
 
-/// What a ready controller says to an arm that comes to stand so; the third angle is the elbow's, from link 2 to
-/// link 3.
+/// Returns the fault of a ready controller after a move to these angles. The third angle is that of the elbow, from
+/// link 2 to link 3.
 Fault fault_at(const Settings& settings, const control::Triple& at_stops_rad) {
   control::Triple joint_rad = at_stops_rad;
   if (settings.arm.transmission == control::Transmission::parallelogram) joint_rad[2] += joint_rad[1];
@@ -109,7 +109,7 @@ TEST_CASE("a joint beyond its stop is told, the elbow by its angle between the l
       CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] - beyond_rad)) == Fault::none);
       CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] + beyond_rad)) == Fault::encoder_implausible);
     }
-    // With joints 2 and 3 at their ends together, the third of a parallelogram is far beyond the elbow's stops.
+    // With joints 2 and 3 at the same end, the third joint of a parallelogram is far beyond the elbow's stops.
     for (const auto& ends_rad : {lower_rad, upper_rad}) {
       const float inward_rad = ends_rad == lower_rad ? beyond_rad : -beyond_rad;
       CHECK(fault_at(settings, {middle_rad[0], ends_rad[1] + inward_rad, ends_rad[2] + inward_rad}) == Fault::none);
@@ -145,7 +145,7 @@ TEST_CASE("a motor that gets hot although nothing is asked of it is a fault unti
   set[protocol::Parameter::winding_time_constant_s] = 0.1f;
   set[protocol::Parameter::winding_heat_part] = 1.0f;
   Settings settings = control::prepare(set);
-  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
+  settings.motor_model.resistance_ohm = {};  // otherwise the motor check reports the current as implausible
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   const float offset_A = samples.current_A[1];
@@ -183,7 +183,7 @@ TEST_CASE("a motor that was hot before a restart is as hot after it, and goes on
   CHECK(controller.motor_heat()[1] == doctest::Approx(0.5f * housing).scale(0).epsilon(0.01));
   CHECK(controller.motor_heat()[2] == doctest::Approx(0.125f * (winding + housing)).scale(0).epsilon(0.01));
 
-  // What the run before found too hot has to cool as far as it would have had to.
+  // A motor that was too hot before the restart has to cool to the same temperature as without a restart.
   Controller hot{tests::board_limits};
   hot.start_warm({{1.1f, 0.0f, 0.0f}, {1.1f, 0.0f, 0.0f}, 1});
   CHECK(hot.warmth().too_hot == 1);

@@ -1,5 +1,5 @@
-"""Two drivers of one timer, pin, DMA stream or interrupt line do not compile, nor does a driver that takes what it does
-not claim, or one that is not in the list of parts.
+"""Two drivers of the same timer, pin, DMA stream or interrupt line do not compile. A driver that uses an unclaimed
+resource, or that is not in the list of parts, does not compile either.
 
     claims_test.py INCLUDE_DIRECTORY...
 """
@@ -14,7 +14,7 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard",
             "-fno-exceptions", "-fno-rtti", "-I", REPOSITORY / "firmware/application"]
 
-# The firmware's own parts, and a driver that comes to them.
+# Headers of the firmware, and a driver that uses their peripherals.
 HEADERS = """
 #include <parts.hpp>
 #include <drivers/interrupts.hpp>
@@ -46,7 +46,7 @@ class Claims(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        """The headers are compiled once for all that follows."""
+        """Compiles the headers once for all tests."""
         folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         compiler = [*COMPILER, *(part for directory in cls.includes for part in ("-I", directory))]
         headers = folder / "headers.hpp"
@@ -55,7 +55,7 @@ class Claims(unittest.TestCase):
         cls.command = [*compiler, "-fsyntax-only", "-Winvalid-pch", "-include", headers, "-x", "c++", "-"]
 
     def compile(self, claims: str, start: str = "", more: str = "") -> str:
-        """What the compiler complains about; nothing if the source is sound."""
+        """Returns the error message of the compiler; empty if the source compiles."""
         result = subprocess.run(self.command, input=FRAME % (claims, start) + more, capture_output=True, text=True,
                                 check=False)
         self.assertEqual(result.returncode != 0, "error" in result.stderr, result.stderr)

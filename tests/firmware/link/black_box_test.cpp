@@ -1,4 +1,4 @@
-// The black box: what the main loop keeps of the time around a fault, over resets too.
+// The black box, also across resets.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -39,7 +39,7 @@ protocol::RequestResult result_of(const protocol::BlackBoxRowsReport& report) {
   return static_cast<protocol::RequestResult>(report.result);
 }
 
-/// A board whose memory outlives its runs. Its ring of samples is that of fresh_link(), which is new in each run.
+/// A board whose memory survives its restarts. Each run has a new sample ring, from fresh_link().
 struct Board {
   link::BlackBoxMemory<rows_before, rows_from_fault> memory{};
   link::SampleRing* samples = nullptr;
@@ -53,14 +53,14 @@ struct Board {
     box->start(raised, facts);
     period = 0;
   }
-  /// The interrupt's part of so many periods.
+  /// Runs the interrupt for some periods.
   void pass(std::uint32_t count, State state = State::ready, Fault fault = Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i, ++period) {
       samples->next() = {signals_at(period), {.state = state, .fault = fault, .periods = period}};
       samples->record();
     }
   }
-  /// And with the main loop behind each of them.
+  /// Runs the interrupt for some periods, with a pass of the main loop after each period.
   void run(std::uint32_t count, State state = State::ready, Fault fault = Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {
       pass(1, state, fault);
@@ -78,7 +78,7 @@ struct Board {
     REQUIRE(report.row_count <= protocol::black_box_report_rows);
     return {report.rows, report.rows + report.row_count};
   }
-  /// As a host reads them, and every value as it was.
+  /// Returns the periods of all rows, read like a host, and checks all values.
   std::vector<std::uint32_t> periods() {
     std::vector<std::uint32_t> found;
     int wrong = 0;
@@ -100,7 +100,7 @@ struct Board {
 
 using Periods = std::vector<std::uint32_t>;
 
-/// A fault in period 1007, and all that is kept of it.
+/// Raises a fault in period 1007 and records all rows after it.
 void meet_fault(Board& board, Fault fault = Fault::supply_low) {
   board.run(1007, State::active);
   board.run(3 * step + 1, State::fault, fault);
@@ -168,7 +168,7 @@ TEST_CASE("a black box stays, whatever comes, until the force is switched on") {
   board.run(100, State::fault, Fault::bridge_fault);
   CHECK(board.box->report().fault == Fault::bridge_fault);
   CHECK(board.box->report().fault_periods == on_at + 33);
-  for (const std::uint32_t period : board.periods()) CHECK(period >= on_at);  // nothing of the time before
+  for (const std::uint32_t period : board.periods()) CHECK(period >= on_at);  // no row from before
 }
 
 TEST_CASE("a late main loop misses rows but neither the fault's period nor anybody's time") {
@@ -185,7 +185,7 @@ TEST_CASE("a late main loop misses rows but neither the fault's period nor anybo
     CHECK(board.box->report().fault_periods == 1007);
     CHECK(board.periods() == around_fault);
   }
-  // So late that samples were overwritten.
+  // So late that the interrupt overwrote samples.
   Board board;
   for (int i = 0; i < 20; ++i) {
     board.pass(51, State::active);
@@ -206,7 +206,7 @@ TEST_CASE("a main loop that comes when the time after a fault is over adds nothi
   Board board;
   board.run(1008, State::active);
   board.run(step + 1, State::fault, Fault::supply_low);
-  board.pass(9 * step + link::SampleRing::readable - 1, State::fault, Fault::supply_low);  // a row was due just now
+  board.pass(9 * step + link::SampleRing::readable - 1, State::fault, Fault::supply_low);  // a row is due now
   board.box->follow();
   CHECK(board.box->report().is_complete);
   CHECK(board.periods() == Periods{920, 940, 960, 980, 1000, 1008, 1028});
@@ -269,7 +269,7 @@ TEST_CASE("crashes while a black box is kept: the newest is told, with their num
       newest.program_counter += 0x100 * crashes;
       board.start(Fault::processor_fault, newest);
       board.run(200, State::fault, Fault::processor_fault);
-      board.start();  // and it is kept as well
+      board.start();  // the black box is retained across another reset
       const auto report = board.box->report();
       CHECK(report.fault == first_fault);
       CHECK(report.later_crashes == crashes);
@@ -303,7 +303,7 @@ TEST_CASE("a crash before anything was recorded is told without rows") {
 TEST_CASE("a crash while a row is written costs that row") {
   Board board;
   board.run(1007, State::active);
-  // Row 51, in the place of row 46, the oldest.
+  // Row 51 replaces row 46, the oldest.
   board.memory.ring[51 % rows_before].row.values[7] = 1.0f;
   board.start(Fault::watchdog);
   CHECK(board.periods() == Periods{940, 960, 980, 1000});
@@ -332,7 +332,7 @@ TEST_CASE("memory after power-up is never taken for a black box") {
     if (i % 3 != 2) {
       fill(board.memory);
     } else {
-      // What follows the tables' hash, as if garbage had met it by chance.
+      // Everything after the hash of the tables, as if random memory contained a matching hash.
       fill(board.memory.notes.cause);
       fill(board.memory.ring);
       fill(board.memory.line);
@@ -356,7 +356,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
     Board board;
     meet_fault(board);
     if (!is_kept) {
-      board.run(1, State::active);  // what the line holds of the fault before counts no more
+      board.run(1, State::active);  // the rows of the previous fault no longer count
       board.period = 0;
       board.run(1007, State::active);
     }
@@ -370,11 +370,11 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
       board.start(is_kept ? Fault::none : fault);
       if (!board.is_kept()) continue;
       CHECK(board.box->report().fault == fault);
-      const auto periods = board.periods();  // and every value as it was
+      const auto periods = board.periods();  // also checks all values
       const std::size_t before = board.box->report().rows_before;
       REQUIRE(before <= rows_before);
       CHECK(board.box->report().fault_periods == (is_kept ? 1007 : periods.empty() ? 0 : 1000));
-      // What is left follows on each other up to the fault, and from it on.
+      // The remaining rows are consecutive up to the fault, and from the fault on.
       REQUIRE(periods.size() - before <= expected.size() - rows_before);
       for (std::size_t i = 0; i < periods.size(); ++i)
         CHECK(periods[i] == expected[i < before ? rows_before - before + i : rows_before + i - before]);
@@ -385,7 +385,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
 TEST_CASE("rows of an image with other tables are not shown by this one") {
   Board board;
   meet_fault(board);
-  // The same memory as it is laid out for another number of rows.
+  // The same memory with the layout for another number of rows.
   auto& other = reinterpret_cast<link::BlackBoxMemory<rows_before - 1, rows_from_fault + 1>&>(board.memory);
   link::BlackBox box(*board.samples, other);
   box.start(Fault::none, {});
@@ -424,7 +424,7 @@ TEST_CASE("the board's counter of periods may wrap in the midst of a black box")
 }
 
 TEST_CASE("all rows before a fault are there, however many were written since the fault before it") {
-  constexpr std::uint32_t written = 51;  // by meet_fault()
+  constexpr std::uint32_t written = 51;  // number of rows that meet_fault() records before the fault
   for (const std::uint32_t end_of_numbers : {std::uint32_t{0}, 0x8000'0000 - std::uint32_t{rows_before}}) {
     CAPTURE(end_of_numbers);
     Board board;

@@ -54,14 +54,14 @@ TEST_CASE("a command of another length, report, version or kind is ignored") {
 
 TEST_CASE("a selection holds known signals, at most as many as fit") {
   CommandReport report = make(Command::select_signals);
-  CHECK(sound(report));  // none: stops the scope
+  CHECK(sound(report));  // an empty selection stops the scope
   report.selection.count = protocol::scope_signals_maximum;
   for (std::uint8_t& signal : report.selection.signals) signal = protocol::signal_count - 1;
   CHECK(sound(report));
   report.selection.signals[31] = protocol::signal_count;
   CHECK_FALSE(sound(report));
   report.selection.count = 31;
-  CHECK(sound(report));  // what is not counted is not looked at
+  CHECK(sound(report));  // entries after `count` are not checked
   report.selection.count = protocol::scope_signals_maximum + 1;
   CHECK_FALSE(sound(report));
   report.selection.count = 255;
@@ -97,7 +97,7 @@ TEST_CASE("commands come out in order, one a period, and their tokens with them"
   CommandQueue queue;
   CHECK(queue.take() == nullptr);
   CHECK_FALSE(queue.take_sign_of_life());
-  // Several times round the ring.
+  // Several times around the ring.
   std::uint8_t next = 0;
   for (int round = 0; round < 10; ++round) {
     for (int i = 0; i < 3; ++i) CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(next + i))));
@@ -147,12 +147,12 @@ TEST_CASE("when the host is gone, the next thing that happens is that the force 
   CHECK(queue.push(make(Command::enable_force, 6)));
   queue.host_gone();
   CHECK_FALSE(queue.take_sign_of_life());
-  CHECK(queue.push(make(Command::clear_fault, 7)));  // the next host, before the interrupt came
+  CHECK(queue.push(make(Command::clear_fault, 7)));  // a command of the next host, before the interrupt runs
   const CommandReport* command = queue.take();
   REQUIRE(command != nullptr);
   CHECK(command->command == Command::stop);
   CHECK(queue.is_of_gone_host(*command));
-  CHECK(command->token == 5);  // the command that was thrown away is not acknowledged
+  CHECK(command->token == 5);  // the discarded command is not acknowledged
   CHECK(queue.last_token() == 5);
   command = queue.take();
   REQUIRE(command != nullptr);

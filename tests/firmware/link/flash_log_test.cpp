@@ -1,5 +1,5 @@
-// The log of records: whatever is in the flash, and at whichever word or erase the power goes, a start finds the set
-// that was stored before or the one that was being stored, and can store the next.
+// The flash log with any flash content, and with a power loss at any word or erase. The next start finds the previous
+// set or the new set, and can store another set.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -18,7 +18,8 @@ constexpr std::uint32_t erased = 0xFFFF'FFFF;
 
 struct PowerCut {};
 
-/// A flash as the chip has it: programming clears bits, a cut leaves what was under way torn.
+/// Flash memory like that of the chip. Programming only clears bits, and a power loss leaves the interrupted word or
+/// sector partly written.
 class FakeFlash final : public FlashMemory {
  public:
   FakeFlash() {
@@ -70,7 +71,7 @@ Payload payload_of(std::uint32_t set) {
   return payload;
 }
 
-/// Of the set that the log holds, 0 if none; fails on anything that nobody stored.
+/// Returns the number of the stored set, or 0 if there is none. The test fails for a set that was never stored.
 std::uint32_t held(const FlashLog& log) {
   if (!log.newest()) return 0;
   const auto payload = log.newest()->payload;
@@ -98,7 +99,7 @@ FlashLog started(FlashMemory& flash) {
   return log;
 }
 
-/// Stores sets `first` and on until so many records still fit.
+/// Stores sets from `first` on until `left` records still fit.
 std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
   FlashLog log = started(flash);
   while (log.room(payload_words) > left) REQUIRE(store(log, first++));
@@ -107,7 +108,7 @@ std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
 
 struct Begin {
   std::string name;
-  /// Makes the contents, and gives the set that is stored in them; 0 is none.
+  /// Creates the content, and returns the number of its stored set, or 0.
   std::function<std::uint32_t(FakeFlash&)> make;
 };
 
@@ -195,10 +196,10 @@ const std::vector<Begin>& begins() {
   return all;
 }
 
-/// A start, and a set stored.
+/// Starts a log and stores a set.
 void start_and_store(FakeFlash& flash, std::uint32_t set) {
   FlashLog log = started(flash);
-  const bool stored = store(log, set);  // here, because a check would take a power cut for its own
+  const bool stored = store(log, set);  // outside the check macro, which would catch the exception of the power loss
   REQUIRE(stored);
 }
 
@@ -231,7 +232,7 @@ TEST_CASE("store: a power cut at any word or erase leaves the old set or the new
         CAPTURE(set);
         CAPTURE(old_set);
         CHECK((set == old_set || (set == new_set && cut == operations)));
-        // Each erase that was begun is counted: the note of the last may itself have been cut off.
+        // Each started erase is counted. The record of the last erase may be incomplete.
         for (std::size_t i = 0; i < 2 && old_set != 0; ++i) {
           CHECK(log.erases()[i] + 1 >= flash.erases[i]);
           CHECK(log.erases()[i] <= flash.erases[i] + 1);
@@ -293,7 +294,7 @@ TEST_CASE("store: an erase that was cut off is done again even if the sector rea
   FakeFlash flash;
   const std::uint32_t last = fill(flash, 1, 0);
   flash.cut_at = flash.operations + static_cast<unsigned>(record_words(1)) + 1;
-  flash.tear = 1;  // it reads as erased, but perhaps not for long
+  flash.tear = 1;  // the sector reads as erased, but the erase is incomplete
   CHECK_THROWS_AS(started(flash), PowerCut);
   REQUIRE(flash.erases[0] == 1);
   const FlashLog log = started(flash);

@@ -1,5 +1,5 @@
-// One Link for all tests, made new for each: its scope frames fill half of the chip's memory. The black box has fewer
-// rows than on the board, for the same reason.
+// One Link object for all tests, constructed again for each test, because its scope frames fill half of the chip's
+// memory. For the same reason its black box has fewer rows than on the board.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline link::Link& fresh_link(std::uint32_t first_period = 0) {
   return *fresh;
 }
 
-/// What the interrupt leaves of one period.
+/// Records the sample of one period, like the control interrupt.
 inline void interrupt(link::Link& link, const protocol::SignalValues& signals, const link::PeriodSummary& summary) {
   link.samples.next() = {signals, summary};
   link.samples.record();
@@ -31,7 +31,7 @@ inline void interrupt(link::Link& link, const protocol::SignalValues& signals, s
   interrupt(link, signals, {.state = protocol::State::ready, .periods = period});
 }
 
-/// One period of the scope, in the interrupt and in the main loop.
+/// Records one period and packs it for the scope.
 inline void record(link::Link& link, const protocol::SignalValues& signals, std::uint32_t period) {
   interrupt(link, signals, period);
   link.scope.pack();

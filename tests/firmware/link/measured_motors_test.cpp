@@ -1,4 +1,4 @@
-// What the control interrupt knows of motors and bridges from the self-test, shown by what it does with it.
+// Motor and bridge data from the self-test, and its effect in the control interrupt.
 #include "self_test_board.hpp"
 
 namespace {
@@ -10,9 +10,9 @@ using protocol::SelfTestItem;
 using protocol::SelfTestResult;
 using protocol::State;
 
-/// One whose arm is pushed at by a program, in one direction, as hard as the force limit lets it.
+/// A board on which a program requests the maximum force in one direction.
 struct PushedBoard : test::SelfTestBoard {
-  std::size_t strongest = 0;  ///< motor
+  std::size_t strongest = 0;  ///< motor with the largest current
 
   PushedBoard() { settings.force_limit_N = settings.program_force.force_limit_N = 2.5f; }
 
@@ -21,7 +21,7 @@ struct PushedBoard : test::SelfTestBoard {
     run_while(State::testing);
   }
 
-  /// A test in which the arm moves all the time tells no more.
+  /// Runs a self-test during which the arm moves. The motors cannot be measured then.
   void test_while_it_moves() {
     controller.carry_out(tests::command(Command::self_test));
     run(1);
@@ -55,7 +55,7 @@ struct PushedBoard : test::SelfTestBoard {
     }
   }
 
-  /// The true current of the strongest motor, in parts of what it should be.
+  /// Ratio of true current to current reference, for the motor with the largest current.
   float part_of_reference() const {
     const auto signal = of_axis(protocol::Signal::current_reference_1_A, strongest);
     return motors.motors[strongest].current_A / controller.signals()[signal];
@@ -68,12 +68,12 @@ TEST_CASE("what a bridge takes is known from the test, so half a motor's turns a
     PushedBoard board;
     board.test_after_start();
     if (is_tested)
-      board.test_while_it_moves();  // what is known stays known
+      board.test_while_it_moves();  // the earlier measurement is retained
     else
       board.controller.pass_self_test({});
     board.make_active();
     const float current_A = std::fabs(board.samples.current_A[board.strongest]);
-    REQUIRE(current_A > 0.7f);  // from 0.6 A on it is missed, without the test from 1.8 A on
+    REQUIRE(current_A > 0.7f);  // the defect is detectable above 0.6 A, and without the self-test above 1.8 A
     REQUIRE(current_A < 1.2f);
     board.motors.motors[board.strongest].resistance_ohm *= 0.5f;
     board.push(2'000);
@@ -111,7 +111,7 @@ TEST_CASE("a motor that its current has warmed since the test gets the voltage f
   PushedBoard board;
   board.test_after_start();
   board.make_active();
-  // Heat goes into the model by the current alone, so the model is made quick.
+  // Only the current heats the model, so the test shortens its time constants.
   board.settings.heat.housing_per_update = board.settings.heat.winding_per_update = 0.05f;
   board.push(20'000);
   const float heat = board.controller.motor_heat()[board.strongest];

@@ -1,4 +1,4 @@
-// How warm the motors are, over a restart, whatever the memory holds then.
+// Retention of the motor heat across a restart, with any memory content.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void check_is(const std::optional<Warmth>& found, const Warmth& expected) {
 
 using Words = std::array<std::uint32_t, sizeof(MotorHeatKeeper) / sizeof(std::uint32_t)>;
 
-/// The keeper's memory, by names.
+/// Memory layout of the keeper, with named members.
 struct Memory {
   struct Place {
     struct Left {
@@ -48,14 +48,14 @@ MotorHeatKeeper filled_with(std::uint32_t word) {
   return std::bit_cast<MotorHeatKeeper>(words);
 }
 
-/// Just after power-up.
+/// State after power-on.
 MotorHeatKeeper fresh() {
   MotorHeatKeeper keeper = filled_with(0x5A5A'5A5A);
   keeper.start(true);
   return keeper;
 }
 
-/// It has been left twice, the second time in the second place.
+/// Two records have been written, the second one to the second slot.
 Memory memory_with(const Warmth& first, const Warmth& second) {
   MotorHeatKeeper keeper = fresh();
   keeper.leave(first);
@@ -103,10 +103,10 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
   keeper.leave(warmer);
   const auto after = std::bit_cast<Words>(keeper);
   constexpr std::size_t number = 7, check = 8, next_number = 18;
-  // The same heat stood in this place before.
+  // The previous record in this slot has the same heat.
   for (std::size_t word = 0; word < after.size(); ++word)
     CHECK((before[word] != after[word]) == (word == number || word == check || word == next_number));
-  // The words may be written in any order.
+  // The compiler may write the words in any order.
   for (unsigned written = 0; written < 4; ++written) {
     Words words = before;
     if ((written & 1) != 0) words[number] = after[number];
@@ -116,7 +116,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
     keeper.leave(warmer);
     check_is(keeper.start(false), warmer);
   }
-  // And another heat, up to each of its words.
+  // An interrupted write of another heat, at each of its words.
   Memory other = memory_with(warm, warmer);
   for (std::size_t end = 1; end < check; ++end) {
     Memory cut = other;
@@ -129,7 +129,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
 
 TEST_CASE("motor heat: the first copy after a start leaves what the start found where it is") {
   Memory memory = memory_with(warm, warmer);
-  memory.next_number = 0xF000'0001;  // it is not believed either
+  memory.next_number = 0xF000'0001;  // an invalid number, which start() ignores
   auto keeper = std::bit_cast<MotorHeatKeeper>(memory);
   check_is(keeper.start(false), warmer);
   keeper.leave(warm);

@@ -19,8 +19,8 @@ namespace {
 
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 
-/// Sends a transaction that must be refused, and checks that reason, parameter and value are told, that
-/// every value stayed, and that the interrupt gets nothing new.
+/// Sends an invalid transaction. Checks the reported reason, parameter and value, that no parameter has changed, and
+/// that the interrupt receives no new settings.
 void check_refused(ParameterStore& store, std::span<const std::byte> report, Refusal reason, std::uint16_t id = 0,
                    float value = 0.0f, bool force_is_on = false) {
   const protocol::ParameterSet before = store.values();
@@ -71,7 +71,7 @@ TEST_CASE("an accepted transaction takes effect whole, at the period in which th
   const float ramp_before = before->ramp_per_period;
   const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 500.0f), entry(Parameter::force_ramp_s, 1.0f)};
   CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
-  CHECK(before->ramp_per_period == ramp_before);  // what the interrupt works with is not touched
+  CHECK(before->ramp_per_period == ramp_before);  // the current settings of the interrupt do not change
 
   CHECK(store.take(1234));
   const control::Settings& after = store.settings();
@@ -127,7 +127,7 @@ TEST_CASE("each refusal tells its reason and leaves everything as it was") {
   const std::uint16_t stiffness = id_of(Parameter::wall_stiffness_N_per_m);
   const float infinity = std::numeric_limits<float>::infinity();
   const float not_a_number = std::numeric_limits<float>::quiet_NaN();
-  // A good entry stands before the bad one: it must not take effect either.
+  // A valid entry before the invalid one must not take effect either.
   const protocol::ParameterEntry good = entry(Parameter::wall_damping_Ns_per_m, 5.0f);
 
   SUBCASE("wrong version") {
@@ -212,7 +212,7 @@ TEST_CASE("bounds must leave room between them") {
     check_refused(store, Transaction{entry(pair.maximum, -0.4f), entry(pair.minimum, 0.4f)}.bytes(),
                   Refusal::inconsistent, id_of(pair.minimum), 0.4f);
   }
-  // Both bounds of a transaction are seen together, whatever their order.
+  // Both bounds of a transaction are checked together, in any order.
   const Transaction both{entry(Parameter::box_minimum_x_m, 0.2f), entry(Parameter::box_maximum_x_m, 0.4f)};
   CHECK(store.accept(both.bytes(), false) == Refusal::accepted);
 }
@@ -238,7 +238,7 @@ TEST_CASE("while the force is on the arm can not change, everything else can") {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];
     CAPTURE(row.name);
     const bool arm = row.group == "arm";
-    // The same value again is no change.
+    // An equal value is not a change.
     CHECK(store.accept(Transaction{{row.id, 0, row.default_value}}.bytes(), true) == Refusal::accepted);
     store.take(0);
     if (!arm) continue;
@@ -253,7 +253,7 @@ TEST_CASE("a bit of the settings that changes by itself is found, whichever it i
   CHECK(store.settings_are_intact());
   const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 700.0f)};
   REQUIRE(store.accept(transaction.bytes(), false) == Refusal::accepted);
-  CHECK(store.settings_are_intact());  // nothing is taken yet
+  CHECK(store.settings_are_intact());  // the interrupt has not accepted the settings yet
   store.take(1);
   CHECK(store.settings_are_intact());
   auto* bytes = reinterpret_cast<unsigned char*>(const_cast<control::Settings*>(&store.settings()));

@@ -1,4 +1,4 @@
-// The two sectors of a flash whose power stays on.
+// The two sectors of a flash memory, without power losses.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace inkwell::test {
 
 class PlainFlash final : public link::FlashMemory {
  public:
-  static constexpr std::size_t words_of_chip = 0x4000 / 4;  ///< in a sector
+  static constexpr std::size_t words_of_chip = 0x4000 / 4;  ///< words of a sector of the chip
 
   explicit PlainFlash(std::size_t sector_words = words_of_chip) {
     for (auto& sector : sectors) sector.assign(sector_words, 0xFFFF'FFFF);
@@ -29,7 +29,7 @@ class PlainFlash final : public link::FlashMemory {
 
   std::array<std::vector<std::uint32_t>, protocol::store_sectors> sectors;
   unsigned words_programmed = 0;
-  bool is_worn = false;  ///< it takes no word
+  bool is_worn = false;  ///< programming fails
 };
 
 }  // namespace inkwell::test

@@ -1,4 +1,4 @@
-// The newest pose on its way from the control interrupt to the main loop.
+// The newest pose, passed from the control interrupt to the main loop.
 #include <doctest/doctest.h>
 
 #include "fresh_link.hpp"
@@ -89,7 +89,7 @@ TEST_CASE("the load is the longest interrupt since the last report that was take
   const auto millisecond = [&](std::uint32_t longest) {
     for (std::uint32_t i = 0; i < 20; ++i) {
       recorded.record(signals, i, i == 7 ? longest : 84u);
-      REQUIRE(recorder.read(report));  // which changes nothing
+      REQUIRE(recorder.read(report));  // read() does not reset the maximum
     }
     REQUIRE(recorder.take(report));
     return int{report.servo_load};
@@ -104,7 +104,7 @@ TEST_CASE("a moment of the cycle counter has a board time") {
   Recorded recorded;
   PoseRecorder& recorder = recorded.poses;
   CHECK_FALSE(recorder.time_of(0));          // no period yet
-  constexpr std::uint32_t period = 600'000;  // the counter has wrapped
+  constexpr std::uint32_t period = 600'000;  // the cycle counter has wrapped
   recorded.record(some_signals(), period);
   for (const std::int32_t cycles : {0, 1, 8399, 8400, 20'000, -1, -8399, -8400, -8401, -168'000}) {
     CAPTURE(cycles);

@@ -116,10 +116,10 @@ TEST_CASE("gaps in the sequence are counted as lost, another program's start is 
   end.mode = ForceMode::none;
   requests.accept_force(bytes(end), true, 0);
   requests.take_force();
-  accept(1'000'005);  // after an end anything is a start
+  accept(1'000'005);  // after the mode `none`, any sequence is a new start
   CHECK(requests.forces_lost() == 2);
   requests.accept_force(bytes(force(1'000'006)), true, 0);
-  requests.accept_force(bytes(force(1'000'007)), true, 0);  // the interrupt did not take the one before
+  requests.accept_force(bytes(force(1'000'007)), true, 0);  // the interrupt has not accepted the previous force
   CHECK(requests.forces_lost() == 3);
   CHECK(requests.take_force() != nullptr);
 }
@@ -127,7 +127,7 @@ TEST_CASE("gaps in the sequence are counted as lost, another program's start is 
 TEST_CASE("a plane's normal gets the length 1, and its offset is that of its point") {
   control::Shapes shapes;
   ShapesReport report = one_plane();
-  report.planes[0].point_m[0] = 5.0f;  // anywhere on it
+  report.planes[0].point_m[0] = 5.0f;  // any point of the plane
   report.planes[0].normal[0] = 3.0f;
   REQUIRE(link::decode_shapes(bytes(report), shapes));
   CHECK(shapes.planes[0].normal.x == doctest::Approx(0.6f));
@@ -228,12 +228,12 @@ TEST_CASE("shapes and force end with the driver") {
 TEST_CASE("a force of a program that does not drive, or that answers an old pose, is refused") {
   link::ProgramRequests requests;
   ForceReport report = force(1);
-  report.pose_sequence = 0xFFFFFFF0u;  // the sequence wraps in between
+  report.pose_sequence = 0xFFFFFFF0u;  // the sequence wraps during the test
   const std::uint32_t oldest = report.pose_sequence + protocol::force_pose_age_maximum_ms;
   CHECK(requests.accept_force(bytes(report), true, oldest));
   requests.take_force();
   CHECK_FALSE(requests.accept_force(bytes(report), true, oldest + 1));
-  CHECK_FALSE(requests.accept_force(bytes(report), true, report.pose_sequence - 1));  // of another board
+  CHECK_FALSE(requests.accept_force(bytes(report), true, report.pose_sequence - 1));  // from another board
   CHECK_FALSE(requests.accept_force(bytes(report), false, oldest));
   CHECK(requests.take_force() == nullptr);
   CHECK(requests.forces_refused() == 3);

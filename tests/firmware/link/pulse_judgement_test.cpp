@@ -1,4 +1,4 @@
-// What the self-test's pulses tell apart: sound motors at any heat and in a hand that moves, and what is wrong.
+// Evaluation of the self-test pulses: healthy motors at any temperature and in a moving hand, and defects.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ struct Bench {
   }
 };
 
-/// Of the second motor, when only it is changed; all others must pass.
+/// Returns the result with a changed second motor. All other motors must pass.
 PulseJudgement with_second(Change change) {
   Bench bench;
   change(bench.simulated.motors[1]);
@@ -118,8 +118,8 @@ TEST_CASE("a resistance is kept if the motor rests and both signs agree") {
   CHECK(moving(-0.12f) == 0.0f);
   bench.counts_per_period = {};
   for (const float back_emf_V : {0.2f, 0.75f}) {
-    // Of the low pulse of one sign the dead time and this leave less than nothing, so that the step to the high one is
-    // another than with the other sign.
+    // In one direction, dead time and back EMF exceed the voltage of the low pulse. The voltage step to the high pulse
+    // then differs between the two directions.
     CAPTURE(back_emf_V);
     bench.simulated.motors[0].back_emf_V = back_emf_V;
     const PulseJudgement judgement = bench.judgement();
@@ -151,7 +151,7 @@ TEST_CASE("half its turns, half or double the gain of its sensor, an open motor:
 
 TEST_CASE("a motor that goes well in one direction only is told") {
   Bench bench;
-  // A back EMF that takes all of one sign: as a leg that does not conduct upwards.
+  // A back EMF that cancels the current of one direction has the effect of a half bridge that does not conduct.
   bench.simulated.motors[0].back_emf_V = 2.0f;
   CHECK(bench.judgement().motors[0].result == SelfTestResult::failed);
   bench.simulated.motors[0].back_emf_V = -2.0f;

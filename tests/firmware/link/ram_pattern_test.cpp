@@ -1,4 +1,4 @@
-// The march over the RAM: what it finds, and that it puts back what was there.
+// RAM march test: detected defects and restored content.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -10,10 +10,10 @@ namespace {
 
 using namespace inkwell;
 
-/// A word with bits that stand still, and one that follows another word's.
+/// A word with stuck bits, and optionally a coupling to another word.
 struct Word {
   std::uint32_t stored = 0, stuck_high = 0, stuck_low = 0;
-  Word* disturbs = nullptr;  ///< each write flips a bit there
+  Word* disturbs = nullptr;  ///< each write flips a bit of this word
   Word& operator=(std::uint32_t value) {
     stored = value;
     if (disturbs != nullptr) disturbs->stored ^= 4;

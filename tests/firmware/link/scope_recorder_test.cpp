@@ -32,7 +32,7 @@ float read_value(std::span<const std::byte>& bytes, Signal signal) {
   return static_cast<float>(read<std::int16_t>(bytes)) * step;
 }
 
-/// Reads a frame by the words of protocol/scope.hpp; calls `sample(period, values)` for every sample.
+/// Decodes a frame as documented in protocol/scope.hpp. Calls `sample(period, values)` for every sample.
 template <class Sample>
 ScopeFrameHeader decode(std::span<const std::byte> frame, const SignalSelection& selection, Sample sample) {
   CHECK(frame.size() <= protocol::scope_frame_maximum);
@@ -58,7 +58,7 @@ ScopeFrameHeader decode(std::span<const std::byte> frame, const SignalSelection&
   return header;
 }
 
-/// Every signal has another course, some steady, some stepping, some new in every period.
+/// Signals with different time courses: constant, stepping, or changing in every period.
 SignalValues signals_at(std::uint32_t period) {
   SignalValues signals{};
   for (std::size_t i = 0; i < protocol::signal_count; ++i) {
@@ -84,7 +84,7 @@ SignalSelection select(std::uint8_t count, std::uint8_t first = 0) {
   return selection;
 }
 
-/// Records while the frames are read as soon as they come; every sample must come out once and right.
+/// Records and reads all frames immediately. Every sample must appear exactly once and with correct values.
 void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, std::uint32_t periods) {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
@@ -116,7 +116,7 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
     test::record(fresh, signals_at(period), period);
     read_frames();
   }
-  scope.select({}, 10);  // finishes the frame that was begun
+  scope.select({}, 10);  // finishes the current frame
   for (int i = 0; i < 3; ++i) {
     test::record(fresh, signals_at(0), end);
     read_frames();
@@ -202,7 +202,7 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
   constexpr std::uint32_t frames_recorded = 100;
   std::uint32_t period = 0;
   for (; period < samples_per_frame; ++period) test::record(fresh, signals_at(period), period);
-  REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
+  REQUIRE(!scope.oldest_frame().empty());  // is being sent from now on
   for (; period < frames_recorded * samples_per_frame; ++period) test::record(fresh, signals_at(period), period);
 
   const auto first = [&] {
@@ -210,7 +210,7 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
       if (values[0] != signals_at(at).values[0]) FAIL_CHECK("a sample was overwritten");
     });
   };
-  // Behind the one that is being sent are the newest that fit.
+  // Only the newest frames remain, in addition to the frame that is being sent.
   const std::uint32_t kept = link::ScopeFrames::count - 1;
   const std::uint32_t dropped = (frames_recorded - kept) * samples_per_frame;
   CHECK(scope.samples_dropped() == dropped);
@@ -253,12 +253,12 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   std::uint32_t period = 0;
   for (int i = 0; i < 500; ++i) test::record(fresh, signals_at(period), period), ++period;
   const SignalSelection second = select(3, 6);
-  REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
-  scope.select(select(20), 2);             // overtaken before a sample came
+  REQUIRE(!scope.oldest_frame().empty());  // is being sent from now on
+  scope.select(select(20), 2);             // replaced before the first sample
   scope.select(second, 3);
   const std::uint32_t start = period;
   for (int i = 0; i < 800; ++i) test::record(fresh, signals_at(period), period), ++period;
-  // What was on its way still comes, and says which selection it belongs to.
+  // The frame that was being sent is still complete, and its token identifies its selection.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
     ScopeFrameHeader header;
@@ -291,7 +291,7 @@ TEST_CASE("a main loop that comes late loses nothing up to the ring's length, be
     }
     for (std::uint32_t i = 0; i < 100; ++i, ++period) test::record(fresh, signals_at(period), period);
     scope.select({}, 2);
-    // One more came before the main loop was there again.
+    // The interrupt recorded one more sample before the main loop ran.
     const std::uint32_t lost = late_periods + 1 - link::SampleRing::readable;
     CHECK(scope.samples_dropped() == lost);
     std::uint32_t next = 0;

@@ -1,4 +1,4 @@
-// A board that tests itself: main loop and control interrupt together, with simulated motors.
+// A board in the self-test: main loop, control interrupt and simulated motors.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 
 namespace inkwell::test {
 
-/// A board's interrupt, and its main loop once a period.
+/// A board's interrupt, with one pass of the main loop per period.
 struct SelfTestBoard {
   link::Link& link = fresh_link();
   control::Controller controller{tests::board_limits};
@@ -23,11 +23,11 @@ struct SelfTestBoard {
   float analog_supply_V = 3.3f;
   bool analog_supply_is_right = true;
   tests::SimulatedMotors motors;
-  control::Triple offset_A{};  ///< of the current sensors
+  control::Triple offset_A{};  ///< offsets of the current sensors
   tests::FakeClock clock;
   control::Drive drive;
-  std::optional<protocol::SelfTestItem> floating;  ///< a wire that nothing drives
-  std::uint32_t follows_by_chance = 0;             ///< looks in which a sound wire follows
+  std::optional<protocol::SelfTestItem> floating;  ///< a wire that is not driven
+  std::uint32_t follows_by_chance = 0;  ///< number of checks in which a driven wire follows the pull resistors
   std::optional<protocol::SelfTestItem> looked_at;
   std::uint32_t looks = 0;
   std::uint32_t driven_periods = 0;
@@ -61,7 +61,7 @@ struct SelfTestBoard {
     }
   }
 
-  /// The periods that it takes.
+  /// Runs until the state changes. Returns the number of periods.
   int run_while(protocol::State state) {
     int periods = 0;
     for (; controller.state() == state && periods < 10'000; ++periods) run(1);

@@ -1,4 +1,4 @@
-// The self-test as main loop and control interrupt lead it together.
+// The self-test, with main loop and control interrupt.
 #include <doctest/doctest.h>
 
 #include "self_test_board.hpp"
@@ -75,7 +75,7 @@ TEST_CASE("what fails takes the force away, is believed the second time, and goe
   CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::failed);
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
   board.run(100);
-  CHECK(board.result(SelfTestItem::bridge_2) == SelfTestResult::not_done);  // not told without a motor
+  CHECK(board.result(SelfTestItem::bridge_2) == SelfTestResult::not_done);  // a failed motor leaves the bridge untested
   for (const Command again : {Command::clear_fault, Command::self_test}) {
     board.controller.carry_out(tests::command(again));
     board.run(1);
@@ -236,7 +236,7 @@ TEST_CASE("a current sensor that is off zero is told by its item as well, althou
 
 TEST_CASE("the offsets of the current sensors are those of now, not of the start") {
   Board with_offset;
-  with_offset.offset_A[0] = 0.1f;  // which the board takes off, and tells all the same
+  with_offset.offset_A[0] = 0.1f;  // the controller subtracts the offset, but the report shows it
   with_offset.run_while(State::starting);
   with_offset.run_while(State::testing);
   CHECK(with_offset.figure(SelfTestItem::current_offsets) == doctest::Approx(0.1).epsilon(0.01));
@@ -250,7 +250,7 @@ TEST_CASE("the offsets of the current sensors are those of now, not of the start
   board.run_while(State::testing);
   CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.2).scale(0).epsilon(0.01));
   CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::passed);
-  board.offset_A[2] = -0.3f;  // not yet for so long that it were a fault by itself
+  board.offset_A[2] = -0.3f;  // too short to raise the fault of continuous monitoring
   board.controller.carry_out(tests::command(Command::self_test));
   board.run(1);
   board.run_while(State::testing);
@@ -307,7 +307,7 @@ TEST_CASE("an order of a test that a fault has ended is none of the next one") {
   board.run_while(State::starting);
   while (!board.link.self_test.wanted_wire()) board.run(1);
   while (board.link.self_test.wanted_wire()) board.main_loop();
-  board.main_loop();  // asks for the pulses
+  board.main_loop();  // orders the pulses
   board.samples.bridge_fault = true;
   board.interrupt();
   board.samples.bridge_fault = false;

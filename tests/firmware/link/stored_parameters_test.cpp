@@ -1,4 +1,4 @@
-// What of the parameters outlives a start: stored on command, taken at the start, whoever wrote it.
+// Stored parameters: stored on command, loaded at start-up, also if another firmware wrote them.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -31,11 +31,11 @@ constexpr Parameter force_limit = Parameter::force_limit_N, link_length = Parame
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 float default_of(Parameter parameter) { return link::image_defaults()[parameter]; }
 
-/// The firmware from a start on.
+/// The firmware from start-up on.
 struct Board {
   link::ParameterStore parameters;
   link::StoredParameters stored;
-  std::uint32_t periods = 0xFFFF'FF00;  // they wrap soon
+  std::uint32_t periods = 0xFFFF'FF00;  // wraps soon
 
   explicit Board(PlainFlash& flash, std::array<std::uint8_t, 3> version = this_version) {
     stored.start(flash, version, parameters);
@@ -65,7 +65,7 @@ struct Board {
   float held(Parameter parameter) const { return parameters.values()[parameter]; }
 };
 
-/// As a board would that holds this.
+/// Stores one value, using a separate board.
 void store_in(PlainFlash& flash, Parameter parameter, float value) {
   Board board(flash);
   board.set(parameter, value);
@@ -80,7 +80,7 @@ FlashLog log_of(PlainFlash& flash) {
   return log;
 }
 
-/// A record by any firmware.
+/// Writes a record of any firmware.
 void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
   std::vector<std::uint32_t> payload;
   for (const auto& [id, value] : entries) {
@@ -93,7 +93,7 @@ void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
   }
 }
 
-/// Of a record by this image's firmware.
+/// Returns the header of a record of this firmware.
 RecordHead own_head() {
   PlainFlash flash;
   store_in(flash, force_limit, 1.0f);
@@ -144,7 +144,7 @@ TEST_CASE("stored parameters: what is held when the command comes is what the ne
   board.stored.ask(Command::store_parameters, true);
   CHECK(board.report().result == StoreResult::under_way);
   board.step();
-  CHECK(board.report().contents == StoreContents::nothing);  // not before its last word
+  CHECK(board.report().contents == StoreContents::nothing);  // the record counts only after its last word
   CHECK(board.report().differing == 1);
   CHECK(board.finish() == StoreResult::done);
   const std::uint16_t left = board.report().stores_left;
@@ -209,7 +209,7 @@ TEST_CASE("stored parameters: a word every ten control periods, and none while t
   Board board(flash);
   board.set(force_limit, 1.25f);
   board.stored.ask(Command::store_parameters, true);
-  board.step();  // begins
+  board.step();  // starts the record
   board.step();
   const unsigned words = flash.words_programmed;
   for (int i = 0; i < 9; ++i) board.stored.follow(board.parameters, false, ++board.periods);
@@ -239,7 +239,7 @@ TEST_CASE("stored parameters: what stands there already is not written again") {
   CHECK(board.store() == StoreResult::done);
   CHECK(flash.words_programmed == more);
   CHECK(board.report().commands == 3);
-  // Another firmware's record becomes this one's.
+  // A firmware replaces the record of another firmware.
   Board newer(flash, {1, 2, 4});
   CHECK(newer.held(force_limit) == 1.5f);
   CHECK(newer.store() == StoreResult::done);
@@ -278,7 +278,7 @@ TEST_CASE("stored parameters: a factory reset forgets them, at once and for the 
   CHECK(next.held(force_limit) == default_of(force_limit));
   CHECK(flash.words_programmed == words);
   next.set(force_limit, 2.0f);
-  CHECK(next.store() == StoreResult::done);  // and stored again
+  CHECK(next.store() == StoreResult::done);  // storing works again
   CHECK(Board(flash).held(force_limit) == 2.0f);
 }
 
@@ -320,7 +320,7 @@ TEST_CASE("stored parameters: what another firmware knew is named and kept") {
   CHECK(report.firmware_version[2] == 9);
   CHECK(report.parameter_table_hash == 0x1234);
 
-  CHECK(board.store() == StoreResult::done);  // although no value differs: the record becomes this firmware's
+  CHECK(board.store() == StoreResult::done);  // no value differs, but the record of another firmware is replaced
   const Entries entries = entries_of(flash);
   CHECK(entries.size() == link::image_parameter_count() + 2);
   CHECK(holds(entries, id_of(force_limit), 1.25f));
@@ -376,7 +376,7 @@ TEST_CASE(
   CHECK(board.report().out_of_range == 3);
   CHECK(board.report().unknown == 0);
   const unsigned words = flash.words_programmed;
-  CHECK(board.store() == StoreResult::done);  // so that the record is sound again
+  CHECK(board.store() == StoreResult::done);  // replaces the record with the invalid values
   CHECK(flash.words_programmed > words);
   CHECK(Board(flash).report().out_of_range == 0);
 }
@@ -495,7 +495,7 @@ TEST_CASE("stored parameters: a bit that changes in any word of what is written,
   board.set(force_limit, 1.2345f);
   REQUIRE(board.store() == StoreResult::done);
   CHECK(board.stored.is_intact());
-  // They are private; the force limit's value, which nothing else has, tells where they are.
+  // The members are private. The value of the force limit is unique, so the test finds the members by it.
   auto* const bytes = reinterpret_cast<std::byte*>(&board.stored);
   unsigned places = 0;
   for (std::size_t at = 0; at < sizeof board.stored; at += sizeof(float)) {
@@ -508,7 +508,7 @@ TEST_CASE("stored parameters: a bit that changes in any word of what is written,
     CHECK(board.store() == StoreResult::flash_failed);
     bytes[at] ^= std::byte{0x10};
   }
-  CHECK(places == 3);  // the set of the next start, the one that was written, and the words that went into the flash
+  CHECK(places == 3);  // the set for the next start, the written set, and the words in the flash
   CHECK(board.stored.is_intact());
 }
 

@@ -1,4 +1,4 @@
-// Builds ParametersReports as a host sends them, and damages what became of them.
+// Builds ParametersReports as a host sends them, and flips bits of values.
 #pragma once
 
 #include <array>
@@ -33,14 +33,14 @@ inline protocol::ParameterEntry entry(protocol::Parameter parameter, float value
   return {protocol::info(parameter).id, 0, value};
 }
 
-/// As the memory that the board puts reports into: full of what was there before.
+/// Returns a report filled with 0xFF, like a reused buffer of the board.
 inline protocol::ParametersReport spoiled_report() {
   std::array<std::byte, sizeof(protocol::ParametersReport)> bytes;
   bytes.fill(std::byte{0xFF});
   return std::bit_cast<protocol::ParametersReport>(bytes);
 }
 
-/// By itself, as radiation does.
+/// Flips one bit of a value, as radiation can do.
 inline void flip_bit(const float& value, unsigned bit = 20) {
   const_cast<float&>(value) = std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ 1u << bit);
 }

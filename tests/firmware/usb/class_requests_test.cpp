@@ -1,4 +1,4 @@
-// The requests of HID, of firmware update and of the device's own reports.
+// Requests of HID, of the firmware update class, and for the device's reports.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
   bench.configure();
   CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == done_result);
   CHECK(bench.control(request(0xA1, 2, 0, 0, 1)) == answer({4}));
-  CHECK(bench.control(request(0xA1, 2, 0, 2, 1)) == answer({0}));  // each interface has its own
+  CHECK(bench.control(request(0xA1, 2, 0, 2, 1)) == answer({0}));  // each interface has a separate idle rate
   CHECK(bench.control(request(0x21, 10, 0x0700, 2, 0)) == done_result);
   CHECK(bench.control(request(0xA1, 2, 0, 2, 1)) == answer({7}));
   CHECK(bench.control(request(0xA1, 2, 0, 0, 1)) == answer({4}));
@@ -38,7 +38,7 @@ TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
     CHECK(bench.control(request(0x21, 11, 0, index, 0)) == stall_result);
     CHECK(bench.control(request(0xA1, 3, 0, index, 1)) == stall_result);
   }
-  CHECK(bench.control(request(0x21, 10, 0, 1, 0)) == stall_result);  // the scope is no HID interface
+  CHECK(bench.control(request(0x21, 10, 0, 1, 0)) == stall_result);  // the scope interface is not HID
 }
 
 TEST_CASE("HID: the controller's report can be asked for, and takes none") {
@@ -64,7 +64,7 @@ TEST_CASE("firmware update: the device leaves when the host has its answer, not 
   CHECK_FALSE(bench.device.leaves_for_update());
   CHECK_FALSE(bench.link.update_asked.load());
   bench.setup(detach);
-  CHECK(bench.link.update_asked.load());  // from now on no force comes on
+  CHECK(bench.link.update_asked.load());  // from now on no command can switch the force on
   CHECK_FALSE(bench.device.leaves_for_update());
   CHECK(bench.status_in() == done_result);
   CHECK(bench.device.leaves_for_update());
@@ -81,7 +81,7 @@ TEST_CASE("firmware update: with a force, or one about to come, a detach has no 
   bench.run(1, protocol::State::active);
   CHECK(bench.control(detach) == done_result);
   CHECK(status() == refused);
-  CHECK(status() == refused);  // it is not cleared by being read
+  CHECK(status() == refused);  // reading does not clear the status
   CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({0}));
   bench.port.reset();
   bench.device.poll();
@@ -136,7 +136,7 @@ TEST_CASE("HID: the newest pose can be asked for") {
     std::memcpy(&pose, data.data(), sizeof pose);
     return pose;
   };
-  // Before the first control period all is zero, and nothing is known but the state.
+  // Before the first control period only the state is set.
   const protocol::PoseReport first = read();
   const protocol::PoseReport expected{.state = protocol::State::starting};
   CHECK(std::memcmp(&first, &expected, sizeof first) == 0);
@@ -159,7 +159,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.parameter_table_hash == protocol::parameter_table_hash);
   CHECK(report.signal_table_hash == protocol::signal_table_hash);
 
-  // What stands behind it is in tests/host/device/force_law_test.cpp.
+  // tests/host/device/force_law_test.cpp checks the content after the header.
   const auto law = bench.get_report(3, static_cast<std::uint8_t>(protocol::ReportId::force_law), 2048).data;
   const auto& installed = control::installed_force_law;
   REQUIRE(law.size() == 2048);
@@ -193,7 +193,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
   const float value = report.entries[row].value;
   CHECK(value == 321.0f);
 
-  // A refusal is no stall: the transaction report tells it.
+  // A refusal is not a stall. The transaction report shows it.
   const test::Transaction bad{{9999, 0, 1.0f}};
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, 20), bad.bytes()) == done_result);
   result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
@@ -214,7 +214,7 @@ TEST_CASE("HID: the arm does not change while the force is on or about to be") {
   bench.run(1, protocol::State::active);
   CHECK(refusal() == protocol::Refusal::force_is_on);
   bench.run(1, protocol::State::ready);
-  // The command waits for the interrupt, which has not seen it yet.
+  // The command is in the queue, and the interrupt has not carried it out yet.
   CHECK(bench.set_report(2, command(protocol::Command::enable_force, 1)) == done_result);
   CHECK(refusal() == protocol::Refusal::force_is_on);
   CHECK(refusal() == protocol::Refusal::accepted);
@@ -225,7 +225,7 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
   bench.configure();
   CHECK(bench.port.out(1, bytes_of(command(protocol::Command::clear_fault, 11))) == Handshake::ack);
   bench.device.poll();
-  bench.run(2);  // the first command is the reset's stop
+  bench.run(2);  // the first command is the stop from the bus reset
   REQUIRE(bench.last_command.has_value());
   CHECK(bench.last_command->token == 11);
   CHECK(bench.link.commands.take_sign_of_life());
@@ -239,7 +239,7 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
 TEST_CASE("HID: a command with values that are not allowed is dropped, and its result is malformed") {
   DeviceBench bench;
   bench.configure();
-  bench.run(1);  // the reset's stop is taken
+  bench.run(1);  // removes the stop of the bus reset
   bench.last_command.reset();
   const auto results = [&] {
     return bench.get_feature<protocol::RequestResultsReport>(protocol::ReportId::request_results);
@@ -255,7 +255,7 @@ TEST_CASE("HID: a command with values that are not allowed is dropped, and its r
   CHECK(results().entries[1].ticket == 51);
   CHECK(results().entries[1].result == protocol::RequestResult::malformed);
   wrong.ticket = 52;
-  wrong.version = protocol::protocol_version + 1;  // of which no field is known
+  wrong.version = protocol::protocol_version + 1;  // with another version no field is used
   CHECK(bench.set_report(2, wrong) == done_result);
   CHECK(results().entries[2].ticket == 0);
   bench.run(2);
@@ -265,14 +265,14 @@ TEST_CASE("HID: a command with values that are not allowed is dropped, and its r
 TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REPORT, and are signs of life") {
   DeviceBench bench;
   bench.configure();
-  bench.run(1);  // the reset's stop is taken
+  bench.run(1);  // removes the stop of the bus reset
   protocol::ForceReport force{};
   force.mode = protocol::ForceMode::beside_walls;
   force.interval_ms = 1;
   force.force_N[1] = 0.5f;
   force.claim = 7;
   REQUIRE(bench.set_report(3, claim_report(protocol::ClaimOperation::claim, 7)) == done_result);
-  bench.link.program.take_force();  // none, from the reset
+  bench.link.program.take_force();  // removes the empty request of the bus reset
   for (std::uint32_t sequence = 0; sequence < 20; ++sequence) {
     force.sequence = sequence;
     REQUIRE(bench.port.out(1, bytes_of(force)) == Handshake::ack);
@@ -303,7 +303,7 @@ TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REP
 TEST_CASE("HID: shapes come whole or are refused whole, their result has their ticket, and they go with the host") {
   DeviceBench bench;
   bench.configure();
-  bench.link.program.take_shapes();  // none, from the reset
+  bench.link.program.take_shapes();  // removes the empty request of the bus reset
   protocol::ShapesReport shapes{};
   shapes.plane_count = protocol::shape_planes_maximum;
   shapes.claim = 7;
@@ -319,10 +319,10 @@ TEST_CASE("HID: shapes come whole or are refused whole, their result has their t
   };
   CHECK(result() == protocol::RequestResult::not_the_driver);
   REQUIRE(bench.set_report(3, claim_report(protocol::ClaimOperation::claim, 7)) == done_result);
-  bench.link.program.take_force();  // none, from the reset
+  bench.link.program.take_force();  // removes the empty request of the bus reset
   for (auto& plane : shapes.planes) plane = {{0, 0, 0}, {0, 0, 1}, {800.0f, 1.0f, 0.0f, 0.0f, 1.0f}};
   CHECK(result() == protocol::RequestResult::accepted);
-  CHECK(result() == protocol::RequestResult::busy);  // the interrupt has not taken them
+  CHECK(result() == protocol::RequestResult::busy);  // the interrupt has not accepted the previous shapes
   const control::Shapes* taken = bench.link.program.take_shapes();
   REQUIRE(taken != nullptr);
   CHECK(taken->life_periods[8] != 0);
@@ -363,7 +363,7 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
       CHECK(position_m == static_cast<float>(period));
     }
   }
-  // A refusal is no stall: the rows stay, and the report has the result.
+  // A refusal is not a stall. The selected rows do not change, and the report shows the result.
   const protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
   CHECK(bench.set_report(3, request) == done_result);
   const auto refused = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);
@@ -398,7 +398,7 @@ TEST_CASE("HID: a command to the store is counted, and refused while a force may
   send(protocol::Command::store_parameters);
   CHECK(report().result == protocol::StoreResult::force_is_on);
   bench.run(1, protocol::State::ready);
-  send(protocol::Command::enable_force);  // waits before the other
+  send(protocol::Command::enable_force);  // is in the queue before the next command
   send(protocol::Command::store_parameters);
   CHECK(report().result == protocol::StoreResult::force_is_on);
   bench.run(5, protocol::State::ready);
@@ -410,7 +410,7 @@ TEST_CASE("HID: a command to the store is counted, and refused while a force may
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
-  bench.run(1);  // the reset's stop is taken
+  bench.run(1);  // removes the stop of the bus reset
   bench.last_command.reset();
   const protocol::CommandReport good = command(protocol::Command::enable_force, 1);
 
@@ -423,9 +423,9 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
       bench.setup(request(0x21, 9, value, 0, sizeof good));
       CHECK(bench.port.out(0, bytes_of(good)) == Handshake::stall);
     }
-  // The id in the data is another one than in the request.
+  // The id in the data differs from the id in the request.
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, sizeof good), bytes_of(good)) == stall_result);
-  // Short and long.
+  // Too short and too long.
   for (const std::size_t size : {1u, 44u}) CHECK(bench.set_report(2, good, size) == stall_result);
   const std::array<std::byte, 46> longer{std::byte{2}};
   CHECK(bench.set_report(2, longer) == stall_result);

@@ -1,4 +1,4 @@
-// The descriptors of USB and HID.
+// USB and HID descriptors.
 #include <initializer_list>
 #include <string>
 
@@ -41,7 +41,7 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0100, 18).data ==
         bytes({18, 1, 0x01, 0x02, 0, 0, 0, 64, 0x09, 0x12, 0x01, 0x00, 0x23, 0x01, 1, 2, 3, 1}));
   CHECK(bench.get_descriptor(0x0200, 512).data ==
-        bytes({9, 2,    100,  0,    4,  1,    0,    0xC0, 0,  // takes nothing from the bus
+        bytes({9, 2,    100,  0,    4,  1,    0,    0xC0, 0,  // draws no current from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
                9, 0x21, 0x11, 0x01, 0,  1,    0x22, 159,  0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
@@ -125,17 +125,17 @@ TEST_CASE("descriptors that are not there are refused") {
   DeviceBench bench;
   CHECK(bench.get_descriptor(0x0101, 18) == stall_result);
   CHECK(bench.get_descriptor(0x0201, 9) == stall_result);
-  CHECK(bench.get_descriptor(0x0600, 10) == stall_result);  // device qualifier: there is no high speed
+  CHECK(bench.get_descriptor(0x0600, 10) == stall_result);  // device qualifier: the device has no high speed
   CHECK(bench.get_descriptor(0x0700, 9) == stall_result);
   CHECK(bench.get_descriptor(0x0F01, 9) == stall_result);
   CHECK(bench.get_descriptor(0xFF00, 9) == stall_result);
   CHECK(bench.get_descriptor(0x2201, 9, 1) == stall_result);
-  CHECK(bench.get_descriptor(0x2200, 9, 1, 1) == stall_result);  // the scope's interface has no reports
+  CHECK(bench.get_descriptor(0x2200, 9, 1, 1) == stall_result);  // the scope interface has no reports
   CHECK(bench.get_descriptor(0x2200, 9, 1, 3) == stall_result);
   CHECK(bench.get_descriptor(0x2201, 9, 1, 2) == stall_result);
   CHECK(bench.get_descriptor(0x2300, 9, 1, 0) == stall_result);
-  CHECK(bench.get_descriptor(0x0100, 18, 2) == stall_result);  // an endpoint has none
-  // After all this the device still answers.
+  CHECK(bench.get_descriptor(0x0100, 18, 2) == stall_result);  // an endpoint has no descriptors
+  // The device still answers after all these requests.
   CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18);
 }
 

@@ -1,4 +1,4 @@
-// A device on a fake port, and a host that carries out control transfers on it.
+// A device on a fake port, with a host that performs control transfers.
 #pragma once
 
 #include <cstring>
@@ -24,7 +24,7 @@ inline constexpr usb::Identity identity{{'0', '1', '2', '3', '4', '5', '6', '7',
                                         168'000'000,
                                         0x14};
 
-/// How a control transfer ended, and what came in.
+/// Result of a control transfer, with the data of its IN data stage.
 struct ControlResult {
   bool stalled = false;
   Bytes data{};
@@ -56,7 +56,7 @@ struct DeviceBench {
     device.poll();
   }
 
-  /// IN data stage and status stage of the request that setup() began.
+  /// Performs the IN data stage and the status stage of the request that setup() sent.
   ControlResult read(std::uint16_t length) {
     ControlResult result;
     for (;;) {
@@ -68,7 +68,7 @@ struct DeviceBench {
       REQUIRE(result.data.size() <= length);
       if (packet.data.size() < 64 || result.data.size() == length) break;
     }
-    // Nothing more than was asked for, and the status stage is taken.
+    // The device sends no further data and accepts the status stage.
     CHECK(port.in(0).handshake == Handshake::nak);
     CHECK(port.out(0, {}) == Handshake::ack);
     device.poll();
@@ -128,7 +128,7 @@ struct DeviceBench {
     return report;
   }
 
-  /// Lets the control interrupt run; what it takes and records is real, its signals are not.
+  /// Simulates control interrupts. They carry out commands and record samples, but the signals are test values.
   void run(std::uint32_t count, protocol::State state = protocol::State::ready,
            protocol::Fault fault = protocol::Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {

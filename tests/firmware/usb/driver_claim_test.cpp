@@ -1,4 +1,4 @@
-// The program that drives the arm, as the USB device arbitrates it.
+// Arbitration of the driver by the USB device.
 #include <doctest/doctest.h>
 
 #include "device_bench.hpp"
@@ -18,7 +18,7 @@ constexpr auto expiry_periods = static_cast<std::uint32_t>(protocol::claim_expir
 struct DrivenBench : DeviceBench {
   explicit DrivenBench(std::uint32_t first_period = 0) : DeviceBench(first_period) {
     configure();
-    run(1);  // the stop of the bus reset is taken
+    run(1);  // removes the stop of the bus reset
     last_command.reset();
     claim(ClaimOperation::claim, first);
   }
@@ -28,7 +28,7 @@ struct DrivenBench : DeviceBench {
   }
   DriverReport driver() { return get_feature<DriverReport>(ReportId::driver); }
 
-  /// By the interrupt endpoint; then the interrupt carries it out, if it got that far.
+  /// Sends a command over the interrupt endpoint. Returns the command that the control interrupt carries out, if any.
   std::optional<Command> carried_out(Command kind, std::uint32_t claim, std::uint32_t ticket = 0,
                                      protocol::State state = protocol::State::ready) {
     last_command.reset();
@@ -43,7 +43,7 @@ struct DrivenBench : DeviceBench {
       if (entry.ticket == ticket) return entry.result;
     return std::nullopt;
   }
-  /// Whether the interrupt hears a sign of life of a program with this claim.
+  /// True if a heartbeat with this claim is a sign of life for the interrupt.
   bool keeps_alive(std::uint32_t claim) {
     link.commands.take_sign_of_life();
     REQUIRE(port.out(1, bytes_of(command(Command::heartbeat, 1, claim))) == Handshake::ack);
@@ -57,7 +57,7 @@ struct DrivenBench : DeviceBench {
     force.mode = protocol::ForceMode::beside_walls;
     force.interval_ms = 1;
     force.claim = claim;
-    link.program.take_force();  // the end of the program before
+    link.program.take_force();  // removes the request that ends the previous program's force
     REQUIRE(port.out(1, bytes_of(force)) == Handshake::ack);
     device.poll();
     const control::ForceTarget* target = link.program.take_force();
@@ -118,7 +118,7 @@ TEST_CASE("claim: commands, forces and parameters of another program are refused
   CHECK(bench.refusal_of_parameter(first) == protocol::Refusal::accepted);
   bench.claim(ClaimOperation::release, first);
   CHECK(bench.refusal_of_parameter(second) == protocol::Refusal::accepted);
-  CHECK_FALSE(bench.accepts_force(second));  // without a claim nobody pushes
+  CHECK_FALSE(bench.accepts_force(second));  // without a claim no program may send forces
 }
 
 TEST_CASE("claim: only the driver keeps the force on, and its claim ends when it falls silent") {

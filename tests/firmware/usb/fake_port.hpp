@@ -1,4 +1,4 @@
-// A port made of software with a host behind it that does single packets, good and bad.
+// A software port with a host that sends and receives single packets, valid or invalid.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -28,10 +28,10 @@ struct InPacket {
   Bytes data{};
 };
 
-/// Behaves as usb::Port says, and fails the test when the device does not keep to it.
+/// Behaves as usb::Port documents. The test fails if the device violates the documented rules.
 class FakePort final : public usb::Port {
  public:
-  // ---- the device's side ----
+  // ---- device side ----
 
   bool next_event(usb::Event& event) override {
     if (events_.empty()) return false;
@@ -107,10 +107,10 @@ class FakePort final : public usb::Port {
     return frame;
   }
 
-  // ---- the host's side ----
+  // ---- host side ----
 
-  /// Time passes. A frame has twenty control periods, and the main loop runs in the middle of each; after a whole
-  /// number of frames the next is half a period away.
+  /// Advances time by one control period. A bus frame has twenty control periods, and the main loop runs in the middle
+  /// of each period.
   void pass_period() {
     age_cycles_ += period_cycles;
     if (age_cycles_ < frame_cycles) return;
@@ -120,7 +120,7 @@ class FakePort final : public usb::Port {
     frame_.number = frame_.count % 2048;
   }
   bool frames_run = true;
-  /// The host asks this endpoint just before the device takes back what it has for it, once.
+  /// The host polls this endpoint once, directly before the device cancels its transfer.
   std::optional<std::uint8_t> asked_in_cancel;
 
   void reset() {
@@ -133,7 +133,7 @@ class FakePort final : public usb::Port {
   void suspend() { push(usb::Event::Kind::suspend); }
   void resume() { push(usb::Event::Kind::resume); }
 
-  /// A SETUP packet; never refused, and it ends a stall of endpoint 0.
+  /// Sends a SETUP packet. It is never refused, and it ends a stall of endpoint 0.
   void setup(std::span<const std::byte> packet) {
     at(0x00).stalled = at(0x80).stalled = false;
     at(0x00).armed = false;
@@ -170,7 +170,7 @@ class FakePort final : public usb::Port {
   bool is_open(std::uint8_t endpoint_address) { return at(endpoint_address).open; }
   bool is_stalled(std::uint8_t endpoint_address) { return at(endpoint_address).stalled; }
   bool data_toggle(std::uint8_t endpoint_address) { return at(endpoint_address).data1; }
-  /// Since it was opened.
+  /// Number of cancel() calls since the endpoint was opened.
   unsigned cancels(std::uint8_t endpoint_address) { return at(endpoint_address).cancels; }
   bool idle() const { return events_.empty(); }
 
@@ -179,8 +179,8 @@ class FakePort final : public usb::Port {
     bool open = false;
     usb::EndpointType type = usb::EndpointType::control;
     bool stalled = false;
-    bool armed = false;    ///< OUT: takes a packet
-    bool running = false;  ///< IN: has a transfer
+    bool armed = false;    ///< OUT: accepts a packet
+    bool running = false;  ///< IN: a transfer is in progress
     bool data1 = false;
     std::span<const std::byte> data{};
     Bytes data_at_start{};

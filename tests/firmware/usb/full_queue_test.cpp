@@ -1,4 +1,4 @@
-// A host that sends commands faster than the control interrupt takes them.
+// A host that sends commands faster than the control interrupt carries them out.
 #include <doctest/doctest.h>
 
 #include "device_bench.hpp"
@@ -14,13 +14,13 @@ using test::request;
 
 namespace {
 
-/// A device whose queue is full and that holds one command more, enable_force. Tokens count up from 1.
+/// A device with a full queue and one held command, enable_force. Tokens count up from 1.
 struct FullQueue : test::DeviceBench {
   std::uint8_t token = 0;
 
   explicit FullQueue(const protocol::CommandReport& held = command(Command::enable_force, 9)) {
     configure();
-    run(1);  // the reset's stop is taken
+    run(1);  // removes the stop of the bus reset
     for (std::uint32_t i = 0; i < link::CommandQueue::capacity; ++i)
       REQUIRE(offer(Command::heartbeat) == Handshake::ack);
     REQUIRE(port.out(1, bytes_of(held)) == Handshake::ack);
@@ -36,7 +36,7 @@ struct FullQueue : test::DeviceBench {
     return handshake;
   }
 
-  /// The interrupt takes commands again: all come, in order, and the endpoint hears the next one.
+  /// The interrupt removes commands again. All commands arrive in order, and the endpoint accepts the next command.
   void check_nothing_was_lost() {
     CHECK(offer(Command::clear_fault) == Handshake::nak);
     run(1);
@@ -51,7 +51,7 @@ struct FullQueue : test::DeviceBench {
     CHECK(last_command->command == Command::clear_fault);
   }
 
-  /// The host went: what it asked for is forgotten, and the next one is heard.
+  /// After a disconnection, the queued commands are discarded, and the endpoint accepts the next command.
   void check_all_is_forgotten() {
     device.poll();
     run(3);

@@ -1,4 +1,4 @@
-// What a host reads of poses and of the controller, from a device on the bench.
+// Reads poses and controller reports from the device of a test bench.
 #pragma once
 
 #include <cstring>
@@ -30,14 +30,14 @@ inline std::optional<protocol::ControllerReport> read_controller(DeviceBench& be
   return report;
 }
 
-/// As the main loop sees it: it looks after every control period.
+/// Runs the main loop once after each control period.
 inline void pass_periods(DeviceBench& bench, int periods) {
   for (int i = 0; i < periods; ++i) {
     bench.run(1);
     bench.device.poll();
   }
 }
-/// A frame of the bus.
+/// Passes one bus frame.
 inline void pass_frame(DeviceBench& bench) { pass_periods(bench, 20); }
 
 inline std::uint32_t poses_dropped(DeviceBench& bench) {

@@ -1,4 +1,4 @@
-// Hosts that break off, ask for too much or too little, send too much or too little, or vanish.
+// Hosts that abort transfers, request or send wrong lengths, or disappear.
 #include <doctest/doctest.h>
 
 #include "../link/transaction.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 void check_alive(DeviceBench& bench) { CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18); }
 
-/// A SET_REPORT of all parameters: 13 packets, the longest transfer that endpoint 0 takes.
+/// A SET_REPORT of all parameters has 13 packets. It is the longest transfer that endpoint 0 uses completely.
 constexpr usb::SetupPacket set_parameters = {0x21, 9, 0x0311, 0, sizeof(protocol::ParametersReport)};
 
 std::uint32_t transactions(DeviceBench& bench) {
@@ -46,7 +46,7 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
                                   192u, 256u, 512u, 576u, 640u, 4096u, exact - 1, exact, exact + 1, 65535u}) {
       if (length == 0) continue;
       CAPTURE(length);
-      // DeviceBench::read checks that the data stage ends with a short packet exactly if less came than was asked for.
+      // DeviceBench::read() checks that a short packet ends the data stage only if the answer is shorter than wLength.
       const auto w_length = static_cast<std::uint16_t>(length);
       const Bytes data = bench.control(request(read.type, read.number, read.value, read.index, w_length)).data;
       CHECK(data == Bytes(all.begin(), all.begin() + std::min(length, exact)));
@@ -82,7 +82,7 @@ TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
   DeviceBench bench;
   bench.configure();
   const usb::SetupPacket get_parameters = {0xA1, 1, 0x0311, 0, 4096};
-  for (int packets = 0; packets < 12; ++packets) {  // break off a read after so many packets
+  for (int packets = 0; packets < 12; ++packets) {  // aborts a read after this number of packets
     bench.setup(get_parameters);
     for (int i = 0; i < packets; ++i) {
       if (bench.port.in(0).handshake != Handshake::ack) break;
@@ -91,7 +91,7 @@ TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
     check_alive(bench);
   }
   const std::array<std::byte, 64> part{std::byte{0x11}};
-  for (int packets = 0; packets < 13; ++packets) {  // break off a write
+  for (int packets = 0; packets < 13; ++packets) {  // aborts a write
     bench.setup(set_parameters);
     for (int i = 0; i < std::min(packets, 12); ++i) {
       CHECK(bench.port.out(0, part) == Handshake::ack);
@@ -100,12 +100,12 @@ TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
     check_alive(bench);
   }
   CHECK(transactions(bench) == 0);
-  // In the status stage of a write, before and after the host took it.
+  // In the status stage of a write, before and after the host read it.
   bench.setup(request(0x00, 9, 1, 0, 0));
   check_alive(bench);
   bench.setup(request(0x00, 9, 1, 0, 0));
   bench.port.in(0);
-  check_alive(bench);  // the next SETUP is there before the device saw that its status was taken
+  check_alive(bench);  // the next SETUP arrives before the device has processed the end of the status stage
   // In the status stage of a read.
   bench.setup(request(0x80, 6, 0x0100, 0, 18));
   bench.port.in(0);
@@ -148,7 +148,7 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
     CHECK(bench.port.out(0, part) == Handshake::stall);
     CHECK(bench.port.in(0).handshake == Handshake::stall);
   }
-  // Each of these sends one packet of another length than wLength says.
+  // Each case sends one packet whose length differs from wLength.
   const std::array<std::byte, 64> packet{std::byte{0x11}};
   const struct {
     std::uint16_t length;
@@ -161,7 +161,7 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
     CHECK(bench.port.in(0).handshake == Handshake::stall);
     CHECK(bench.port.out(0, packet) == Handshake::stall);
   }
-  // The last packet is longer than what is left.
+  // The last packet is longer than the remaining data.
   bench.setup(request(0x21, 9, 0x0311, 0, 72));
   CHECK(bench.port.out(0, packet) == Handshake::ack);
   bench.device.poll();
@@ -179,7 +179,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
   for (const std::size_t size : {std::size_t{64}, std::size_t{65}, std::size_t{127}, std::size_t{128}, std::size_t{129},
                                  sizeof(protocol::ParametersReport)}) {
     CAPTURE(size);
-    // It counts as many entries as fit: less of it would be refused for its length.
+    // The number of entries must fit the length, because a shorter report is refused.
     test::Transaction transaction{};
     auto& report = transaction.report();
     report.count = static_cast<std::uint16_t>((size - protocol::parameters_report_size(0)) / sizeof(*report.entries));

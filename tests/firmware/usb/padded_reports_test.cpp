@@ -1,4 +1,4 @@
-// Hosts that pad: hidapi on Windows writes every report at the length of the longest of its kind, and reads so as well.
+// Hosts that pad reports. hidapi on Windows pads every written and read report to the longest report of its kind.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -39,15 +39,15 @@ Bytes padded_to(std::size_t size, std::span<const std::byte> used) {
   return padded;
 }
 
-/// A device that program 7 drives.
+/// A device whose driver is program 7.
 struct PaddingBench : DeviceBench {
   PaddingBench() {
     configure();
-    run(1);  // the reset's stop is taken
+    run(1);  // removes the stop of the bus reset
     last_command.reset();
     const auto report = claim_report(protocol::ClaimOperation::claim, claim);
     REQUIRE(set_report(3, report) == done_result);
-    link.program.take_force();  // none, from the reset
+    link.program.take_force();  // removes the empty request of the bus reset
     link.program.take_shapes();
   }
 
@@ -57,9 +57,9 @@ struct PaddingBench : DeviceBench {
   }
 };
 
-/// Writes a report in lengths that are accepted, and checks that what it asks for happens; then in lengths that are
-/// not, and checks that nothing does. `has_effect` tells whether the last write had its effect, and makes the next one
-/// another.
+/// Writes a report with accepted lengths and checks its effect. Then writes it with refused lengths and checks that
+/// there is no effect. `has_effect` returns true if the last write had its effect, and changes the value for the next
+/// write.
 template <class HasEffect>
 void check_lengths(PaddingBench& bench, ReportId id, ReportKind kind, std::span<const std::byte> used,
                    HasEffect has_effect) {
@@ -110,7 +110,7 @@ TEST_CASE("padding: shapes") {
     const control::Shapes* taken = bench.link.program.take_shapes();
     return taken != nullptr && taken->life_periods[1] != 0 && taken->life_periods[2] == 0;
   });
-  // Between the smallest used length and that of these planes: received, but refused.
+  // This length is above the smallest used length, but too short for these planes. The report is received and refused.
   shapes.ticket = 5;
   CHECK(bench.write(ReportKind::feature, used, used.size() - 1) == done_result);
   const auto results = bench.get_feature<protocol::RequestResultsReport>(ReportId::request_results);

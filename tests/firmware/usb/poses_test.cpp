@@ -1,4 +1,4 @@
-// Poses and the controller's reports: one in every frame, as new as can be.
+// Poses and controller reports. Each bus frame has one new pose, as recent as possible.
 #include <doctest/doctest.h>
 
 #include "host_reads.hpp"
@@ -58,7 +58,7 @@ TEST_CASE("a main loop that is held up at a frame's end costs no pose: the host 
   pass_frame(bench);
   const std::uint32_t first = read_pose(bench)->sequence;
   pass_periods(bench, 13);
-  bench.run(7);  // and nobody looks
+  bench.run(7);  // the main loop does not run
   const auto pose = read_pose(bench);
   REQUIRE(pose.has_value());
   CHECK(pose->sequence == first + 1);
@@ -92,7 +92,7 @@ TEST_CASE("a device that is configured anew while a spare report waits gives tha
   bench.configure();
   pass_frame(bench);
   const std::uint32_t first = read_pose(bench)->sequence;
-  pass_periods(bench, 13);  // the host may have taken the spare in the moment that the device was configured
+  pass_periods(bench, 13);  // the host may have read the spare pose while the device was configured
   CHECK(bench.configure() == done_result);
   pass_periods(bench, 7);
   CHECK_FALSE(read_pose(bench).has_value());
@@ -157,10 +157,10 @@ TEST_CASE("the controller's report is as new as the pose whenever the host's tur
     for (int frame = 0; frame < 8; ++frame) pass_frame(bench);
     const auto report = read_controller(bench);
     REQUIRE(report.has_value());
-    // The bench's x is the number of the period, in metres: far beyond the range.
+    // The bench sets x to the number of the period in meters, which is out of the range.
     CHECK(report->position[0] == 32767);
     CHECK(report->angle[0] == static_cast<std::int16_t>(bench.periods - 1));
-    // Which takes one replacement after the first time, not one in each frame.
+    // After the first report, each further report needs one replacement, not one per bus frame.
     if (i == 0) cancels = bench.port.cancels(0x83);
     CHECK(bench.port.cancels(0x83) == cancels + static_cast<unsigned>(i));
   }
@@ -199,7 +199,7 @@ TEST_CASE("a sleeping host finds no old report of the controller, and a halt of 
   CHECK(bench.control(request(0x02, 1, 0, 0x83, 0)) == done_result);
   pass_frame(bench);
   CHECK(read_controller(bench).has_value());
-  // Its interface by itself starts again; a report that was under way stays whole.
+  // A restart of the controller interface does not lose a report that is in progress.
   pass_frame(bench);
   CHECK(bench.control(request(0x01, 11, 0, 2, 0)) == done_result);
   CHECK(read_controller(bench).has_value());

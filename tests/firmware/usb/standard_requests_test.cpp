@@ -1,4 +1,4 @@
-// The requests of chapter 9 of USB 2.0, which every device answers.
+// Standard requests of USB 2.0, chapter 9.
 #include <doctest/doctest.h>
 
 #include "device_bench.hpp"
@@ -57,7 +57,7 @@ TEST_CASE("a repeated configuration starts toggles and transfers again") {
   CHECK(bench.port.in(1).handshake == Handshake::ack);
   CHECK(bench.port.data_toggle(0x81));
   bench.run(20);
-  bench.device.poll();  // a report is on its way
+  bench.device.poll();  // a transfer is in progress
   CHECK(bench.configure() == done_result);
   CHECK_FALSE(bench.port.data_toggle(0x81));
   bench.run(20);
@@ -94,7 +94,7 @@ TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
     CHECK(bench.port.is_stalled(endpoint));
     CHECK(bench.control(request(0x82, 0, 0, endpoint, 2)) == answer({1, 0}));
     bench.run(40);
-    bench.device.poll();  // nothing is sent on a halted endpoint; the port would complain
+    bench.device.poll();  // the port fails the test if the device sends on a halted endpoint
     CHECK(bench.control(request(0x02, 1, 0, endpoint, 0)) == done_result);
     CHECK_FALSE(bench.port.is_stalled(endpoint));
     CHECK_FALSE(bench.port.data_toggle(endpoint));
@@ -108,7 +108,7 @@ TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
   CHECK(bench.control(request(0x02, 3, 0, 0x84, 0)) == stall_result);
   CHECK(bench.control(request(0x02, 3, 1, 0x81, 0)) == stall_result);
   CHECK(bench.control(request(0x00, 3, 1, 0, 0)) == stall_result);       // remote wake-up
-  CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result);  // test modes are for high speed
+  CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result);  // test modes exist only at high speed
 }
 
 TEST_CASE("the one setting of each interface is taken, others are refused") {

@@ -1,4 +1,4 @@
-// Scope frames, and a host that sleeps, vanishes or comes back.
+// Scope frames, and hosts that suspend, disappear or return.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -29,14 +29,14 @@ void select_scope(DeviceBench& bench, std::uint8_t count, std::uint8_t token) {
   bench.device.poll();
 }
 
-/// One bulk transfer as a host reads it: packets up to a short or empty one.
+/// Reads one bulk transfer, up to a short or empty packet.
 Bytes read_frame(DeviceBench& bench) {
   Bytes frame;
-  frame.reserve(protocol::scope_frame_maximum);  // grown bit by bit it would need twice the room on the target
+  frame.reserve(protocol::scope_frame_maximum);  // growth without reserve() would need twice the memory on the target
   for (std::size_t i = 0; i <= protocol::scope_frame_maximum / usb::packet_size_maximum; ++i) {
     const InPacket packet = bench.port.in(2);
     if (packet.handshake != Handshake::ack) {
-      CHECK(frame.empty());  // a frame never pauses: what was given to the port is whole
+      CHECK(frame.empty());  // the device never pauses within a frame, because the port has the complete frame
       return {};
     }
     frame.insert(frame.end(), packet.data.begin(), packet.data.end());
@@ -94,7 +94,7 @@ TEST_CASE("a frame that is a multiple of 64 ends with an empty packet") {
   bench.run(600);
   bench.device.poll();
   for (int i = 0; i < 2; ++i) {
-    const Bytes frame = read_frame(bench);  // read_frame goes on to a packet shorter than 64
+    const Bytes frame = read_frame(bench);  // read_frame() continues until a packet is shorter than 64 bytes
     CHECK(frame.size() == 14 * 64);
     CHECK(header_of(frame).sequence == static_cast<std::uint32_t>(i));
   }
@@ -131,7 +131,7 @@ TEST_CASE("a host that stops reading costs samples, which are counted, and nothi
     bench.run(1);
     bench.device.poll();
   }
-  // Every sample was either read or counted as dropped.
+  // Every sample was read or counted as dropped.
   CHECK(samples + bench.link.scope.samples_dropped() == last_end - start);
 }
 
@@ -179,13 +179,13 @@ TEST_CASE("suspend switches the force and the scope off, and resume goes on with
   CHECK(force_goes_off(bench));
   CHECK_FALSE(bench.link.commands.take_sign_of_life());
   bench.run(1000);
-  CHECK(bench.link.scope.samples_dropped() == 0);  // it stopped
+  CHECK(bench.link.scope.samples_dropped() == 0);  // the scope is off
   bench.device.poll();
 
   bench.port.resume();
   bench.device.poll();
   CHECK_FALSE(bench.device.suspended());
-  CHECK_FALSE(read_pose(bench).has_value());  // what was on its way is out of date
+  CHECK_FALSE(read_pose(bench).has_value());  // the pose from before the suspend is canceled
   pass_frame(bench);
   const auto pose = read_pose(bench);
   REQUIRE(pose.has_value());
@@ -220,7 +220,7 @@ TEST_CASE("unplugged and plugged in again in every state, the device works as th
     }
     if (state >= 5) bench.setup(request(0xA1, 1, 0x0311, 0, 4096));
     if (state >= 6) bench.port.in(0);
-    bench.port.suspend();  // without VBUS sensing, that is all a device sees of it
+    bench.port.suspend();  // without VBUS sensing, the device sees an unplugged cable as a suspend
     bench.device.poll();
     bench.run(500);
     bench.device.poll();
@@ -236,7 +236,7 @@ TEST_CASE("unplugged and plugged in again in every state, the device works as th
     bench.run(200);
     bench.device.poll();
     CHECK(read_pose(bench).has_value());
-    // At most the two frames that were handed over before come first; their token tells.
+    // At most two earlier frames precede the new ones. Their token identifies them.
     int old_frames = 0;
     auto header = header_of(read_frame(bench));
     for (; header.selection_token != 77; header = header_of(read_frame(bench))) {

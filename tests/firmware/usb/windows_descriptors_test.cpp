@@ -1,4 +1,4 @@
-// The descriptors by which Windows binds its drivers, and the lengths that they nest.
+// Descriptors that Windows uses to select its drivers, and the lengths of their nested parts.
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -42,8 +42,8 @@ void append_utf16(Bytes& to, std::string_view text, unsigned zeros) {
 Bytes microsoft_set(DeviceBench& bench) { return bench.control(request(0xC0, 0x20, 0, 7, 512)).data; }
 Bytes object_store(DeviceBench& bench) { return bench.get_descriptor(0x0F00, 255).data; }
 
-/// The parts of `whole`, one after the other, each as long as its first one or two bytes say. Together they have to
-/// fill it exactly.
+/// Returns the parts of `whole`. The first one or two bytes of a part are its length. The parts must fill `whole`
+/// exactly.
 std::vector<View> parts_of(View whole, bool has_wide_length) {
   std::vector<View> parts;
   while (!whole.empty()) {
@@ -56,9 +56,9 @@ std::vector<View> parts_of(View whole, bool has_wide_length) {
   return parts;
 }
 
-/// The subsets of this type in `whole`, each with its header, whose total length counts the header and everything in
-/// the subset (Microsoft OS 2.0 Descriptors Specification, tables 11 and 12). Together they have to fill `whole`
-/// exactly.
+/// Returns the subsets of this type in `whole`, including their headers. The total length in a header counts the header
+/// and everything in the subset (Microsoft OS 2.0 Descriptors Specification, tables 11 and 12). The subsets must fill
+/// `whole` exactly.
 std::vector<View> subsets_of(View whole, unsigned type) {
   std::vector<View> subsets;
   while (!whole.empty()) {
@@ -80,7 +80,7 @@ TEST_CASE("the descriptors by which Windows finds WinUSB, byte for byte") {
   Bytes store;
   append(store, {5,    0x0F, 40,   0,    2,                       // two capabilities
                  7,    0x10, 2,    0,    0,    0,    0,           // USB 2.0 extension, without attributes
-                 28,   0x10, 5,    0,                             // of the platform
+                 28,   0x10, 5,    0,                             // platform capability
                  0xDF, 0x60, 0xDD, 0xD8, 0x89, 0x45, 0xC7, 0x4C,  // {D8DD60DF-4589-4CC7-9CD2-659D9E648A9F}
                  0x9C, 0xD2, 0x65, 0x9D, 0x9E, 0x64, 0x8A, 0x9F,  //
                  0x00, 0x00, 0x03, 0x06, 0x52, 0x01, 0x20, 0});
@@ -109,7 +109,7 @@ TEST_CASE("every nested length of the Microsoft set is that of its parts, and th
   CHECK(half_at(set, 8) == set.size());
   const auto configurations = subsets_of(set.subspan(10), 1);
   REQUIRE(configurations.size() == 1);
-  CHECK(byte_at(configurations[0], 4) == 0);  // the first one, counted from 0
+  CHECK(byte_at(configurations[0], 4) == 0);  // the first configuration, counted from 0
   std::map<unsigned, Bytes> guids;
   for (const View function : subsets_of(configurations[0].subspan(8), 2)) {
     const auto features = parts_of(function.subspan(8), true);
@@ -121,7 +121,7 @@ TEST_CASE("every nested length of the Microsoft set is that of its parts, and th
     const std::size_t value_at = 8 + name_size + 2;
     REQUIRE(value_at + half_at(features[1], 8 + name_size) == features[1].size());
     const View value = features[1].subspan(value_at);
-    // A list of texts ends with an empty one.
+    // An empty text ends a list of texts.
     CHECK(half_at(value, value.size() - 2) == 0);
     CHECK(half_at(value, value.size() - 4) == 0);
     CHECK(half_at(value, value.size() - 6) != 0);

@@ -1,4 +1,4 @@
-// The list of cases, what a case is, and the files of their results.
+// The list of campaign cases and the files with their results.
 #include <campaign/cases.hpp>
 #include <campaign/result.hpp>
 #include <campaign/run.hpp>
@@ -44,10 +44,10 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
               return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
             }) >= phases);
   }
-  // Wires by what the board's facts call them; none that a host or a probe hangs on.
+  // Wires have the names of the board facts. Wires to the host and to the debug probe are not included.
   CHECK(names.contains("wire_open:encoders[1].a wall 2"));
   CHECK(names.contains("wire_high:bridge_enable rest 1"));
-  // Of three the second has each instant, the others one that is random in each situation.
+  // Of three parts of one kind, the second is tried at each instant, the others at one random instant per situation.
   for (const char* others : {"wire_open:encoders[0].a wall 3", "wire_open:encoders[2].a starting 2",
                              "motor_hot:1 rest 3", "leg_high:3B limited 2", "encoder_slip:3=400 motion 2"})
     CHECK(names.contains(others));
@@ -60,7 +60,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK_FALSE(names.contains("none starting 4"));
   CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
-  // As the table has it, and more or less.
+  // The default amount of the fault table, and another amount.
   for (const char* amount : {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag",
                              "analog_sag=3.5", "main_loop_stalled", "main_loop_stalled=0.012"})
     CHECK(names.contains(std::string(amount) + " rest 1"));
@@ -72,7 +72,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
 TEST_CASE("every state of the board is tried") {
   for (const protocol::StateInfo& state : protocol::state_table) {
     CAPTURE(state.name);
-    // While the force is on it is tried at rest, in the wall and in motion.
+    // The active state is split into the situations at rest, in the wall and in motion.
     CHECK((state.name == "active" ||
            std::ranges::any_of(situations, [&](CaseSituation situation) { return name_of(situation) == state.name; })));
   }
@@ -108,7 +108,7 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   REQUIRE(loaded.size() == 2);
   CHECK(loaded[0] == other);
   CHECK(loaded[1] == result);
-  CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // nothing unfinished is left
+  CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // no temporary file remains
 
   std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
   CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This is no result of a case"),

@@ -1,4 +1,4 @@
-// The page that is made of the results: the worst of each row, the figures, the plots.
+// The page with the campaign results: the worst case of each row, the figures and the plots.
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
 
@@ -100,7 +100,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("| `bridge_fault` | wall | 2.5 |") == std::string::npos);  // within the limit
   CHECK(text.find("| " + std::to_string(failed.number) + " | `dma_stopped` rest 3 | The device did not enumerate. |") !=
         std::string::npos);
-  CHECK(text.find("`bridge_fault` | wall") == std::string::npos);  // it was noticed
+  CHECK(text.find("`bridge_fault` | wall") == std::string::npos);  // detected
   const std::string plot = content_of(directory / "campaign-off.svg");
   CHECK(text.find("campaign-off.svg") != std::string::npos);
   CHECK(plot.find(">1 to 2</text>") != std::string::npos);
@@ -167,7 +167,7 @@ TEST_CASE("energy is compared with that of the same instant, so that none hides 
   CHECK(text.find("at most 50.0 mJ more than without a fault in the same situation at the same instant") !=
         std::string::npos);
   CHECK(text.find("cannot be told") == std::string::npos);
-  // An instant without a sound case is compared with no other one.
+  // An instant without a fault-free case is not compared.
   const std::string partly = text_of_page({slow, fast, hit, other, third});
   CHECK(partly.find("at most 50.0 mJ more") != std::string::npos);
   CHECK(partly.find("cannot be told of motion: ") != std::string::npos);
@@ -214,12 +214,12 @@ TEST_CASE("the plots say what is counted, in which unit, what a colour means and
   const auto [off, force] = plots_of({sound, button, hot, quick});
   CHECK(count(off, "in control periods of 50 μs</text>") == 1);
   CHECK(count(off, "not noticed: 1 of 2 are wires") == 1);
-  CHECK(count(off, "#b9c1ca") == 2);  // its bar, and what it means
+  CHECK(count(off, "#b9c1ca") == 2);  // the bar and its legend entry
   CHECK(count(force, ">peak force at the hand, N</text>") == 1);
   CHECK(count(force, ">force limit 3.3 N</text>") == 1);
   CHECK(count(force, "no more; without a fault: wall 2.4 N") == 1);
-  // Up to the largest force and no further: nine classes, of which three have a case; what it would have been anyway
-  // is quiet. Each colour once more, for its meaning.
+  // The axis stops at the largest force: nine classes, three of them with a case. Bars of forces that also occur
+  // without a fault are gray. Each color appears once more in the legend.
   CHECK(count(force, ">4.5</text>") == 1);
   CHECK(count(force, ">5</text>") == 0);
   CHECK(count(force, "#b9c1ca") == 3);
@@ -227,6 +227,6 @@ TEST_CASE("the plots say what is counted, in which unit, what a colour means and
   CHECK(count(force, "not compared") == 0);
   const std::string few = plots_of({sound, moved}).second;
   CHECK(count(few, "or not compared: no case") == 1);
-  // Few bars do not cut off the title or a colour's meaning.
+  // A plot with few bars is wide enough for its title and its legend.
   CHECK(std::stoul(few.substr(few.find("width=\"") + 7)) > 600);
 }

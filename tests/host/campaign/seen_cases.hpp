@@ -1,4 +1,3 @@
-// Results of cases without a board.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +17,7 @@ inline std::string content_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What a case that passed unnoticed would have left.
+/// Result of an undetected case.
 inline campaign::Result seen(const std::string& fault, const std::string& situation, unsigned phase) {
   for (const campaign::Case& c : campaign::all_cases())
     if (c.fault.name() == fault && campaign::name_of(c.situation) == situation && c.phase == phase)

@@ -1,5 +1,4 @@
-// What the page says of a fault after another, of the way to the boot loader, of a fast hand, and of what is never
-// told.
+// The page's sections about a second fault, the boot loader, a fast hand, and faults that are never reported.
 #include <campaign/cases.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
@@ -36,7 +35,7 @@ std::string section_of(const std::string& page, const std::string& heading) {
   return page.substr(begin, page.find("\n## ", begin + 1) - begin);
 }
 
-/// With another fault told before.
+/// Result of a case in which another fault was reported earlier.
 Result after_first(const std::string& fault, FirstFault first_fault) {
   Result result = seen(fault, "fault", 1);
   result.told_before = "host_silent";
@@ -107,7 +106,7 @@ TEST_CASE("what a hand feels that flings the arm stands beside what it takes wit
   const TemporaryDirectory directory;
   write_page(std::array{flung, sound}, directory / "campaign.md");
   CHECK(content_of(directory / "campaign-off.svg").find("#3b6ea5\"") ==
-        content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // what the colour means, and no bar
+        content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // the legend only, no bar
 }
 
 TEST_CASE("faults that were told by no case are named with the reason, whenever the others were told") {

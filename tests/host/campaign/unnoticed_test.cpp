@@ -1,4 +1,4 @@
-// What passed unnoticed or silently stands on the page, each with its reason.
+// Undetected faults are listed on the page, each with its reason.
 #include <campaign/cases.hpp>
 #include <campaign/handling.hpp>
 #include <campaign/page.hpp>
@@ -40,7 +40,7 @@ TEST_CASE("a restart is noticed, a lock-up or bridges that went off are not by t
   const std::string text = content_of(directory / "campaign.md");
   CHECK(text.find("| `logic_sag` | locked up; restart (1 of 3) |") != std::string::npos);
   CHECK(text.find("| `logic_sag` | rest (1 of 3) | not used |") != std::string::npos);  // locked up with the bridges on
-  CHECK(text.find("| `logic_sag` | rest (1 of 3) | - | The chip stands") != std::string::npos);  // they went off
+  CHECK(text.find("| `logic_sag` | rest (1 of 3) | - | The chip stands") != std::string::npos);  // bridges off
 }
 
 TEST_CASE("a bridge that went on though it was off stands on the page before all else, and only then") {
@@ -98,7 +98,7 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
   stuck_later.peak_force_in_use_N = 3.4;
   stuck_later.noticed_in_use_as = "motor_implausible";
   stuck_later.noticed_in_use_s = 1.75;
-  // Beside the sound arm of the same situation and instant, which is there for one of the two.
+  // Only one of the two situations has a fault-free case at the same instant to compare with.
   sound.energy_in_use_J = 0.04;
   hot.energy_in_use_J = 0.039;
   stuck.energy_in_use_J = 0.0425;
@@ -200,7 +200,7 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
   CHECK(section.find("| `encoder_slip:2=400` | unreferenced | Before there is a reference it does") !=
         std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
-  // Those of one reason and the same situations share a row.
+  // Faults with the same reason and the same situations share a row.
   const std::string shared = section_of({seen("wire_open:button_1", "ready", 1), seen("wire_open:supply", "ready", 1),
                                          seen("wire_open:button_2", "ready", 1), seen("wire_low:button_2", "rest", 1),
                                          seen("wire_high:button_2", "testing", 1)});
@@ -277,7 +277,7 @@ TEST_CASE("each fault that passes without a word has a reason on the page, in ea
     for (const Result& result : results) {
       CAPTURE(result.fault);
       CAPTURE(table.before_reason);
-      // In a row of its own, or with others of the same reason.
+      // The fault has a separate row or shares a row with faults of the same reason.
       std::string reason;
       std::istringstream lines(text);
       for (std::string line; reason.empty() && std::getline(lines, line);) {
@@ -289,7 +289,7 @@ TEST_CASE("each fault that passes without a word has a reason on the page, in ea
       reason.resize(reason.size() - 2);
       CHECK(reason.size() > 20);
       CHECK(reason.ends_with("."));
-      // What is so with the bridges off is no reason with the force on.
+      // A reason that is valid only with the bridges off is not valid while the force is on.
       if (result.situation == "rest")
         CHECK(reason.find("as it has to be while the bridges are off") == std::string::npos);
     }

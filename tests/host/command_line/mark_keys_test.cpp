@@ -31,7 +31,7 @@ TEST_CASE("each line of a pipe is a mark with its text") {
   type(ends[1], "touch\n\nlet");
   CHECK(keys.next() == "touch");
   CHECK(keys.next() == "mark 2");
-  CHECK_FALSE(keys.next());  // the line is not whole yet
+  CHECK_FALSE(keys.next());  // the line is incomplete
   type(ends[1], " go\n");
   close(ends[1]);
   CHECK(keys.next() == "let go");
@@ -46,7 +46,7 @@ TEST_CASE("on a terminal the space bar is a mark, at once, and the terminal is g
     return;
   }
   REQUIRE(unlockpt(keyboard) == 0);
-  const int terminal = ioctl(keyboard, TIOCGPTPEER, O_RDWR | O_NOCTTY);  // its name need not lead to it in a container
+  const int terminal = ioctl(keyboard, TIOCGPTPEER, O_RDWR | O_NOCTTY);  // in a container the path name may not exist
   REQUIRE(terminal >= 0);
   termios before, during, after;
   tcgetattr(terminal, &before);

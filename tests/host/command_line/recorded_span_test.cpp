@@ -1,4 +1,4 @@
-// Which of the samples that come belong to a recording of a given length, and what is missing at its end.
+// The samples that belong to a recording of a given length, and the number of missing samples at its end.
 #include <doctest/doctest.h>
 
 #include <command_line/recorded_span.hpp>
@@ -8,7 +8,7 @@ using command_line::RecordedSpan;
 
 namespace {
 
-/// How many of the block's samples belong to the recording.
+/// Number of samples of the block that belong to the recording.
 std::size_t taken(RecordedSpan& span, std::int64_t first_period, std::size_t count) {
   device::ScopeSamples samples{};
   samples.first_period = first_period;
@@ -40,7 +40,7 @@ TEST_CASE("samples that are lost at the end of a recording are missing, those be
   CHECK(taken(span, 7, 50) == 50);
   CHECK(taken(span, 7 + 60, 20) == 20);
   CHECK_FALSE(span.is_over());
-  CHECK(span.missing_at_end(70, 10) == 0);  // of one that was ended before, nothing is
+  CHECK(span.missing_at_end(70, 10) == 0);  // a recording that was stopped early has no missing samples
   SUBCASE("the next come from behind the end") {
     CHECK(taken(span, 7 + 110, 20) == 0);
     CHECK(span.is_over());
@@ -57,7 +57,7 @@ TEST_CASE("samples that are lost at the end of a recording are missing, those be
 TEST_CASE("a board whose time begins anew ends no recording as if it were complete") {
   RecordedSpan span(100);
   CHECK(taken(span, 1000, 50) == 50);
-  CHECK(taken(span, 0, 20) == 20);  // the recorder is to see them
+  CHECK(taken(span, 0, 20) == 20);  // the recorder must receive the samples of the restarted board
   CHECK_FALSE(span.is_over());
 }
 

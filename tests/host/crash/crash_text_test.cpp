@@ -1,4 +1,4 @@
-// A crash of the firmware in words; names need an ELF and are tested where one is (tests/system/black_box_test.cpp).
+// Text of a firmware crash. Symbol names need an ELF; tests/system/black_box_test.cpp tests them.
 #include <doctest/doctest.h>
 
 #include <crash/crash_text.hpp>
@@ -37,7 +37,7 @@ TEST_CASE("the chain of calls begins where the crash was, and ends with the firs
   CHECK(chain({.exception = 3}).empty());
   CrashFacts crash{.exception = 3, .program_counter = 0x100, .stack_pointer = 0x1000, .callers = {0x200, 0x200, 0x300}};
   CHECK(chain(crash) == std::vector<std::uint32_t>{0x100, 0x200, 0x300});
-  crash.program_counter = 0;  // a call of nothing
+  crash.program_counter = 0;  // a call through a null pointer
   CHECK(chain(crash) == std::vector<std::uint32_t>{0, 0x200, 0x300});
 }
 

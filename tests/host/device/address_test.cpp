@@ -1,4 +1,4 @@
-// Addresses as people write them, and the arms that they lead to.
+// Device addresses as users write them, and the arms that the addresses select.
 #include <doctest/doctest.h>
 
 #include <algorithm>

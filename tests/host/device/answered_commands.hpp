@@ -1,4 +1,4 @@
-// The board's answers to commands and shapes, for transports that tests make.
+// The board's answers to commands and shapes, for the transports of tests.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace inkwell::tests {
 
-/// Every command is carried out as soon as it is written.
+/// Every command is executed as soon as it is written.
 class AnsweredCommands {
  public:
   void note(std::span<const std::byte> written) { put(written, protocol::RequestResult::carried_out); }
-  /// The same for a command of a program that does not drive the arm.
+  /// Refuses a command of a program that is not the driver.
   void refuse(std::span<const std::byte> written) { put(written, protocol::RequestResult::not_the_driver); }
 
   void note_shapes(std::span<const std::byte> written, protocol::RequestResult result) {
@@ -23,7 +23,7 @@ class AnsweredCommands {
     add({shapes.ticket, protocol::ReportId::shapes, {}, result, 0});
   }
 
-  /// Writes the RequestResultsReport, if that is asked for.
+  /// Writes the RequestResultsReport if the host requests that report.
   std::size_t answer(std::span<std::byte> asked) const {
     if (asked[0] != static_cast<std::byte>(protocol::ReportId::request_results)) return 0;
     std::memcpy(asked.data(), &report, std::min(asked.size(), sizeof report));

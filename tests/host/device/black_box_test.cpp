@@ -1,4 +1,4 @@
-// The black box on its way from a device, beside other programs and as it goes.
+// Reading the black box from a device, also while other programs read it or while it changes.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -16,13 +16,13 @@ using protocol::ReportId;
 
 namespace {
 
-/// What a device keeps, and how it behaves.
+/// Content of a device's black box, and the behavior of the device.
 struct Kept {
   BlackBoxReport head{};
   int requests = 0;
-  int asked_between = 0;  ///< so often another program asks for its own rows before each answer
+  int asked_between = 0;  ///< number of requests of another program for other rows before each answer
   protocol::RequestResult result = protocol::RequestResult::accepted;
-  std::size_t gone_from = ~0u;  ///< the row at which another black box has taken the place of this one
+  std::size_t gone_from = ~0u;  ///< the row at which another black box replaces this black box
 };
 
 class KeepingTransport final : public device::Transport {

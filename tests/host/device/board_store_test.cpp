@@ -1,4 +1,4 @@
-// Storing parameters on the board and forgetting them, and what a session makes of it, against a USB/IP server.
+// Storing and erasing parameters on the board, and the session's reaction, against a USB/IP server.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -20,7 +20,7 @@ using protocol::StoreResult;
 
 namespace {
 
-/// The server's board time passes by so much each time it is asked for.
+/// The server's board time advances by this number of periods at each read.
 void let_time_pass(FakeUsbipServer& server, std::uint32_t periods_each_time) {
   server.spoil[protocol::ReportId::frame] = [time = 0u, periods_each_time](Bytes& report) mutable {
     time += periods_each_time;
@@ -79,7 +79,7 @@ TEST_CASE("an older command's result is not taken for this one's") {
     server.judge_store = [](Command) { return StoreResult::force_is_on; };
     CHECK_THROWS_AS(store_parameters(*arm), device::NotStored);
   }
-  server.holds_outputs = true;  // it comes later
+  server.holds_outputs = true;  // the output report is answered later
   server.ignores_store = true;
   std::atomic<int> asked = 0;
   server.spoil[protocol::ReportId::store] = [&](Bytes& report) {
@@ -230,7 +230,7 @@ TEST_CASE("after a loss a session tells what the device held before and what it 
   CHECK_FALSE(session.status().store);
   server.parameters[Parameter::force_limit_N] = 3.3f;
   SUBCASE("the same one") {
-    session.set_parameters({{Parameter::sphere_radius_m, 0.003f}});  // still reaches it
+    session.set_parameters({{Parameter::sphere_radius_m, 0.003f}});  // the change still reaches the board
     is_there = true;
     REQUIRE(eventually([&] { return session.reconnection().has_value(); }));
     const auto first = *session.reconnection();

@@ -27,5 +27,5 @@ TEST_CASE("wall time counts while board time does not pass") {
   CHECK_FALSE(limit.is_over(now_periods, begin));
   CHECK_FALSE(limit.is_over(now_periods, begin + 2s));
   CHECK(limit.is_over(now_periods, begin + 2001ms));
-  CHECK_FALSE(limit.is_over(101, begin + 3s));  // it goes on
+  CHECK_FALSE(limit.is_over(101, begin + 3s));  // board time advances again
 }

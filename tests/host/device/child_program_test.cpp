@@ -1,4 +1,4 @@
-// Programs that this one runs: no shell reads their arguments, and what they print comes back.
+// Child programs: no shell interprets their arguments, and their output is returned.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// How long clearing a fault looks at the board before it is said to be gone.
+// Duration for which the board state is observed before a fault counts as cleared.
 #include <device/clear_fault.hpp>
 
 #include <chrono>
@@ -19,7 +19,6 @@ using protocol::State;
 
 namespace {
 
-/// Counts what is written to it.
 class CountingTransport final : public device::Transport {
  public:
   explicit CountingTransport(unsigned& written) : written_(written) {}
@@ -43,7 +42,7 @@ class CountingTransport final : public device::Transport {
 
 constexpr std::uint32_t ms_periods = protocol::servo_rate_Hz / 1000;
 
-/// How many poses were waited for, a millisecond apart, where the board shows `shown(ms)`.
+/// Number of poses that were awaited, 1 ms apart, while the board shows `shown(ms)`.
 template <class Shown>
 unsigned cleared_after_ms(std::int64_t begin_periods, State first, Shown shown) {
   unsigned written = 0, ms = 0;
@@ -64,7 +63,7 @@ TEST_CASE("without a fault clearing waits for nothing, with one for a fifth of a
   const auto ready = [](unsigned) { return State::ready; };
   CHECK(cleared_after_ms(1000, State::ready, ready) == 0);
   CHECK(cleared_after_ms(1000, State::fault, ready) == 200);
-  CHECK(cleared_after_ms(0xFFFF'FFF0, State::fault, ready) == 200);  // the board's counter wraps meanwhile
+  CHECK(cleared_after_ms(0xFFFF'FFF0, State::fault, ready) == 200);  // the board's counter wraps during the wait
 }
 
 TEST_CASE("clearing waits until a self-test is over, but not for ever, and a fault that comes after it stays") {

@@ -1,4 +1,4 @@
-// The request that leads from the firmware into the boot loader, to an arm on a cable.
+// The request that switches an arm on a USB cable from the firmware to the boot loader.
 #include <doctest/doctest.h>
 
 #include <libusb-1.0/libusb.h>

@@ -1,4 +1,4 @@
-// The client of a virtual board's control socket: what it asks, and what it makes of each kind of answer.
+// The client of a virtual board's control socket: its requests, and its handling of each kind of answer.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace {
 
 ControlClient client_of(const FakeControlServer& server) { return ControlClient({"127.0.0.1", server.port()}); }
 
-/// The message with which a call fails whose answer is this line.
+/// Message of the exception that a call throws when it receives this line as its answer.
 std::string failure_at(const std::string& line) {
   FakeControlServer server([&](const json&) { return line + "\n"; });
   auto client = client_of(server);

@@ -1,4 +1,4 @@
-// What is told of a device: from one pose to the next, of its parameters, and in a log that has an end.
+// Events of a device: changes between two poses, parameter changes, and a log of bounded length.
 #include <doctest/doctest.h>
 
 #include <device/event.hpp>
@@ -32,7 +32,7 @@ TEST_CASE("force and faults are told once, when they come and when they go") {
   CHECK(on[0].at_periods == 30);
   CHECK(on[0].clock_utc.size() == 24);
 
-  // The board's own period of the fault counts, not that of the pose that told it.
+  // The event has the board's fault period, not the period of the pose that reported the fault.
   const auto fault = events_between(pose(30, State::active), pose(70, State::fault, Fault::supply_low), 61);
   REQUIRE(fault.size() == 2);
   CHECK(fault[0].text == "The force is off.");

@@ -1,4 +1,4 @@
-// A control socket without a board behind it, for tests: what it answers is set by the test.
+// A control socket without a board, for tests. The test sets the answers.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace inkwell::tests {
 
 class FakeControlServer {
  public:
-  /// What it sends for a request, with the end of the line.
+  /// Text of the answer to a request, with its line end.
   using Answer = std::function<std::string(const nlohmann::json&)>;
 
   explicit FakeControlServer(Answer answer) : answer_(std::move(answer)) {}
 
   std::uint16_t port() const { return server_.port(); }
   std::vector<nlohmann::json> requests();
-  /// Cuts the connection, as a board that was stopped would.
+  /// Closes the connection, as a board that was stopped would.
   void hang_up() { server_.hang_up(); }
 
  private:

@@ -42,7 +42,8 @@ Bytes bytes(std::initializer_list<int> values) {
 constexpr std::uint32_t bus_number = 1, device_number = 2;
 constexpr std::uint8_t hid_interface = 0, hid_out_endpoint = 1, scope_endpoint = 2;
 
-/// HID with two interrupt endpoints, then a vendor interface with one bulk endpoint.
+/// Configuration descriptor with a HID interface with two interrupt endpoints and a vendor interface with one bulk
+/// endpoint.
 Bytes default_configuration() {
   return bytes({9, 2,    57,   0, 2,  1,    0,    0x80, 50,                       //
                 9, 4,    0,    0, 2,  3,    0,    0,    0,                        //
@@ -70,7 +71,7 @@ Bytes parameters_report(protocol::ReportId id, const protocol::ParameterSet& set
   return bytes_of(report);
 }
 
-/// As much of a reply as was asked for.
+/// The reply, cut to the requested length.
 Bytes limited(const std::uint8_t (&setup)[8], Bytes reply) {
   const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
   reply.resize(std::min(reply.size(), length));
@@ -159,7 +160,7 @@ void FakeUsbipServer::serve_requests(int client) {
 void FakeUsbipServer::serve_transfers(int client) {
   while (const auto submit = receive<usbip::Submit>(client)) {
     const std::uint32_t sequence = submit->header.sequence;
-    if (submit->header.device != usbip::device_of(bus_number, device_number)) return;  // as Linux' server does
+    if (submit->header.device != usbip::device_of(bus_number, device_number)) return;  // as the Linux server does
     if (submit->header.command == usbip::Command::unlink) {
       const std::lock_guard lock(mutex_);
       take_back(client, sequence, std::bit_cast<usbip::Unlink>(*submit).unlinked_sequence);
@@ -257,7 +258,7 @@ void FakeUsbipServer::answer(int client, std::uint32_t sequence, std::int32_t st
   Bytes reply;
   append(reply, header);
   reply.insert(reply.end(), data.begin(), data.end());
-  constexpr std::size_t first = 10;  // a stream may bring it in pieces
+  constexpr std::size_t first = 10;  // a stream may deliver the reply in pieces
   ::send(client, reply.data(), first, MSG_NOSIGNAL);
   ::send(client, reply.data() + first, reply.size() - first, MSG_NOSIGNAL);
 }

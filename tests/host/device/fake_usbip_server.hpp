@@ -1,4 +1,4 @@
-// A USB/IP server with a device of Inkwell's shape, for tests: what it answers is set by the test.
+// A USB/IP server with an Inkwell device, for tests. The test sets the answers.
 #pragma once
 
 #include <atomic>
@@ -39,8 +39,8 @@ class FakeUsbipServer {
   std::uint16_t port() const { return server_.port(); }
   device::Endpoint endpoint() const;
 
-  // Set before a client comes.
-  std::string path;  ///< of the device on the server
+  // Set these before a client connects.
+  std::string path;  ///< path of the device on the server
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
   std::string serial_number = "0123456789ABCDEF01234567";
@@ -51,60 +51,61 @@ class FakeUsbipServer {
   Bytes configuration;  ///< descriptor
   protocol::InformationReport information{};
   protocol::FrameReport frame{};
-  std::optional<protocol::BlackBoxReport> black_box;  ///< none: the request is stalled
+  std::optional<protocol::BlackBoxReport> black_box;  ///< empty: the request is stalled
   protocol::ParameterSet parameters = protocol::default_parameters();
   protocol::StoreReport store{};
   link::DriverClaim driver;
   AnsweredCommands request_results;
   protocol::ParameterSet at_next_start = protocol::default_parameters();
-  /// What becomes of a command to store or to forget. While it is `under_way`, nothing is written.
+  /// Decides the result of a store or erase command. While the result is `under_way`, nothing is written.
   std::function<protocol::StoreResult(protocol::Command)> judge_store = [](protocol::Command) {
     return protocol::StoreResult::done;
   };
-  /// No command to store or to forget is counted.
+  /// Store and erase commands are not counted.
   bool ignores_store = false;
-  /// What becomes of a transaction; called with its entries.
+  /// Decides the result of a transaction from its entries.
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
     return protocol::Refusal::accepted;
   };
-  /// A transaction that was accepted ends in a stall all the same.
+  /// An accepted transaction is answered with a stall.
   bool stalls_accepted = false;
   std::function<void(protocol::ReportId, std::size_t length)> on_get = [](auto, auto) {};
   std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
-  /// Changes what a feature report says on its way to the client.
+  /// Changes the content of a feature report that is sent to the client.
   std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
-  /// Cuts the connection at this many transactions, before it takes them in.
+  /// Number of transactions at which the server closes the connection instead of accepting the transaction.
   std::atomic<int> transactions_to_break_at = 0;
-  /// Called just before that.
+  /// Called before the server closes the connection at a transaction.
   std::function<void()> on_break = [] {};
-  /// Another program has the scope: its transfers end at once, and say so.
+  /// Another program has the scope: its transfers fail immediately with this status.
   std::atomic<bool> scope_is_taken = false;
-  /// Control requests are taken in but not answered, as by a board whose time stands still.
+  /// Control requests are received but not answered, as by a board whose time does not advance.
   std::atomic<bool> holds_requests = false;
-  /// Output reports are taken in but not answered, unless by answer_output().
+  /// Output reports are received; only answer_output() answers them.
   std::atomic<bool> holds_outputs = false;
-  /// What the answer to an output report says: 0 or a negative errno.
+  /// Status in the answer to an output report: 0 or a negative errno.
   std::atomic<std::int32_t> output_status = 0;
-  /// Takes connections and answers nothing.
+  /// Accepts connections and sends no answer.
   bool silent = false;
 
-  /// Answers the oldest waiting transfer of this IN endpoint (1 pose, 2 scope), now or when it comes.
+  /// Answers the oldest pending transfer of this IN endpoint (1 pose, 2 scope), or the next transfer if none is
+  /// pending.
   void send(std::uint8_t endpoint, Bytes data);
-  /// Ends the oldest waiting transfer of this IN endpoint with a negative errno.
+  /// Fails the oldest pending transfer of this IN endpoint with a negative errno.
   void fail(std::uint8_t endpoint, std::int32_t status);
-  /// Answers the oldest output report that is held.
+  /// Answers the oldest unanswered output report.
   void answer_output();
-  /// Sends bytes that are no answer to anything.
+  /// Sends bytes that do not answer any request.
   void send_unasked(std::span<const std::byte> bytes);
-  /// Cuts the connection, as a board that was stopped would.
+  /// Closes the connection, as a board that was stopped would.
   void hang_up() { server_.hang_up(); }
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
-  /// The reports of shapes that were taken in, each as long as it came.
+  /// The received shape reports in their received lengths.
   std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
-  /// How often the client took a transfer back.
+  /// Number of transfers that the client has canceled.
   std::size_t transfers_taken_back();
   std::size_t transactions();
   std::size_t imports();
@@ -137,10 +138,10 @@ class FakeUsbipServer {
   LocalServer server_;
 };
 
-/// A scope frame of one sample of one signal that is a float.
+/// A scope frame with one sample of one float signal.
 Bytes scope_frame(std::uint8_t token, std::uint32_t first_period, float value);
 
-/// Waits, at most a minute, until the condition holds.
+/// Waits for at most one minute until the condition is true.
 bool eventually(const std::function<bool()>& condition);
 
 }  // namespace inkwell::tests

@@ -97,7 +97,7 @@ TEST_CASE("rows join the tables, and another law's only when nobody uses them an
   CHECK(device::join_tables(same));
   const auto other = device::parse_force_law(report_of("other"));
   law = {};
-  CHECK(!device::join_tables(other));  // `same` is still there
+  CHECK(!device::join_tables(other));  // `same` still exists
   CHECK(device::joined_force_law() == "first");
 }
 

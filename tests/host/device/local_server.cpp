@@ -34,7 +34,7 @@ void LocalServer::accept_clients() {
     const int client = accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC);
     if (client < 0) return;
     const int yes = 1;
-    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer at once
+    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer immediately
     {
       const std::lock_guard lock(mutex_);
       client_ = client;

@@ -1,4 +1,4 @@
-// Listens on this computer for tests, and serves one client after another.
+// Listens on this computer for tests and serves one client after another.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace inkwell::tests {
 
-/// Make it the last member of what it serves from: its thread ends with it.
+/// Declare the server as the last member of its owner, so that its thread stops before the data is destroyed.
 class LocalServer {
  public:
-  /// `serve(client)` has the connected socket until it returns, in the server's thread.
+  /// `serve(client)` runs in the server's thread and uses the connected socket until it returns.
   explicit LocalServer(std::function<void(int client)> serve, const local::SocketAddress& where = {});
   ~LocalServer();
   LocalServer(const LocalServer&) = delete;
@@ -21,7 +21,7 @@ class LocalServer {
 
   const local::SocketAddress& address() const { return listener_.address(); }
   std::uint16_t port() const { return address().port; }
-  /// Cuts the connection, as a board that was stopped would.
+  /// Closes the connection, as a board that was stopped would.
   void hang_up();
 
  private:
@@ -32,7 +32,7 @@ class LocalServer {
   std::mutex mutex_;
   int client_ = -1;
   bool stopping_ = false;
-  std::thread thread_;  ///< last: it uses all of the above
+  std::thread thread_;  ///< last member, because the thread uses all other members
 };
 
 }  // namespace inkwell::tests

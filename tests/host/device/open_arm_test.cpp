@@ -1,4 +1,4 @@
-// From an address to an open arm; the board that is started is a script which names servers of this test.
+// Opening an arm from an address. The started board is a script that names servers of this test.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -22,7 +22,7 @@ namespace {
 
 const std::filesystem::path paper_arm = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards/arms/paper.toml";
 
-/// A virtual board whose ports are those of these servers.
+/// A virtual board whose ports belong to these servers.
 class StandIn {
  public:
   StandIn(std::uint16_t usbip_port, std::uint16_t control_port) {

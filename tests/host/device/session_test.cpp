@@ -108,8 +108,8 @@ TEST_CASE("a fault is told with the control period that noticed it, as far as th
   using protocol::Fault;
   CHECK(told_at(990, Fault::supply_low, false, 980) == 990);
   CHECK(told_at(990, Fault::supply_low, false, {}) == 990);
-  CHECK(told_at(970, Fault::supply_low, false, 980) == 1000);   // of an older fault
-  CHECK(told_at(1001, Fault::supply_low, false, 980) == 1000);  // of an earlier run
+  CHECK(told_at(970, Fault::supply_low, false, 980) == 1000);   // an older fault
+  CHECK(told_at(1001, Fault::supply_low, false, 980) == 1000);  // from before a reset
   CHECK(told_at(990, Fault::over_speed, false, 980) == 1000);
   CHECK(told_at(990, Fault::supply_low, true, 980) == 1000);
   CHECK(told_at({}, Fault::none, false, 980) == 1000);
@@ -159,7 +159,7 @@ TEST_CASE("changes asked for in a burst go out together, the last value of each 
   };
   std::atomic<bool> is_there = false;
   device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
-  // Queued before there is a device, so all of them are merged into one transaction.
+  // All changes are queued before a device is connected, so the session merges them into one transaction.
   session.set_parameters({{Parameter::force_limit_N, 1.0f}});
   session.set_parameters({{Parameter::force_limit_N, 2.0f}, {Parameter::sphere_radius_m, 0.004f}});
   is_there = true;
@@ -203,7 +203,7 @@ TEST_CASE("what was asked for last still reaches the device when the session end
   std::atomic<bool> judging = false;
   server.judge = [&](const protocol::ParametersReport&) {
     judging = true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the session ends meanwhile
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the session is destroyed during the call
     return protocol::Refusal::accepted;
   };
   {
@@ -343,7 +343,7 @@ TEST_CASE("a transaction that the device stalls is not sent again by the connect
   device::Session session([&] { return std::optional(server.endpoint()); });
   session.set_parameters({{Parameter::force_limit_N, 2.5f}});
   REQUIRE(eventually([&] { return server.imports() == 2 && is_connected(session); }));
-  session.set_parameters({{Parameter::sphere_radius_m, 0.004f}});  // a repetition would go out before it, or with it
+  session.set_parameters({{Parameter::sphere_radius_m, 0.004f}});  // a repeated transaction would arrive by then
   REQUIRE(eventually([&] { return radii == 1; }));
   CHECK(limits == 1);
 }
@@ -397,7 +397,7 @@ TEST_CASE("a command for an arm that is not there does not reach the one that co
 TEST_CASE("parameters and counters are read anew every second of the device's time") {
   FakeUsbipServer server;
   std::atomic<int> readings = 0;
-  std::atomic<float> radius_m = 0.0f;  // that another program has set
+  std::atomic<float> radius_m = 0.0f;  // set by another program
   server.spoil[protocol::ReportId::information] = [&](Bytes& report) {
     report[offsetof(protocol::InformationReport, servo_overruns)] = static_cast<std::byte>(++readings);
   };
@@ -413,7 +413,7 @@ TEST_CASE("parameters and counters are read anew every second of the device's ti
   const int before = readings;
   const auto revision = session.parameters_revision();
   std::uint64_t poses = 0;
-  const auto pass = [&](std::uint32_t time_periods) {  // what the first pose brings about is done when the second comes
+  const auto pass = [&](std::uint32_t time_periods) {  // the second pose shows that the first was handled
     for (int i = 0; i < 2; ++i) {
       server.send(1, bytes_of(pose_at(time_periods)));
       REQUIRE(eventually([&, wanted = ++poses] { return session.status().poses_received == wanted; }));

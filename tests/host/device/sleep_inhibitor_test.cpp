@@ -1,5 +1,5 @@
-// While a hand feels the force of a real arm, the computer is kept from sleeping: by a program systemd-inhibit that the
-// test replaces.
+// While a real arm's force is on, a systemd-inhibit process keeps the computer from sleeping. The test replaces that
+// program.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A systemd-inhibit that notes its process and its words, then runs its command.
+/// A systemd-inhibit that logs its process id and arguments, then runs its command.
 class FakeInhibit {
  public:
   explicit FakeInhibit(const std::string& is = "exec \"$@\"") : path_before_(std::getenv("PATH")) {
@@ -73,7 +73,7 @@ class FakeInhibit {
   std::string path_before_;
 };
 
-/// False for a process that ended, also if nobody has waited for it yet.
+/// False for a process that has exited, also before a wait for it.
 bool is_running(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string line;
@@ -82,7 +82,7 @@ bool is_running(pid_t process) {
   return name_end != std::string::npos && line.substr(name_end + 2, 1) != "Z";
 }
 
-/// Bits of a set of signals in /proc/PROCESS/status.
+/// Bits of a signal set in /proc/PROCESS/status.
 std::uint64_t signals_of(pid_t process, const std::string& set) {
   std::ifstream file("/proc/" + std::to_string(process) + "/status");
   for (std::string line; std::getline(file, line);)
@@ -143,7 +143,7 @@ TEST_CASE("the inhibitor's program has a session of its own, no open files, no p
   REQUIRE(pipe(ends) == 0);  // without close-on-exec
   device::SleepInhibitor inhibitor;
   std::thread([&] {
-    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), -10);  // as far as this user may
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), -10);  // fails without the permission for it
     inhibitor.prepare();
   }).join();
   inhibitor.follow(true);
@@ -152,7 +152,7 @@ TEST_CASE("the inhibitor's program has a session of its own, no open files, no p
   CHECK(getsid(process) == process);
   CHECK(getpriority(PRIO_PROCESS, static_cast<id_t>(process)) >= 0);
   const std::string inherited = "/fd/" + std::to_string(ends[0]);
-  std::error_code none;  // the descriptor is not open, or another file has its number
+  std::error_code none;  // the descriptor may be closed or may refer to another file
   CHECK(std::filesystem::read_symlink("/proc/" + std::to_string(process) + inherited, none) !=
         std::filesystem::read_symlink("/proc/self" + inherited));
   CHECK(signals_of(process, "SigBlk") == 0);

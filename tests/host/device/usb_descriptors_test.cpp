@@ -1,4 +1,4 @@
-// Which interfaces and endpoints are the device's: what its descriptors say, not what this companion would choose.
+// The interfaces and endpoints of the device are those of its descriptors; the companion assumes none.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -47,15 +47,15 @@ TEST_CASE("the layout is the one of the descriptors, in whatever order and with 
                               {7, 5, 0x07, 2, 64, 0, 0},  // bulk OUT
                               {7, 5, 0x88, 3, 64, 0, 1},  // interrupt IN, of no HID interface
                               scope_in,
-                              {7, 5, 0x0D, 2, 64, 0, 0},       // another bulk OUT, after the right one
+                              {7, 5, 0x0D, 2, 64, 0, 0},       // another bulk OUT after the correct endpoint
                               {9, 4, 5, 0, 1, 0x0A, 0, 0, 0},  // another class with both kinds of endpoint
                               {7, 5, 0x89, 2, 64, 0, 0},
                               {7, 5, 0x8A, 3, 64, 0, 1},
                               hid_interface_1,
                               {7, 5, 0x8B, 2, 64, 0, 0},  // bulk IN, of no vendor interface
                               hid_out,
-                              {7, 5, 0x84, 0x13, 64, 0, 1},  // interrupt IN that says more of its use
-                              {9, 4, 6, 0, 1, 3, 0, 0, 0},   // a second HID interface, of the controller
+                              {7, 5, 0x84, 0x13, 64, 0, 1},  // interrupt IN with usage bits in its attributes
+                              {9, 4, 6, 0, 1, 3, 0, 0, 0},   // a second HID interface that belongs to the controller
                               {7, 5, 0x8C, 3, 64, 0, 8}});
   for (const auto& descriptor : {in_order, turned}) {
     const auto layout = parse_configuration(descriptor);
@@ -76,7 +76,7 @@ TEST_CASE("a damaged configuration descriptor is refused, wherever the damage is
   auto other_type = sound;
   other_type[1] = std::byte{1};
   CHECK(refused_as(other_type, "damaged"));
-  for (const std::size_t at : {0u, 9u, 18u, 27u, 34u, 41u, 50u}) {  // the length of each descriptor
+  for (const std::size_t at : {0u, 9u, 18u, 27u, 34u, 41u, 50u}) {  // offset of each descriptor's length
     for (const unsigned length : {0u, 1u, 255u}) {
       auto damaged = sound;
       damaged[at] = static_cast<std::byte>(length);
@@ -86,7 +86,7 @@ TEST_CASE("a damaged configuration descriptor is refused, wherever the damage is
   auto cut = sound;
   cut.pop_back();
   CHECK(refused_as(cut, "damaged"));
-  for (std::size_t size = 0; size < sound.size(); ++size)  // never read beyond the end, always a sentence
+  for (std::size_t size = 0; size < sound.size(); ++size)  // never reads beyond the end and always throws a message
     CHECK_THROWS_AS(parse_configuration({sound.data(), size}), device::Error);
 }
 

@@ -1,4 +1,4 @@
-// An arm on a cable: hidapi for reports, libusb for the scope, both replaced by a fake USB.
+// An arm on a USB cable: hidapi for reports and libusb for the scope, both replaced by a fake USB.
 #include <doctest/doctest.h>
 
 #include <libusb-1.0/libusb.h>
@@ -60,7 +60,7 @@ TEST_CASE("the scope is read from the arm with this serial number, where its des
   usb.add_arm("other");
   usb.add_arm("this").vendor_id = 0x1234;
   usb.add_arm("this").product_id = 2;
-  usb.add_arm("locked").open_result = LIBUSB_ERROR_ACCESS;  // not ours to open, and not what is looked for
+  usb.add_arm("locked").open_result = LIBUSB_ERROR_ACCESS;  // access is denied, and the serial number differs
   auto& arm = usb.add_arm("this", 0, 0x83);
   {
     const auto transport = device::open_transport(arm.endpoint());
@@ -70,10 +70,10 @@ TEST_CASE("the scope is read from the arm with this serial number, where its des
     CHECK(usb.endpoints_under_way(arm).empty());
 
     transport->claim_scope();
-    transport->claim_scope();  // once is enough
+    transport->claim_scope();  // a second claim has no effect
     CHECK(arm.claimed == std::set<int>{0});
     CHECK(usb.endpoints_under_way(arm) == std::vector<std::uint8_t>(21, 0x83));
-    usb.send_bulk(arm, {});  // nothing
+    usb.send_bulk(arm, {});  // an empty transfer
     for (int i = 0; i < 100; ++i) usb.send_bulk(arm, bulk_number(i));
     for (int i = 0; i < 100; ++i) {
       REQUIRE(transport->read_bulk(buffer, 5s) == 100);
@@ -95,7 +95,7 @@ TEST_CASE("a scope that another program has claimed costs only the scope") {
     Bytes report(4, std::byte{0x10});
     CHECK(transport->get_feature(report) == 4);
     arm.taken.clear();
-    transport->claim_scope();  // it is free again
+    transport->claim_scope();
     CHECK(arm.claimed == std::set<int>{1});
   }
   CHECK(usb.open_things == 0);
@@ -241,8 +241,8 @@ TEST_CASE("a session whose scope breaks connects anew, and goes on with it") {
     CHECK(eventually([&] { return !usb.endpoints_under_way(arm).empty(); }));
     CHECK(eventually([&] { return session.status().connection == device::Connection::connected; }));
     const int searches_before = searches;
-    usb.send_bulk(arm, bulk_number(1));  // may be the rest of a frame that was begun before
-    usb.send_bulk(arm, bulk_number(2));  // malformed, so it is counted half a second later
+    usb.send_bulk(arm, bulk_number(1));  // may be the rest of a frame that began earlier
+    usb.send_bulk(arm, bulk_number(2));  // malformed; the session counts it half a second later
     CHECK(eventually([&] { return session.status().scope_frames_malformed == 1; }));
     CHECK(searches == searches_before);
   }
@@ -270,7 +270,7 @@ TEST_CASE("a reader who stops reading the scope loses the oldest, and what is ke
     ++count;
   }
   CHECK(count >= kept);
-  CHECK(count <= kept + 1);  // the newest may have come while the oldest was read
+  CHECK(count <= kept + 1);  // the newest transfer may have arrived during the first read
 }
 
 TEST_CASE("reports pass through hidapi as they are") {
@@ -328,7 +328,7 @@ TEST_CASE("a refused request is distinguished from an unplugged cable by the dev
   };
   SUBCASE("it answers another request") {
     arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = Bytes(4);
-    arm.hides = true;  // which the answer makes unimportant
+    arm.hides = true;  // ignored, because the device answers
     check_refused();
   }
   SUBCASE("it answers none, and is listed") { check_refused(); }

@@ -1,4 +1,4 @@
-// What the device's tests would have to wait long for.
+// Time limits of a USB/IP connection that would make the device tests slow.
 #include <doctest/doctest.h>
 
 #include <sys/socket.h>
@@ -29,7 +29,7 @@ TEST_CASE("a request that is not answered in time is taken back, and the connect
   CHECK(eventually([&] { return server.transfers_taken_back() == 1; }));
   CHECK(server.waiting_transfers(0) == 0);
   server.holds_requests = false;
-  CHECK(eventually([&] {  // on a busy computer 50 ms are short
+  CHECK(eventually([&] {  // 50 ms can be too short on a busy computer
     try {
       return device_descriptor().size() == 18;
     } catch (const device::Error&) {

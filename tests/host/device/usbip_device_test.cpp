@@ -1,5 +1,5 @@
-// The device library against a USB/IP server: identity, poses, commands, parameters, scope, and every way in
-// which the other end can fail.
+// The device library against a USB/IP server: identity, poses, commands, parameters, scope, and every possible
+// failure of the server.
 #include <doctest/doctest.h>
 
 #include <cerrno>
@@ -75,7 +75,7 @@ TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
   CHECK(information.serial_number == "0123456789ABCDEF01234567");
   CHECK(information.force_law->name == "box");
   CHECK_FALSE(arm->read_pose(1ms));
-  server.send(1, Bytes(5, std::byte{1}));  // not a pose: passed over
+  server.send(1, Bytes(5, std::byte{1}));  // not a pose, so it is ignored
   server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
   server.send(1, {});
   for (std::uint32_t i = 0; i < 100; ++i) server.send(1, bytes_of(pose_number(i)));
@@ -96,7 +96,7 @@ TEST_CASE("enough transfers are under way that a late reader loses nothing; the 
   arm->information();
   CHECK(server.waiting_transfers(2) == 0);
   for (int i = 0; i < 2; ++i) arm->select_signals(std::vector{protocol::Signal::force_N});
-  CHECK(eventually([&] { return server.waiting_transfers(2) >= 20; }));  // 20 frames of 6 KiB are 100 ms
+  CHECK(eventually([&] { return server.waiting_transfers(2) >= 20; }));  // 20 frames of 6 KiB cover 100 ms
   arm->information();
   CHECK(server.waiting_transfers(2) == 21);
 }
@@ -164,7 +164,7 @@ TEST_CASE("what was written is waited for until the device has all of it, or tak
   const auto arm = device::Device::open(server.endpoint());
   CHECK(arm->wait_until_written(0ms));
   for (int i = 0; i < 2; ++i) arm->send(protocol::Command::heartbeat);
-  arm->information();  // requests and answers come in order
+  arm->information();  // requests and answers arrive in order
   server.answer_output();
   arm->information();
   CHECK_FALSE(arm->wait_until_written(0ms));
@@ -198,11 +198,11 @@ TEST_CASE("how long a device takes no command counts from the one that it took l
   };
   const auto send_the_next = [&] {
     auto sent = std::async(std::launch::async, [&] { arm->send(protocol::Command::heartbeat); });
-    CHECK(sent.wait_for(100ms) == std::future_status::timeout);  // it waits for room
+    CHECK(sent.wait_for(100ms) == std::future_status::timeout);  // the call blocks until the queue has room
     server.answer_output();
     CHECK_NOTHROW(sent.get());
   };
-  pass(1000);  // a second in which no command was sent
+  pass(1000);  // one second without a command
   for (int i = 0; i < 16; ++i) arm->send(protocol::Command::heartbeat);
   send_the_next();
   for (int i = 0; i < 2; ++i) {
@@ -280,7 +280,7 @@ TEST_CASE("what answers but does not speak USB/IP 1.1.1 is told so") {
 TEST_CASE("a server that lists more devices than there can be is not listened to") {
   FakeUsbipServer server;
   server.spoil_reply = [](Bytes& reply) {
-    constexpr std::size_t count_at = 8;  // behind the header
+    constexpr std::size_t count_at = 8;  // after the header
     for (std::size_t i = 0; i < 4; ++i) reply[count_at + i] = std::byte{0xFF};
     reply.resize(count_at + 4);
   };
@@ -289,7 +289,7 @@ TEST_CASE("a server that lists more devices than there can be is not listened to
 }
 
 TEST_CASE("one program works with one force law at a time, and says which is in its way") {
-  const auto report_of = [](const std::string& name) {  // one parameter without unit and help
+  const auto report_of = [](const std::string& name) {  // one parameter without unit and help text
     Bytes report{std::byte{0x15}, std::byte{1}, {}, {}, {}, {}};
     const auto text = [&](const std::string& characters) {
       for (const char c : characters + '\0') report.push_back(static_cast<std::byte>(c));
@@ -306,13 +306,13 @@ TEST_CASE("one program works with one force law at a time, and says which is in 
   other.spoil[protocol::ReportId::force_law] = [&](Bytes& report) { report = report_of("magnet"); };
   auto arm = device::Device::open(server.endpoint());
   CHECK(arm->information().force_law->name == "spring");
-  CHECK_THROWS_AS(arm->parameters(), device::Incompatible);  // it tells those of the table only
+  CHECK_THROWS_AS(arm->parameters(), device::Incompatible);  // the server sends the parameters of the table only
   const auto message = message_of<device::Error>([&] { device::Device::open(other.endpoint()); });
   CHECK(contains(message, "force law magnet, but this program works with spring"));
   arm.reset();
   CHECK_NOTHROW(device::Device::open(other.endpoint()));
   FakeUsbipServer without_rows;
-  CHECK_NOTHROW(device::Device::open(without_rows.endpoint()));  // the tables are as they were
+  CHECK_NOTHROW(device::Device::open(without_rows.endpoint()));  // the tables are restored
 }
 
 TEST_CASE("commands carry version and a token that is never 0") {
@@ -326,13 +326,13 @@ TEST_CASE("commands carry version and a token that is never 0") {
   CHECK(commands[0].token != commands[1].token);
   CHECK(commands[300].command == protocol::Command::test_current);
   CHECK(commands[300].test.motor == 2);
-  CHECK(float{commands[300].test.amplitude} == 0.5f);  // a copy: in the report it may lie anywhere
+  CHECK(float{commands[300].test.amplitude} == 0.5f);  // a copy, because the member may be unaligned in the report
 }
 
 TEST_CASE("a sign of life goes out 200 control periods after the last command, and no sooner") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
-  const auto commands_sent = [&] {  // commands arrive in order, so the count is complete when this one is there
+  const auto commands_sent = [&] {  // commands arrive in order, so the count is complete once this command has arrived
     const auto token = arm->send(protocol::Command::clear_fault);
     REQUIRE(eventually([&] { return !server.commands().empty() && server.commands().back().token == token; }));
     return server.commands().size();
@@ -349,7 +349,7 @@ TEST_CASE("a sign of life goes out 200 control periods after the last command, a
   };
   CHECK(heartbeats_after(199) == 0);
   std::this_thread::sleep_for(20ms);
-  CHECK(heartbeats_after(0) == 0);  // its time stands still
+  CHECK(heartbeats_after(0) == 0);  // board time does not advance
   CHECK(heartbeats_after(200) == 1);
   CHECK(heartbeats_after(20'000) == 1);
 }
@@ -374,7 +374,7 @@ TEST_CASE("poses, frames, samples and transactions are on one time that does not
   server.send(2, scope_frame(arm->select_signals(std::array{protocol::Signal::force_N}), 90, 0.5f));
   CHECK(arm->read_scope(60s)->first_period == wrap + 90);
   const device::ParameterChange change{protocol::Parameter::force_limit_N, 1.0f};
-  CHECK(arm->set_parameters({&change, 1}).applied_at_periods == wrap + 100);  // as this server says of the first one
+  CHECK(arm->set_parameters({&change, 1}).applied_at_periods == wrap + 100);  // the first time that this server returns
 }
 
 TEST_CASE("the begin of the newest frame of the bus is told as the device counts it") {
@@ -426,7 +426,7 @@ TEST_CASE("a device names its board, also where it is refused") {
     const auto told = device::Device(device::open_transport(server.endpoint())).information();
     CHECK(told.firmware_version == "0.7.0");
     CHECK(told.protocol_version == 11);
-    CHECK(told.report.servo_rate_Hz == 0);  // what stands there is something else
+    CHECK(told.report.servo_rate_Hz == 0);  // the field has another meaning in this version
   }
 }
 
@@ -482,10 +482,10 @@ TEST_CASE("a reader who stops reading the scope says so by taking a transfer bac
   server.send(2, Bytes(4));
   REQUIRE(eventually([&] { return server.waiting_transfers(2) == under_way - 2; }));
   CHECK(server.transfers_taken_back() == 1);
-  for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));  // those still count
+  for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));  // these transfers still count
   REQUIRE(eventually([&] { return server.waiting_transfers(2) == 0; }));
   Bytes information(sizeof(protocol::InformationReport), static_cast<std::byte>(protocol::ReportId::information));
-  transport->get_feature(information);  // the answers before this one have come: room is made by reading only
+  transport->get_feature(information);  // earlier answers have arrived; only reading makes room
   Bytes transfer(64);
   for (std::size_t i = 0; i < kept + under_way - 2; ++i) REQUIRE(transport->read_bulk(transfer, 60s) == 4);
   CHECK(eventually([&] { return server.waiting_transfers(2) == under_way; }));
@@ -512,7 +512,7 @@ TEST_CASE("who selects no signals any more has given the scope back, and may hav
 TEST_CASE("the scope is given back by a transfer that is taken back, also where all had ended") {
   FakeUsbipServer server;
   const auto transport = device::open_transport(server.endpoint());
-  transport->release_scope();  // which it does not have
+  transport->release_scope();  // has no effect, because the scope is not claimed
   transport->claim_scope();
   constexpr std::size_t kept = 682, under_way = 21;
   for (std::size_t i = 0; i < kept; ++i) server.send(2, Bytes(4));
@@ -520,7 +520,7 @@ TEST_CASE("the scope is given back by a transfer that is taken back, also where 
   for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));
   REQUIRE(eventually([&] { return server.waiting_transfers(2) == 0; }));
   Bytes information(sizeof(protocol::InformationReport), static_cast<std::byte>(protocol::ReportId::information));
-  transport->get_feature(information);  // the answers before this one have come
+  transport->get_feature(information);  // earlier answers have arrived
   transport->release_scope();
   CHECK(server.transfers_taken_back() == 2);
   CHECK(server.waiting_transfers(2) == 0);

@@ -1,5 +1,5 @@
-// What a program asks of a device over USB/IP: parameters as transactions, forces and shapes; and every way in which
-// the device may refuse.
+// Requests of a program to a device over USB/IP: parameter transactions, forces and shapes, and every possible
+// refusal.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -154,7 +154,7 @@ TEST_CASE("forces reach the device as they were asked, numbered from 0, beside t
 
 TEST_CASE("shapes reach the device as one report, as long as its planes are many") {
   FakeUsbipServer server;
-  std::atomic<int> busy = 2;  // as long as the interrupt has not taken those before
+  std::atomic<int> busy = 2;  // busy until the interrupt has applied the previous shapes
   server.judge_shapes = [&] {
     return busy > 0 ? (--busy, protocol::RequestResult::busy) : protocol::RequestResult::accepted;
   };

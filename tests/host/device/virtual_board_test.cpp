@@ -1,4 +1,4 @@
-// How the virtual board's program is started and ended, with shell scripts in its place.
+// Start and exit of the virtual board's process; shell scripts replace the program.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -21,7 +21,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A program in a folder of its own that is gone after the test.
+/// A program in a temporary folder that is deleted after the test.
 class Script {
  public:
   explicit Script(const std::string& lines) {
@@ -30,7 +30,7 @@ class Script {
   }
   std::filesystem::path program() const { return folder_ / "board"; }
   device::VirtualBoardOptions options() const { return {.program = program(), .elf = program()}; }
-  /// What the script wrote into the file of this name; empty if it did not.
+  /// Content of the file with this name that the script wrote; empty if the file does not exist.
   std::string file(const char* name) const {
     std::string line;
     std::getline(std::ifstream(folder_ / name), line);
@@ -161,7 +161,7 @@ TEST_CASE("a terminal's Ctrl-C does not reach a virtual board, and no file but i
     const device::VirtualBoard board(script.options());
     CHECK(script.file("group") == script.file("process"));
     CHECK(script.file("twice").empty());
-    CHECK(open_files() == open_before + 2);  // to read from; if one to write to were left, its end would not be seen
+    CHECK(open_files() == open_before + 2);  // two read ends; an open write end would prevent end-of-file
   }
   CHECK(open_files() == open_before);
 }

@@ -1,4 +1,4 @@
-// How long a device is waited for.
+// Time limits of reads from a device.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A device that is silent for as long as it is told to.
+/// A device that sends nothing for the requested time.
 class SilentTransport final : public device::Transport {
  public:
   explicit SilentTransport(std::vector<std::chrono::milliseconds>& waited) : waited_(waited) {}
@@ -39,14 +39,14 @@ class SilentTransport final : public device::Transport {
 
 }  // namespace
 
-// Of a millisecond some nanoseconds have passed when the transport is asked. Who reads in a loop would never rest if
-// that were no wait at all.
+// Some nanoseconds of the last millisecond have passed when the transport is called. A timeout rounded down to 0
+// would turn a reading loop into a busy loop.
 TEST_CASE("a device is waited for also in the last millisecond") {
   std::vector<std::chrono::milliseconds> waited;
   device::Device device(std::make_unique<SilentTransport>(waited));
   const auto waits = [&](const auto& read) {
     waited.clear();
-    for (int i = 0; i < 100; ++i) CHECK_FALSE(read());  // a busy computer may take the millisecond itself
+    for (int i = 0; i < 100; ++i) CHECK_FALSE(read());  // a busy computer may use up the millisecond
     return std::ranges::count(waited, 1ms) > 0;
   };
   CHECK(waits([&] { return device.read_pose(1ms); }));

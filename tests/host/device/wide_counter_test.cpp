@@ -1,4 +1,4 @@
-// Counters of the board beyond their 32 bits.
+// Extension of the board's 32-bit counters.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -33,7 +33,7 @@ TEST_CASE("values may come out of order, from either side of the wrap") {
   CHECK(counter.nearest(3) == wrap + 3);  // a sample that is newer than the newest pose
   CHECK(counter.note(2) == wrap + 2);
   CHECK(counter.nearest(0xFFFF'FFFF) == wrap - 1);  // an event that the previous pose did not contain
-  CHECK(counter.note(0xFFFF'FFFF) == wrap - 1);     // which does not take the newest value back
+  CHECK(counter.note(0xFFFF'FFFF) == wrap - 1);     // the newest value does not decrease
   CHECK(counter.nearest(0x8000'0001) == wrap + 0x8000'0001);
   CHECK(counter.nearest(0x8000'0003) == 0x8000'0003);
 }

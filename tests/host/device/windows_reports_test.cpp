@@ -1,5 +1,5 @@
-// The device library and the firmware's USB device, with Windows between them: it pads what a program sends, and asks
-// for the largest report. A change of the firmware that refuses such lengths fails here.
+// The device library and the firmware's USB device with the report lengths of Windows. Windows pads written reports
+// and requests the largest report length. The test fails if the firmware refuses such lengths.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ using tests::FakeUsb;
 
 namespace {
 
-/// Carries reports to a USB device that runs in this process.
+/// Passes reports to a USB device in this process.
 class BenchTransport final : public device::Transport {
  public:
   explicit BenchTransport(test::DeviceBench& bench) : bench_(bench) {
     bench_.configure();
-    bench_.link.program.take_shapes();  // none, from the reset
+    bench_.link.program.take_shapes();  // the reset removed all shapes
   }
 
   std::size_t read_report(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
@@ -61,7 +61,6 @@ class BenchTransport final : public device::Transport {
   device::Endpoint endpoint_{};
 };
 
-/// An arm on a computer with Windows.
 struct WindowsArm {
   WindowsArm() {
     usb.is_windows = true;

@@ -1,4 +1,4 @@
-// Commands and time on a device that is slow to answer.
+// Commands and waiting times on a device that answers slowly.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -15,14 +15,14 @@ using protocol::Command;
 
 namespace {
 
-/// A device that carries its commands out `latency` poses after they came. Between two of its poses 10 ms pass, so the
-/// host has a sign of life to send each time.
+/// A device that executes commands `latency` poses after it receives them. Two poses are 10 ms apart, so the host has
+/// to send a heartbeat each time.
 class SlowTransport final : public device::Transport {
  public:
   SlowTransport(int latency, std::deque<protocol::CommandReport>& received) : latency_(latency), received_(received) {}
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
-    if (timeout.count() == 0) return 0;  // one pose a slice
+    if (timeout.count() == 0) return 0;  // one pose per slice
     ++pose_.sequence;
     pose_.time_periods += 200;
     for (; !waiting_.empty() && waiting_.front().due <= pose_.sequence; waiting_.pop_front())
@@ -34,7 +34,7 @@ class SlowTransport final : public device::Transport {
     protocol::CommandReport command;
     std::memcpy(&command, report.data(), sizeof command);
     received_.push_back(command);
-    // What comes in one frame is carried out together, and a pose shows only the last token.
+    // Commands of one bus frame are executed together, and a pose contains only the last token.
     const std::uint32_t due = pose_.sequence + static_cast<std::uint32_t>(latency_);
     if (latency_ > 0) waiting_.push_back({due - due % 2, command.token});
   }
@@ -50,7 +50,7 @@ class SlowTransport final : public device::Transport {
     std::uint32_t due;
     std::uint8_t token;
   };
-  int latency_;  ///< 0: it carries nothing out
+  int latency_;  ///< 0: no command is executed
   std::deque<protocol::CommandReport>& received_;
   std::deque<Waiting> waiting_;
   protocol::PoseReport pose_{.report_id = protocol::ReportId::pose};
@@ -64,7 +64,7 @@ TEST_CASE("a sign of life that overtakes a command's answer does not hide it") {
   device::Device device(std::make_unique<SlowTransport>(4, received));
   PacedDevice paced(device, nullptr);
   std::size_t enabled = 0;
-  // More commands than there are tokens, so that they begin anew on the way.
+  // More commands than tokens, so that the tokens wrap.
   for (int i = 0; i < 300; ++i) paced.command(Command::enable_force);
   for (const auto& report : received) enabled += report.command == Command::enable_force;
   CHECK(enabled == 300);

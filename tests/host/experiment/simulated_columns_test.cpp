@@ -1,4 +1,4 @@
-// What the simulation knew stands beside what the device told, period by period.
+// The simulated quantities are stored next to the device's signals, one row per period.
 #include <doctest/doctest.h>
 
 #include <experiment/simulated_columns.hpp>
@@ -18,7 +18,7 @@ Recording recorded(std::uint32_t first_period, std::size_t samples) {
   return recording;
 }
 
-/// As a virtual board gives it: every quantity is the period, plus a thousandth for each place in the row.
+/// A trace as a virtual board sends it: each quantity is the period plus a thousandth of its column number.
 device::Trace trace_of(std::uint64_t first_period, std::size_t rows) {
   device::Trace trace;
   trace.columns = {"period", "board_time_s"};

@@ -78,7 +78,7 @@ TEST_CASE("a file that is no program for the chip's flash is refused with a sent
 TEST_CASE("an image is objected to for another board, another protocol, damage, and for saying nothing") {
   const auto there = identity_of("omni_driver");
   CHECK(objections(image_of(made_segments(identity_of("omni_driver"))), there).empty());
-  CHECK(objections(image_of(made_segments(identity_of("other_board"))), {}).empty());  // nobody knows
+  CHECK(objections(image_of(made_segments(identity_of("other_board"))), {}).empty());  // unknown board
 
   const auto only_objection = [&](const Image& image) {
     const auto all = objections(image, there);
@@ -115,7 +115,7 @@ TEST_CASE("an image that is older than the firmware that is there needs consent 
     CHECK_NOTHROW(insist(older, there, Consent::to_everything));
     CHECK_NOTHROW(insist(older, {}, Consent::none));
   }
-  // Consent to a downgrade is none to an image that is wrong.
+  // Consent to a downgrade does not permit an invalid image.
   const auto wrong = image_of(made_segments(protocol::image_identity("other_board", 1, 0, 0)));
   CHECK_THROWS_AS(insist(wrong, there, Consent::to_downgrade), Objected);
   const auto said = message_of<Objected>([&] { insist(wrong, there, Consent::none); });
@@ -138,7 +138,7 @@ TEST_CASE("memory layouts are read as ST writes them") {
     CHECK(parse_memory_layout(text).empty());
   }
   const auto image = image_of(made_segments(identity_of("omni_driver")));
-  CHECK(sectors_of(image, sectors) == std::vector{sectors[0], sectors[4]});  // and none between
+  CHECK(sectors_of(image, sectors) == std::vector{sectors[0], sectors[4]});  // and no sector between them
 }
 
 TEST_CASE("of the option bytes only the brown-out level changes") {
@@ -151,7 +151,7 @@ TEST_CASE("of the option bytes only the brown-out level changes") {
   CHECK((*changed)[0] == std::byte{0xE3});
   CHECK(std::equal(changed->begin() + 1, changed->end(), options.begin() + 1));
   CHECK_FALSE(with_brown_out_level_3(*changed).has_value());
-  // One that is read-protected, or was not read rightly, is left alone: 0xCC would lock the chip for ever.
+  // Read-protected or misread option bytes are not changed. Protection level 2 (0xCC) would lock the chip permanently.
   for (const int protection : {0x00, 0xCC, 0xFF, 0x55}) {
     options[1] = std::byte(protection);
     CHECK_THROWS_AS(with_brown_out_level_3(options), device::Error);
@@ -180,7 +180,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   REQUIRE(before.has_value());
   CHECK(before->board_name() == "omni_driver");
   CHECK(content()[parameters] == 'p');
-  CHECK(content()[unused] == '\xFF');  // it shares a sector with the image
+  CHECK(content()[unused] == '\xFF');  // this file area shares a sector with the image
 
   const auto other = image_of(made_segments(identity_of("other_board")));
   CHECK_THROWS_AS(write_flash_file(file, other, Consent::none), Objected);
@@ -209,12 +209,12 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
                "no flash of a virtual board"));
 
   {
-    const local::OwnedFile owned(file);  // as a board's
+    const local::OwnedFile owned(file);  // as a running board owns its file
     CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
                    "is in use by"));
   }
 
-  // As large as a flash, but somebody's pictures.
+  // A file of the flash size that is not a flash image.
   const std::string pictures(protocol::flash_bytes, 'P');
   std::ofstream(file, std::ios::binary) << pictures;
   CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
@@ -234,7 +234,7 @@ TEST_CASE("what may be a chip's flash begins with vectors into it, or erased") {
   CHECK(with_vectors(0x2000'0000, 0x080F'FFFF));
   CHECK_FALSE(with_vectors(0x2000'0000, 0xFFFF'FFFF));
   CHECK_FALSE(with_vectors(0xFFFF'FFFF, 0x0000'0201));
-  CHECK_FALSE(with_vectors(0x2000'0000, 0x0800'0200));  // no Thumb code
+  CHECK_FALSE(with_vectors(0x2000'0000, 0x0800'0200));  // not Thumb code
   CHECK_FALSE(with_vectors(0x2000'0000, 0x0810'0001));
   CHECK_FALSE(with_vectors(0x2000'0000, 0x07FF'FFFF));
   CHECK(with_vectors(0x2000'0000, 0x0800'0201));

@@ -1,4 +1,4 @@
-// Images that say what a test wants.
+// Firmware images whose content the test chooses.
 #pragma once
 
 #include <elf.h>
@@ -10,7 +10,6 @@
 
 namespace inkwell::tests {
 
-/// An ELF with these load segments.
 inline std::vector<std::byte> made_elf(const std::vector<firmware_update::Segment>& segments) {
   Elf32_Ehdr header{};
   std::memcpy(header.e_ident, ELFMAG, SELFMAG);
@@ -35,10 +34,10 @@ inline std::vector<std::byte> made_elf(const std::vector<firmware_update::Segmen
   return file;
 }
 
-/// Vectors with this identity behind them, some code in another sector, and the checksum of both.
+/// Vectors followed by this identity, code in another sector, and the checksum of both.
 inline std::vector<firmware_update::Segment> made_segments(const protocol::ImageIdentity& identity) {
   std::vector<firmware_update::Segment> segments{
-      {protocol::image_begin, std::vector<std::byte>(firmware_update::identity_end + 2)},  // whole words
+      {protocol::image_begin, std::vector<std::byte>(firmware_update::identity_end + 2)},  // multiple of the word size
       {protocol::image_begin + 0x1'0000, std::vector<std::byte>(4000)}};
   constexpr std::uint32_t vectors[] = {0x2001'0000, protocol::image_begin + 0x1'0001};
   std::memcpy(segments[0].bytes.data(), vectors, sizeof vectors);

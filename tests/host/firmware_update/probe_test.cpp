@@ -1,4 +1,4 @@
-// An update by a debug probe: what openocd is called with, where it runs, and when its work counts as done.
+// Updates with a debug probe: openocd's arguments, its folder, and the condition for success.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -42,7 +42,7 @@ std::map<std::uint32_t, std::byte> bytes_of(const Image& image) {
   return bytes;
 }
 
-/// What a file in Intel HEX puts at which address.
+/// Bytes of an Intel HEX file by their address.
 std::map<std::uint32_t, std::byte> bytes_of_hex(const std::string& text) {
   std::map<std::uint32_t, std::byte> bytes;
   std::uint32_t upper = 0;
@@ -79,7 +79,7 @@ std::string begin_of_flash(const protocol::ImageIdentity& identity) {
   return bytes;
 }
 
-/// An `openocd` that comes first on PATH: a script that supplies the begin of the flash, or notes its arguments, its
+/// An `openocd` script that comes first on PATH. It supplies the first bytes of the flash, or logs its arguments, its
 /// folder and the files there.
 class FakeOpenocd {
  public:
@@ -96,7 +96,7 @@ class FakeOpenocd {
     fs::permissions(program, fs::perms::owner_all);
     path_before_ = std::getenv("PATH");
     setenv("PATH", (bin.string() + ":" + path_before_).c_str(), 1);
-    // Where openocd would look for its scripts first if it ran in the user's folder.
+    // openocd would search for its scripts here first if it ran in the user's folder.
     folder_before_ = fs::current_path();
     fs::create_directories(directory_ / "here/interface");
     std::ofstream(directory_ / "here/interface/stlink.cfg") << "shutdown\n";

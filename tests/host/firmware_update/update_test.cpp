@@ -1,4 +1,4 @@
-// The order of an update, against a loader that remembers it.
+// The order of the steps of an update, against a loader that records them.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using Bytes = std::vector<std::byte>;
 
 constexpr std::uint32_t options_address = 0x1FFF'C000;
 
-/// ST's loader as far as an update uses it: flash at one address, option bytes at another.
+/// The parts of ST's loader that an update uses: flash at one address, option bytes at another.
 class FakeLoader final : public device::ControlChannel {
  public:
   FakeLoader() { options[1] = std::byte{0xAA}; }
@@ -78,10 +78,10 @@ class FakeLoader final : public device::ControlChannel {
   std::map<std::uint32_t, std::byte> flash;
   std::array<std::byte, 16> options{};
   std::vector<std::string> did;
-  std::optional<std::uint32_t> spoilt;  ///< what is read there is another byte
+  std::optional<std::uint32_t> spoilt;  ///< reading this address returns another byte
   std::size_t dies_after = 0;
   bool gone = false;
-  unsigned state = 10;  ///< somebody has left it in an error
+  unsigned state = 10;  ///< dfuERROR, left by another program
 
  private:
   Bytes status() {
@@ -116,7 +116,7 @@ TEST_CASE("vectors go first and come last, and the brown-out level is set once a
   auto written =
       write_image(loader, image, {.on_progress = [&](std::string_view, double done) { progress.push_back(done); }});
   CHECK_FALSE(written.before.has_value());
-  CHECK(written.has_set_brown_out == false);  // all bits of the fake's are 0
+  CHECK(written.has_set_brown_out == false);  // all option bits of the fake are 0
   CHECK(fake.did ==
         std::vector<std::string>{"erase 0", "erase 65536", "write 65536", "write 67584", "write 0", "leave"});
   CHECK(std::ranges::is_sorted(progress));
@@ -129,7 +129,7 @@ TEST_CASE("vectors go first and come last, and the brown-out level is set once a
   CHECK(written.has_set_brown_out);
   CHECK(fake.options[0] == std::byte{0xE0});
   CHECK(fake.options[1] == std::byte{0xAA});
-  CHECK(fake.did.back() == "options");  // with which the chip resets itself
+  CHECK(fake.did.back() == "options");  // writing the option bytes resets the chip
 }
 
 TEST_CASE("what the board holds may choose the image") {
@@ -205,7 +205,7 @@ TEST_CASE("before the first erase an update ends with the board as it was") {
     fake.did.clear();
     const auto other = read_image(made_elf(made_segments(protocol::image_identity("other", 1, 2, 3))), "other.elf");
     CHECK_THROWS_AS(write_image(loader, other, {}), Objected);
-    CHECK(fake.did == std::vector<std::string>{"leave"});  // back to its firmware
+    CHECK(fake.did == std::vector<std::string>{"leave"});  // starts the firmware again
     return;
   }
   SUBCASE("an older image") {

@@ -1,5 +1,5 @@
-// A device for guides without any USB: three windings with their current loops, joints and switches that the test
-// moves, and a record of everything that was asked of it.
+// A device for guides without USB: three windings with current loops, joints and switches that the test moves, and a
+// log of all requests.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ class FakeArm final : public guides::DevicePort {
     now_.pose = pose;
   }
 
-  // ---- what guides ask of it ----
+  // ---- requests of the guides ----
   void send(protocol::Command command) override {
     commands.push_back(command);
     if (command == protocol::Command::disable_force) left_ = 0;
@@ -66,7 +66,7 @@ class FakeArm final : public guides::DevicePort {
   }
   void select_signals(std::vector<protocol::Signal> signals) override { selected = std::move(signals); }
 
-  // ---- what the test does with it ----
+  // ---- actions of the test ----
   void unplug() {
     now_.connected = false;
     now_.pose.reset();
@@ -77,7 +77,7 @@ class FakeArm final : public guides::DevicePort {
   const guides::Observation& now() const { return now_; }
   bool current_flows() const { return std::abs(current_A_) > 0.01; }
 
-  /// One millisecond, then the guide looks.
+  /// Lets one millisecond pass, then steps the guide.
   void pass_millisecond(guides::Guide& guide) {
     if (now_.connected) {
       ++now_.pose->sequence;
@@ -96,7 +96,7 @@ class FakeArm final : public guides::DevicePort {
     }
     guide.advance(now_, *this);
   }
-  /// Until it is over or asks; agrees to everything while `agrees`.
+  /// Runs until the guide is over or asks; confirms every question if `agrees` is set.
   void run(guides::Guide& guide, bool agrees, int limit_ms = 10'000) {
     for (int ms = 0; ms < limit_ms && !guide.is_over(); ++ms) {
       if (guide.phase() == guides::Phase::asks) {
@@ -131,7 +131,7 @@ class FakeArm final : public guides::DevicePort {
                  integral_V_;
     }
     if (left_ == 0) integral_V_ = 0;
-    // What is computed now acts one period later.
+    // The new voltage acts one period later.
     const double decay = std::exp(-period_s * winding.resistance_ohm / winding.inductance_H);
     const double final_A = acting_V_ / winding.resistance_ohm;
     current_A_ = final_A + (current_A_ - final_A) * decay;

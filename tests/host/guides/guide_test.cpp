@@ -1,4 +1,4 @@
-// The step machines: consent before anything moves, cancel, a device that goes away, apply.
+// The guides' steps: consent before any motion, cancellation, a disconnected device, and applying the results.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 bool no_current_was_asked(const FakeArm& arm) { return arm.pulses.empty(); }
 
-/// The last thing sent switches force and pulses off.
+/// The last requests switched the force and the pulses off.
 void check_left_safe(const FakeArm& arm) {
   REQUIRE(!arm.commands.empty());
   CHECK(arm.commands.back() == Command::disable_force);
@@ -36,7 +36,7 @@ void run_to_step(FakeArm& arm, Guide& guide, std::size_t step) {
 }
 
 guides::CurrentLoopOptions one_motor(double bandwidth_Hz = 600) { return {{2}, bandwidth_Hz}; }
-constexpr std::size_t identify_step = 1, trial_step = 3;  // after the inkwell; after the step response of now
+constexpr std::size_t identify_step = 1, trial_step = 3;  // after the inkwell; after the first step response
 
 void run_into_trial(FakeArm& arm, Guide& guide) {
   run_to_step(arm, guide, trial_step);
@@ -70,7 +70,7 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   CHECK(details["motors"][0]["circuit_resistance_ohm"].get<double>() == doctest::Approx(3.0).epsilon(0.01));
   CHECK(details["motors"][0]["inductance_H"].get<double>() == doctest::Approx(0.4e-3).scale(0).epsilon(0.02));
 
-  // Tried and put back: two transactions, and the device holds what it held.
+  // The values were tried and restored: two transactions, and the device has its previous values.
   REQUIRE(arm.transactions.size() == 2);
   CHECK(arm.parameters() == protocol::default_parameters());
   REQUIRE(guide.findings().proposals.size() == 3);
@@ -161,7 +161,7 @@ TEST_CASE("cancel in the trial puts the old gains back") {
   arm.pass_millisecond(guide);
   CHECK(arm.parameters() == protocol::default_parameters());
   CHECK(guide.at_rest());
-  guide.apply(arm);  // a cancelled guide has nothing to apply
+  guide.apply(arm);  // a canceled guide has nothing to apply
   CHECK(arm.parameters() == protocol::default_parameters());
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("a device that goes away ends the guide with a sentence; what was on t
   CHECK(guide.outcome().find("went away in the step \"Step response with the suggested gains\"") != std::string::npos);
   CHECK(guide.outcome().find("on trial") != std::string::npos);
   CHECK(guide.outcome().find("Connect it again") != std::string::npos);
-  REQUIRE(arm.transactions.size() == 2);  // queued for the reconnection
+  REQUIRE(arm.transactions.size() == 2);  // queued until the reconnection
   CHECK(arm.transactions[1][0].second == protocol::default_parameters()[Parameter::current_proportional_gain_V_per_A]);
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("every guide survives a device that goes away at any moment") {
     arm.unplug();
     for (int ms = 0; ms < 5; ++ms) arm.pass_millisecond(guide);
     if (had_begun) CHECK(guide.phase() == Phase::failed);
-    if (after_ms == 0) CHECK(guide.phase() == Phase::working);  // still waits to be connected
+    if (after_ms == 0) CHECK(guide.phase() == Phase::working);  // still waits for the connection
   }
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
   for (const bool encoder_wrong : {false, true})
     for (const bool motor_wrong : {false, true}) {
       FakeArm arm;
-      // The fake's joints follow the sign that the encoder shows.
+      // The fake's joints follow the sign of the encoder.
       arm.motor_turns_backward = motor_wrong != encoder_wrong;
       Guide guide = guides::directions_guide.start();
       for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
@@ -274,10 +274,10 @@ TEST_CASE("joint stops need both ends before the button counts, and trust decide
     rest(1, -0.49f);
     guide.confirm();
     for (int ms = 0; ms < 10; ++ms) arm.pass_millisecond(guide);
-    CHECK(guide.step_index() == 1);  // only one stop so far
+    CHECK(guide.step_index() == 1);  // one of two stops is known
     rest(1, 0.49f);
     guide.confirm();
-    // Joint 2: all is well. Joint 3 (absolute): stops 0.2 rad higher than the limits, joint 2 at 1.0.
+    // Joint 2 is correct. Joint 3 (absolute) has stops 0.2 rad above the limits while joint 2 is at 1.0.
     rest(2, 0.0f);
     rest(2, 1.75f);
     guide.confirm();
@@ -330,7 +330,7 @@ TEST_CASE("potentiometers are fitted between the stops that are given") {
   arm.pass_millisecond(guide);
   INFO(guide.outcome());
   REQUIRE(guide.phase() == Phase::finished);
-  REQUIRE(guide.findings().proposals.size() == 2);  // the other axes agree
+  REQUIRE(guide.findings().proposals.size() == 2);  // the other axes are correct
   CHECK(guide.findings().proposals[0].parameter == Parameter::gimbal_1_slope_rad);
   CHECK(guide.findings().proposals[0].proposed == doctest::Approx(5.0).epsilon(0.001));
   CHECK(guide.findings().proposals[1].proposed == doctest::Approx(-2.5).epsilon(0.001));

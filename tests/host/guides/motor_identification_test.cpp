@@ -18,8 +18,8 @@ struct Motor {
   double resistance_ohm, inductance_H, dead_time_V = 0.43, back_emf_V_at_end = 0;
 };
 
-/// The exact answer of a motor in steps a hundred times finer than a control period, sampled and rounded as the board
-/// does: 2 mA of noise, 2 mA a step.
+/// Exact response of a motor in steps of 1/100 control period, sampled and rounded as on the board, with 2 mA noise
+/// and 2 mA resolution.
 VoltagePulse pulse_of(const Motor& motor, double voltage_V, std::mt19937& random, double delay_s = period_s) {
   std::normal_distribution<double> noise(0, 0.002);
   constexpr int before = 20, on = 200, after = 40, fine = 100;

@@ -1,4 +1,3 @@
-// One test pulse and what the scope shows of it.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -56,7 +55,7 @@ TEST_CASE("a pulse whose samples were lost is made again when the one before is 
   scope.shows(1.0f, 60);
   CHECK_FALSE(recorder.advance(pose, port));
   CHECK(port.pulses == 1);
-  scope.shows(0.0f, 99);  // the rest of the first pulse, in which the board takes no other
+  scope.shows(0.0f, 99);  // the rest of the first pulse, during which the board accepts no other pulse
   CHECK_FALSE(recorder.advance(pose, port));
   CHECK(port.pulses == 1);
   scope.shows(0.0f, 5);

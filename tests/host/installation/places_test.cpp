@@ -1,4 +1,4 @@
-// Where programs of a build find its parts. tests/installation looks at those of an installation.
+// Paths of the installed parts for programs in the build folder. tests/installation checks installed programs.
 #include <doctest/doctest.h>
 
 #include <filesystem>

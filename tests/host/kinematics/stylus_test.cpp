@@ -16,7 +16,7 @@ constexpr float quarter_rad = std::numbers::pi_v<float> / 2;
 
 control::Arm arm() { return control::prepare(protocol::default_parameters()).arm; }
 
-/// The forearm hangs down and joint 1 points ahead.
+/// The forearm points down and joint 1 points forward.
 std::array<float, 3> hanging() { return {0.0f, 0.0f, -arm().elbow_offset_rad - quarter_rad}; }
 
 void check_close(const glm::vec3& is, const glm::vec3& expected) { CHECK(glm::length(is - expected) < 1e-5f); }
@@ -33,7 +33,7 @@ TEST_CASE("with the gimbal at zero the stylus points from the base to the user, 
 TEST_CASE("the waist takes the stylus with it") {
   auto joint_rad = hanging();
   joint_rad[0] = quarter_rad;
-  // Left is positive: who faces the user turns towards -x.
+  // Left is positive: a stylus that points toward the user turns toward -x.
   check_close(kinematics::stylus_rotation(joint_rad, {}, arm())[2], {-1, 0, 0});
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("yaw, pitch and roll turn about forearm, side and stylus, with the sig
   const auto stylus = [](std::array<float, 3> gimbal_rad) {
     return kinematics::stylus_rotation(hanging(), gimbal_rad, arm());
   };
-  // Where the back of the stylus goes; its tip stays.
+  // Direction of the back of the stylus; its tip does not move.
   check_close(stylus({quarter_rad, 0, 0})[2], {-1, 0, 0});
   check_close(stylus({0, quarter_rad, 0})[2], {0, -1, 0});
   check_close(stylus({0, 0, quarter_rad})[2], {0, 0, 1});

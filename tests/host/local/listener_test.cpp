@@ -1,4 +1,4 @@
-// Sockets that listen for programs of this computer: who can connect, and what becomes of their files.
+// Sockets for programs on this computer: access rights and removal of the socket files.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>
@@ -37,7 +37,7 @@ mode_t mode_of(const fs::path& file) {
   return status.st_mode & 07777;
 }
 
-/// A socket whose program has ended without removing it.
+/// A socket file that its program did not remove.
 void leave_behind(const fs::path& path) {
   const pid_t child = fork();
   if (child == 0) {
@@ -48,7 +48,7 @@ void leave_behind(const fs::path& path) {
   REQUIRE(fs::is_socket(path));
 }
 
-/// The environment is as before at the end.
+/// Restores the environment variable at the end.
 class Environment {
  public:
   Environment(const char* name, const std::string& value) : name_(name) {
@@ -114,7 +114,7 @@ TEST_CASE("a socket is refused in a folder that other users can change") {
     CHECK(contains(sentence, "--test: unix:"));
     CHECK(contains(sentence, "other users may change its folder"));
   }
-  fs::permissions(directory.path(), fs::perms::all | fs::perms::sticky_bit);  // as /tmp
+  fs::permissions(directory.path(), fs::perms::all | fs::perms::sticky_bit);  // mode of /tmp
   CHECK(refusal({.path = directory / "socket"}).empty());
   CHECK(contains(refusal({.path = directory / "nowhere/socket"}), "folder does not exist"));
 }

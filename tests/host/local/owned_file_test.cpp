@@ -1,4 +1,4 @@
-// Files that one program has at a time.
+// Files that one program owns at a time.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -48,7 +48,7 @@ std::string refusal(const fs::path& file) {
 
 std::string of_this_process() { return "(process " + std::to_string(getpid()) + ")"; }
 
-/// A process that does something, then waits until it is killed.
+/// A process that calls a function and then waits until it is killed.
 class Child {
  public:
   explicit Child(const std::function<void()>& action) {
@@ -201,7 +201,7 @@ TEST_CASE("a program that was started meanwhile does not keep the file") {
     std::array<char*, 3> words{program, time, nullptr};
     REQUIRE(posix_spawn(&process, program, nullptr, nullptr, words.data(), environ) == 0);
   }
-  // The system closes the new program's files a moment after it has let this one go on.
+  // The system closes the new program's files shortly after posix_spawn returns.
   for (int tries = 0; tries < 1000 && !refusal(file).empty(); ++tries) std::this_thread::sleep_for(10ms);
   CHECK(refusal(file).empty());
   kill(process, SIGKILL);

@@ -1,4 +1,4 @@
-// What a forked child finds of its parent's mutexes and descriptors.
+// State of the parent's mutexes and descriptors in a forked child.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -18,7 +18,6 @@ std::mutex fork_test_mutex;
 std::recursive_mutex fork_test_recursive_mutex;
 const process::HeldAtFork fork_test_held(fork_test_mutex), fork_test_recursive_held(fork_test_recursive_mutex);
 
-/// Whether `condition` holds in a child.
 bool in_child(const std::function<bool()>& condition) {
   const pid_t child = fork();
   if (child == 0) {
@@ -73,7 +72,7 @@ TEST_CASE("in a child the parent's descriptor leads nowhere, and the parent keep
     CHECK(write(ends[1], &byte, 1) == 1);
     CHECK(read(ends[0], &byte, 1) == 1);
   }
-  CHECK(in_child([&] { return write(ends[1], &byte, 1) == 1; }));  // no object owns it any more
+  CHECK(in_child([&] { return write(ends[1], &byte, 1) == 1; }));  // the descriptor has no owner any more
   CHECK(read(ends[0], &byte, 1) == 1);
   close(ends[0]);
   close(ends[1]);

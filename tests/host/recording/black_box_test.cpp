@@ -1,4 +1,4 @@
-// A black box becomes a recording like every other, with a millisecond between its samples.
+// Conversion of a black box into a recording with 1 ms between its samples.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t step = protocol::black_box_step_periods;
 
-/// A fault in period 2047: rows before it, its own, out of step with them, and those after it.
+/// A fault in period 2047: rows before it, its row outside the 1 ms grid, and rows after it.
 std::vector<BlackBoxRow> rows() {
   std::vector<BlackBoxRow> rows;
   for (const std::uint32_t period : {2000, 2020, 2040, 2047, 2067, 2087}) {

@@ -1,4 +1,4 @@
-// Figures of a step of current, from answers whose figures are known.
+// Figures of a current step, from responses with known figures.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using recording::current_step;
 
 namespace {
 
-/// A first-order answer with the given time constant and overshoot added to its plateau's first sample.
+/// A first-order response with this time constant; the overshoot is added to the plateau's first sample.
 std::vector<float> answer(double amplitude_A, double time_constant_s, std::size_t begin, std::size_t end,
                           std::size_t size) {
   std::vector<float> current_A(size, 0.0f);

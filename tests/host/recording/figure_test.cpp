@@ -1,4 +1,4 @@
-// Figures of recordings: panes by unit, and a picture with something on it.
+// Figures of recordings: panes by unit, and the drawn lines.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -43,7 +43,6 @@ Recording wave(std::uint32_t samples) {
   return recording;
 }
 
-/// Signals that keep one value each.
 Recording constant(const std::vector<std::pair<Quantity, float>>& values, std::uint32_t samples) {
   Recording recording;
   recording.information.parameters = protocol::default_parameters();
@@ -61,11 +60,11 @@ Recording constant(const std::vector<std::pair<Quantity, float>>& values, std::u
   return recording;
 }
 
-// The first colours of a pane's lines, and where the panes lie in the picture.
+// The first line colors of a pane, and the positions of the panes in the picture.
 constexpr Colour blue{0x00, 0x72, 0xb2}, vermilion{0xd5, 0x5e, 0x00}, green{0x00, 0x9e, 0x73}, purple{0xcc, 0x79, 0xa7};
 constexpr std::size_t first_pane = 120, pane_height = 320, pane_step = 360, plot_left = 190, plot_right = 1225;
 
-/// The rows of a pane that a horizontal line of a colour fills, in the middle; none if there is no such line.
+/// Middle row of a pane's horizontal line with this color; empty if there is no such line.
 std::optional<double> line_at(const Image& image, std::size_t pane, Colour colour) {
   double sum = 0;
   int rows = 0;
@@ -84,7 +83,7 @@ std::optional<double> line_at(const Image& image, std::size_t pane, Colour colou
   return sum / rows;
 }
 
-/// Number of names beside a pane. A font may leave some empty rows between a name's letters and its underscores.
+/// Number of names next to a pane. A font may leave some empty rows between a name's letters and its underscores.
 int names_beside(const Image& image, std::size_t pane) {
   constexpr std::size_t names_left = 1330, gap_between_names = 6;
   int names = 0;
@@ -120,7 +119,7 @@ TEST_CASE("samples that are far apart are drawn at their own times") {
   recording.columns[0][0] = recording.columns[0][1] = 0.0f;
   const TemporaryDirectory directory;
   draw_figure(recording, {}, directory / "a.png");
-  // Up at a twentieth of the time, and from there on level.
+  // The line rises within the first twentieth of the time and is level after that.
   CHECK(line_at(read_png(directory.file("a.png")), 0, blue));
 }
 
@@ -135,7 +134,7 @@ TEST_CASE("there is one pane for each unit, and its axis says quantity and unit"
   CHECK(panes[2].label == "duty");
   const auto cycles = figure_panes({Signal::servo_cycles, Signal::stage_pose_cycles, Signal::stage_contact_cycles});
   REQUIRE(cycles.size() == 1);
-  CHECK(cycles[0].label == "cycles");  // three quantities have no room beside the axis
+  CHECK(cycles[0].label == "cycles");  // three quantity names do not fit next to the axis
 }
 
 TEST_CASE("a figure grows with its panes and shows what is asked for") {
@@ -188,7 +187,7 @@ TEST_CASE("every line of a full pane is named beside it") {
   draw_figure(constant(currents, 100), {}, directory / "a.png");
   const auto image = read_png((directory / "a.png").string());
   CHECK(names_beside(image, 0) == 9);
-  // None is cut at the picture's edge.
+  // No text is cut at the picture's edge.
   for (std::size_t y = 0; y < image.height; ++y) REQUIRE(image.at(image.width - 2, y).red == 255);
 }
 

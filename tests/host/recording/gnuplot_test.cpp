@@ -1,4 +1,4 @@
-// What gnuplot makes of names that a file supplies: it draws them and does nothing else.
+// Names from a file are drawn by gnuplot and never executed.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -31,7 +31,7 @@ Recording named(const std::string& name) {
   return recording;
 }
 
-/// What gnuplot prints of a text that was quoted for it.
+/// Output of gnuplot for a quoted text.
 std::string printed_by_gnuplot(const std::string& text) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.gnuplot") << "set print 'printed'\nprint " << gnuplot_text(text) << "\n";
@@ -57,7 +57,7 @@ TEST_CASE("gnuplot prints a quoted text as it is, whatever is in it") {
 TEST_CASE("no name in a figure runs a command") {
   const TemporaryDirectory directory;
   const std::string marker = directory.file("marker"), command = "`touch " + marker + "`";
-  // gnuplot joins a line that ends in a backslash with the next one, and a zero byte ends a line for it.
+  // gnuplot joins a line that ends in a backslash with the next line and ends a line at a zero byte.
   Recording base = named("arm"), over = named("arm");
   base.information.arm = std::string("joined\\\0", 8);
   over.name = command;

@@ -1,4 +1,4 @@
-// HDF5 files that declare something else than a recording does: each is refused with a sentence.
+// HDF5 files that differ from a recording: each is refused with a message.
 #include <doctest/doctest.h>
 
 #include <hdf5.h>
@@ -70,7 +70,7 @@ hid_t chunks_of(hsize_t length) {
   return properties;
 }
 
-/// In the place of an attribute of the file, filled with 'A'.
+/// Replaces an attribute of the file; the new attribute is filled with 'A'.
 void put_attribute(hid_t file, const char* name, hid_t type, hid_t space) {
   if (H5Aexists(file, name) > 0) H5Adelete(file, name);
   const hid_t attribute = H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
@@ -82,7 +82,7 @@ void put_attribute(hid_t file, const char* name, hid_t type, hid_t space) {
   H5Aclose(attribute);
 }
 
-/// In the place of a dataset of the file, without values.
+/// Replaces a dataset of the file; the new dataset has no values.
 void put_dataset(hid_t file, const char* path, hid_t type, hid_t space, hid_t properties = H5P_DEFAULT) {
   H5Ldelete(file, path, H5P_DEFAULT);
   const hid_t dataset = H5Dcreate2(file, path, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
@@ -90,14 +90,14 @@ void put_dataset(hid_t file, const char* path, hid_t type, hid_t space, hid_t pr
   H5Dclose(dataset);
 }
 
-/// A file with a good recording, before it is spoilt.
+/// A file with a valid recording that the test changes.
 struct Spoilt {
   TemporaryDirectory directory;
   fs::path file = directory / "a.h5";
 
   Spoilt() { save(good_recording(), file); }
 
-  /// What reading says once the file was changed.
+  /// Error message of reading the changed file.
   std::string after(const std::function<void(hid_t)>& change) const {
     {
       const hid_t access = H5Pcreate(H5P_FILE_ACCESS);

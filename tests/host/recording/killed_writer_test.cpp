@@ -1,4 +1,4 @@
-// An HDF5 recording whose program was killed, at any of the writes of its file.
+// HDF5 recordings of a program that was killed at any write to its file.
 #include <doctest/doctest.h>
 
 #include <hdf5.h>
@@ -21,7 +21,7 @@ std::function<void()> before_each_write;
 
 }  // namespace
 
-/// In the place of the C library's, which HDF5 would call.
+/// Replaces the C library's function, which HDF5 would call.
 extern "C" ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t offset) {
   if (before_each_write) before_each_write();
   return syscall(SYS_pwrite64, descriptor, bytes, count, offset);
@@ -32,7 +32,7 @@ using namespace inkwell::recording;
 
 namespace {
 
-constexpr std::uint32_t step_periods = 1000;  // so that a chunk is small, and there are many
+constexpr std::uint32_t step_periods = 1000;  // small chunks, so that there are many
 constexpr std::uint32_t samples_of_a_flush = 300, flushes = 6;
 
 Information about() {
@@ -48,7 +48,7 @@ Information about() {
 
 float value_of(std::uint32_t sample) { return 1.0f / (1.0f + static_cast<float>(sample)); }
 
-/// Calls `at_begin` once the head is written.
+/// Calls `at_begin` after the header is written.
 void write_recording(const std::filesystem::path& file, const std::function<void()>& at_begin) {
   const auto writer = create(file, about());
   at_begin();
@@ -72,7 +72,7 @@ void write_recording(const std::filesystem::path& file, const std::function<void
 TEST_CASE("an HDF5 recording can be opened by every program, whichever write its own was killed at") {
   const tests::TemporaryDirectory directory;
   const auto file = directory / "a.h5";
-  // A killed program leaves the file as it was before the write that it did not come to.
+  // A killed program leaves the file in the state before the write that it did not reach.
   int copies = 0;
   const auto copy_of = [&](int number) { return directory / (std::to_string(number) + ".h5"); };
   write_recording(file, [&] { before_each_write = [&] { std::filesystem::copy_file(file, copy_of(copies++)); }; });
@@ -81,7 +81,7 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
   std::size_t most = 0, unreadable = 0;
   for (int i = 0; i < copies; ++i) {
     CAPTURE(i);
-    // As h5py, Octave and MATLAB do, which ask for nothing special.
+    // As h5py, Octave and MATLAB open a file, with default properties.
     const hid_t opened = H5Fopen(copy_of(i).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     REQUIRE(opened >= 0);
     H5Fclose(opened);
@@ -101,7 +101,7 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
     most = std::max(most, recording.size());
   }
   CHECK(most > samples_of_a_flush * (flushes - 1));
-  // While HDF5 moves half of a full node of 64 chunks into a new one, a column is in between: once here, in each.
+  // While HDF5 splits a full node of 64 chunks, the column is unreadable. This happens once per column here.
   const std::size_t columns = 2 + about().signals.size();
   CHECK(unreadable <= columns);
 }

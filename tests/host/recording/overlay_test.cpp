@@ -1,4 +1,4 @@
-// Two recordings on one time: by their begins, by a mark, with gaps.
+// Two recordings on a common time axis: aligned by their starts or by a mark, and with gaps.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using protocol::Signal;
 
 namespace {
 
-/// One signal, whose value is how many periods have passed since the first sample.
+/// One signal, whose value is the number of periods since the first sample.
 Recording ramp(const std::string& name, std::uint32_t first_period, std::size_t count) {
   Recording recording = Recording::without_samples({.signals = {Signal::force_N}});
   recording.name = name;
@@ -50,7 +50,7 @@ TEST_CASE(
   CHECK(names("/monday/arm/push.h5", "/tuesday/arm/push.h5") == "monday/arm/push tuesday/arm/push");
   CHECK(names("/push.h5", "/tuesday/push.h5") == "push tuesday/push");
   CHECK(names("/a/push.h5", "/a/push.csv") == "push.h5 push.csv");
-  CHECK(names("/a/push.h5", "/a/../a/push.h5") == "push push");  // it is the same
+  CHECK(names("/a/push.h5", "/a/../a/push.h5") == "push push");  // the same file
 }
 
 TEST_CASE("a mark that both hold aligns them") {
@@ -68,7 +68,7 @@ TEST_CASE("a mark that both hold aligns them") {
   const auto message = message_of<device::Error>([&] { Overlay(over, base, "only here"); });
   CHECK(message.find("over has no mark `only here`") != std::string::npos);
   CHECK(message.find("`only there`") != std::string::npos);
-  // The other way round it begins before.
+  // With the recordings exchanged, the second recording starts earlier.
   CHECK(Overlay(base, over, "touch").beside(over.samples(0, 1)).values[0] == 20.0f);
 }
 

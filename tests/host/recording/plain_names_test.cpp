@@ -1,4 +1,4 @@
-// Names and texts that a file supplies: what is printed and written again of them.
+// Names and texts from a file: the characters that are printed and written to other files.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -54,7 +54,7 @@ TEST_CASE("texts of a recording are plain once it is read") {
   const TemporaryDirectory directory;
   save(named(hostile), directory / "a.h5");
   check_is_plain(directory / "a.h5");
-  // A CSV has its texts in lines.
+  // A CSV file stores its texts in comment lines.
   std::string one_line = hostile;
   std::replace(one_line.begin(), one_line.end(), '\n', '\r');
   std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# created_utc = " << one_line
@@ -68,7 +68,7 @@ TEST_CASE("texts of a recording are plain once it is read") {
   CHECK(contains(remarks[1], "The signal ?[1m of "));
   std::ofstream(directory / "b.csv") << "# inkwell recording = 1\ntime_s,force_N\n0.0,\x1B]0;title\x07\n";
   CHECK(contains(message_of<device::Error>([&] { read(directory / "b.csv"); }), "\"?]0;title?\""));
-  // One name more: that of the file.
+  // The file name is printed too.
   fs::rename(directory / "a.h5", directory / "\x1B[5m.h5");
   CHECK(read(directory / "\x1B[5m.h5").name == "?[5m");
 }
@@ -95,7 +95,7 @@ TEST_CASE("a force law of a recording cannot name a signal with anything but let
     CHECK((read_back.information.force_law != nullptr) == is_known);
     if (is_known) CHECK(std::to_integer<char>((*read_back.information.force_law)[14]) == '?');
   }
-  device::join_tables({});  // without the law's rows, as before
+  device::join_tables({});  // removes the force law's rows
 }
 
 TEST_CASE("a new recording's arm and marks have one line each") {

@@ -1,4 +1,4 @@
-// Recordings: what is written comes back, also after a crash, on a full disk, or from a damaged file.
+// Recordings: the written data can be read again, also after a crash, with a full disk, or from a damaged file.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -56,9 +56,9 @@ device::ScopeSamples samples(std::int64_t first_period, std::size_t count) {
   return samples;
 }
 
-const std::string long_text(120, 'x');  // as long as HDF5's place for it
+const std::string long_text(120, 'x');  // the length that HDF5 reserves for a text
 
-/// With a gap, and beside the signals what a simulation knew.
+/// A recording with a gap and with simulated quantities next to the signals.
 Recording simulated() {
   auto recording = Recording::without_samples(about());
   recording.append(samples(300, 5000));
@@ -73,7 +73,7 @@ Recording simulated() {
   return recording;
 }
 
-/// Replaces a column by one of 32-bit numbers, as earlier versions wrote them.
+/// Replaces a column by 32-bit numbers, as earlier versions wrote it.
 void write_as_32_bits(const fs::path& file, const char* column, const std::vector<std::uint32_t>& values) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   REQUIRE(opened >= 0);
@@ -106,7 +106,7 @@ void check_is_whole(const Recording& recording, std::int64_t first_period, std::
   CHECK(wrong == 0);
 }
 
-/// Nobody said that this was the end, and nothing that was written is lost.
+/// The file is marked as incomplete, and no written sample is lost.
 void check_broke_off(const fs::path& file) {
   const auto recording = read(file);
   CHECK_FALSE(recording.complete);
@@ -215,7 +215,7 @@ TEST_CASE("a recording that cannot be saved leaves the one before as it is") {
   waitpid(child, &result, 0);
   CHECK(WEXITSTATUS(result) == 42);
   CHECK(read(directory / "a.csv").size() == 10);
-  CHECK(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()) == 1);  // no half of the new
+  CHECK(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()) == 1);  // no partial file
 }
 
 TEST_CASE("a recording is cut to a part of its samples") {
@@ -239,7 +239,7 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
   const TemporaryDirectory directory;
   Recorder recorder(directory / "a.h5", about());
   auto first = samples(100, 10);
-  first.lost_before = 77;  // before the recording began: not its loss
+  first.lost_before = 77;  // lost before the recording began, so not counted
   recorder.push(first);
   auto second = samples(130, 10);
   second.lost_before = 20;
@@ -296,7 +296,7 @@ TEST_CASE("a board that was restarted ends the recording") {
 TEST_CASE("an arm is known by its parameters if it is the default one") {
   device::Information device{.firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
   auto parameters = protocol::default_parameters();
-  parameters[Parameter::box_minimum_x_m] = -0.01f;  // the user's, not the arm's
+  parameters[Parameter::box_minimum_x_m] = -0.01f;  // a value of the user, not of the arm
   CHECK(describe(device, parameters, {}, "", false).arm == "PHANTOM Omni");
   CHECK(describe(device, parameters, {}, "another", false).arm == "another");
   parameters[Parameter::link_2_m] = 0.2f;
@@ -310,7 +310,7 @@ TEST_CASE("samples are found by their time") {
   CHECK(recording.sample_at(0) == 0);
   CHECK(recording.sample_at(50e-6) == 1);
   CHECK(recording.sample_at(51e-6) == 2);
-  CHECK(recording.sample_at(150e-6) == 3);  // in the gap: the first one after it
+  CHECK(recording.sample_at(150e-6) == 3);  // in the gap: the first sample after it
   CHECK(recording.sample_at(1) == 5);
   CHECK_THROWS_AS(recording.column(Signal::force_N), device::Error);
 }
@@ -321,7 +321,7 @@ TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") 
   CHECK_THROWS_AS(Recorder(directory / "a.h5", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "a.mat", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "missing" / "a.h5", about()), device::Error);
-  // What is no disk is not called a full one.
+  // An error that is not a full disk is not reported as a full disk.
   const auto refusal = message_of<device::Error>([] { Recorder("/proc/a.h5", about()); });
   CHECK(refusal.find("the system refused it") != std::string::npos);
   CHECK(fs::file_size(directory / "a.h5") == 8);
@@ -335,7 +335,7 @@ TEST_CASE("a recording survives the death of its program") {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
-      // Writes for ever and is killed in the middle of it.
+      // Writes until it is killed.
       Recorder recorder(file, about());
       for (std::uint32_t period = 0;; period += 100) {
         recorder.push(samples(period, 100));
@@ -388,7 +388,7 @@ TEST_CASE("a full disk ends the recording with a sentence and keeps what was wri
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
-      // A limit of the file's size stands in for the end of the disk: the same system call fails.
+      // A limit of the file size replaces a full disk, because the same system call fails.
       std::signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{2'000'000, 2'000'000};
       setrlimit(RLIMIT_FSIZE, &limit);

@@ -1,4 +1,4 @@
-// A replay gives what the recording holds, once and in order, at the speed that was asked for.
+// A replay returns the recorded samples once, in order and at the requested speed.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using protocol::SimulatedQuantity;
 
 namespace {
 
-/// Every value is the sample's control period, plus a thousandth for each place in the list of signals.
+/// Every value is the sample's control period plus a thousandth of the signal's list position.
 Recording recorded(std::vector<Signal> signals,
                    std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> stretches) {
   Recording recording;
@@ -40,7 +40,7 @@ std::size_t count_of(const Replay::Passed& passed) {
 TEST_CASE("a replay gives every sample once, in order, and stops at the end") {
   Replay replay(recorded({Signal::force_N, Signal::duty_1}, {{1000, 20'001}}));
   CHECK(replay.duration_s() == doctest::Approx(1.0));
-  CHECK(count_of(replay.advance(0.5, 1)) == 1);  // stands still on its first sample
+  CHECK(count_of(replay.advance(0.5, 1)) == 1);  // stays at its first sample
   CHECK(replay.position_s() == 0);
   replay.play();
   std::uint32_t expected_period = 1001;
@@ -59,7 +59,7 @@ TEST_CASE("a replay gives every sample once, in order, and stops at the end") {
   CHECK(expected_period == 21'001);
   CHECK(passed_s == doctest::Approx(1.0).epsilon(0.02));
   CHECK(replay.position_s() == doctest::Approx(1.0));
-  replay.play();  // once more from the start
+  replay.play();  // from the start again
   const auto again = replay.advance(0.0, 1);
   CHECK(again.starts_anew);
   CHECK(again.blocks.front().first_period == 1000);
@@ -170,5 +170,5 @@ TEST_CASE("signals are chosen by name") {
   CHECK(parse_quantities("force_N,true_current_3_A,force_N") ==
         std::vector<Quantity>{Signal::force_N, SimulatedQuantity::true_current_3_A});
   CHECK_THROWS_AS(parse_quantities("true_curent_3_A"), device::Error);
-  CHECK_THROWS_AS(parse_signals("true_current_3_A"), device::Error);  // no board can record it
+  CHECK_THROWS_AS(parse_signals("true_current_3_A"), device::Error);  // no board can record this quantity
 }

@@ -1,4 +1,4 @@
-// The judge of a soak, told what boards might do.
+// The soak's oracle with simulated observations of boards.
 #include <soak/oracle.hpp>
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ using protocol::State;
 
 namespace {
 
-/// A board that is looked at every 5 ms; its poses come once in between.
+/// A board that is checked every 5 ms and sends one pose in between.
 struct Watched {
   Oracle oracle;
   double now_s = 1.0;
@@ -55,7 +55,7 @@ TEST_CASE("force that is asked for, given up, and asked for again is no finding"
   Watched board;
   board.switch_on();
   board.oracle.give_up_force(0.0);
-  board.step(State::active);  // a pose of before
+  board.step(State::active);  // a pose that was sent earlier
   board.steps(20, State::ready);
   board.switch_on();
   board.check_nothing();

@@ -1,4 +1,4 @@
-// What a soak draws: decks, transactions that are legal, transactions that are not.
+// The random plans of a soak: actions, valid transactions and invalid transactions.
 #include <soak/plan.hpp>
 #include <soak/storm.hpp>
 
@@ -18,7 +18,7 @@ using protocol::Refusal;
 
 namespace {
 
-/// What the firmware makes of it.
+/// The firmware's verdict on the changes.
 link::ParameterCheck checked(const Changes& changes, const ParameterSet& now, bool force_is_on) {
   protocol::ParametersReport report{};
   report.report_id = protocol::ReportId::parameters;

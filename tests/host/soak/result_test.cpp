@@ -1,4 +1,3 @@
-// What a soak tells: table, JSON, and how to see a finding again.
 #include <soak/result.hpp>
 #include <soak/run.hpp>
 

@@ -1,4 +1,4 @@
-// On what boards a soak runs, with a shell script in their place.
+// The boards that a soak runs; a shell script replaces the program.
 #include <soak/run.hpp>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Nothing overlaps in any window, and its height is shared in proportion.
+// No parts overlap in any window size, and the height is shared proportionally.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -66,7 +66,7 @@ TEST_CASE("a higher window gives scene and scope more in proportion") {
 
 TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
   WindowSettings settings;
-  settings.scope_part = 0.9f;  // more than there is room for
+  settings.scope_part = 0.9f;  // more than the available height
   const ImVec2 window{1280, 800};
   const LayoutNeeds needs{46, 0, 0, 0};
   const auto before = layout_of(window, needs, settings, 1.0f);

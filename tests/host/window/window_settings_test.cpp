@@ -1,4 +1,4 @@
-// Settings survive a round trip, and damage to their file never keeps the window shut.
+// Settings can be written and read again, and a damaged file never prevents the window from opening.
 #include <filesystem>
 #include <iterator>
 
@@ -62,7 +62,7 @@ TEST_CASE("settings are kept in a file, whose folder need not exist; what preven
   CHECK(write_settings(settings, file).empty());
   CHECK(read_settings(file) == settings);
   const std::filesystem::directory_iterator left(file.parent_path());
-  CHECK(std::distance(left, {}) == 1);  // nothing unfinished
+  CHECK(std::distance(left, {}) == 1);  // no temporary file remains
   CHECK(read_settings(directory.file("none.toml")) == WindowSettings{});
   CHECK(write_settings(settings, "/proc/none/window.toml").find("/proc/none/window.toml") != std::string::npos);
 }

@@ -1,5 +1,5 @@
-// Closes its arm in the destructor of an object that lives as long as the program, when what belongs to the main thread
-// is gone, and asks the library before that for all that it keeps.
+// Closes its arm in the destructor of a global object, after the thread-local objects of the main thread were
+// destroyed. Before that it requests all data that the library stores.
 #include <cstdio>
 
 #include <inkwell/inkwell.h>

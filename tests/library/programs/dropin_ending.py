@@ -19,7 +19,7 @@ class ErrorInfo(ctypes.Structure):
 
 
 hd = ctypes.CDLL(dropins / "libHD.so", mode=ctypes.RTLD_GLOBAL)
-TICKS = 500  # in which the force comes on
+TICKS = 500  # time for the force to rise
 if interface == "hdapi":
     FORCE_OUTPUT = 0x4000
     left = TICKS

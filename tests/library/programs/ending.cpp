@@ -1,5 +1,5 @@
-// Opens the arm of INKWELL_DEVICE, carries out one command through the C or the C++ interface, says so, and ends in one
-// of several ways: ending c|cpp COMMAND close|exit|kill|wait
+// Opens the arm of INKWELL_DEVICE, executes one command through the C or the C++ interface and prints `returned`.
+// Then it ends in the requested form: ending c|cpp COMMAND close|exit|kill|wait
 #include <unistd.h>
 
 #include <csignal>
@@ -68,7 +68,7 @@ int main(int, char** arguments) {
       if (ending == "close") require(inkwell_close(arm));
       end(ending);
     } else {
-      auto* arm = new inkwell::Arm;  // exit() leaves it open
+      auto* arm = new inkwell::Arm;  // exit() leaves the arm open
       in_cpp.at(command)(*arm);
       if (ending == "close") delete arm;
       end(ending);

@@ -1,4 +1,4 @@
-% As ending.cpp, through the Octave functions: ending.m COMMAND close|exit|kill|wait
+% Counterpart of ending.cpp for the Octave functions: ending.m COMMAND close|exit|kill|wait
 sigterm_dumps_octave_core(false);  % the test ends a waiting program with SIGTERM
 arguments = argv();
 [command, ending] = arguments{end-1:end};

@@ -14,7 +14,7 @@
 
 namespace {
 
-/// As programs have it: its destructor closes the arm in each process.
+/// A global object, as programs use it: its destructor closes the arm in each process.
 struct LateArm {
   inkwell_arm* arm = nullptr;
   ~LateArm() { inkwell_close(arm); }
@@ -93,7 +93,7 @@ void open_another() {
   }
 }
 
-/// The exit code; 99 if a signal ended it, as the alarm does if it hangs.
+/// The exit code; 99 if a signal, such as the alarm after a deadlock, ended the child.
 int wait_for(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);
@@ -105,7 +105,7 @@ void fork_and_wait(int round) {
   const pid_t child = fork();
   if (child == 0) {
     alarm(120);
-    if (round % 2 == 0) call_everything();  // else its destructors meet the arm as it is
+    if (round % 2 == 0) call_everything();  // odd rounds: destructors only
     if (round == 0) open_another();
     std::exit(0);
   }

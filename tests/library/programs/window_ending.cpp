@@ -1,4 +1,4 @@
-// As ending.cpp, for the window without its display: it carries out what was asked for before it is closed.
+// Counterpart of ending.cpp for the window without a display: it executes the requested command before it closes.
 // window_ending COMMAND exit|wait
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// The bytes of every message, against the tables of the Linux kernel's Documentation/usb/usbip_protocol.rst.
+// Bytes of every message, from the tables of the Linux kernel's Documentation/usb/usbip_protocol.rst.
 #include <doctest/doctest.h>
 
 #include <algorithm>

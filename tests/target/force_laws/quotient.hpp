@@ -1,5 +1,4 @@
-// A law that divides by what the user gives it, to see what becomes of a division by zero, and that shows what it is
-// told.
+// A force law that divides by a parameter, to test a division by zero. Its signals show some of its inputs.
 #pragma once
 
 #include <control/force_law.hpp>

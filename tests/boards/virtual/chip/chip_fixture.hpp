@@ -1,4 +1,4 @@
-// What the chip is tested with: a circuit that writes down every edge, and the test firmwares.
+// Fixture of the chip tests: the test firmwares, and a circuit that records every edge.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -64,8 +64,8 @@ inline std::string firmware_path(const std::string& name) {
   return std::string(INKWELL_BUILD_DIRECTORY) + "/chip-firmware/" + name + ".elf";
 }
 
-/// A chip in its circuit, running a test firmware from reset. A rule of silicon that the firmware breaks fails the
-/// test, unless it says that it is about that.
+/// A chip in its circuit that runs a test firmware from reset. A violated hardware rule fails the test, unless the test
+/// expects violations.
 struct ChipUnderTest {
   explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact, Pricing pricing = Pricing::likely)
       : chip(circuit, options(mode, pricing)) {

@@ -1,4 +1,4 @@
-// The cycle model on the running chip: counts that follow from the manuals, the same in both modes.
+// Cycle counts that follow from the manuals, on the running chip and in both modes.
 #include <doctest/doctest.h>
 
 #include "chip_fixture.hpp"
@@ -8,7 +8,6 @@ using namespace inkwell::virtual_board::test;
 
 namespace {
 
-/// What the micro-programs have counted.
 struct Measured : ChipUnderTest {
   explicit Measured(Mode mode, Pricing pricing = Pricing::likely) : ChipUnderTest("cycles", mode, pricing) {
     run_for(0.1);
@@ -23,15 +22,16 @@ TEST_SUITE("virtual chip: cycles") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);
-      // A slice of exact mode may end between two loads that would have gone in a row.
+      // In exact mode a time slice may end between two loads that would otherwise be pipelined.
       const auto about = [](double cycles) { return doctest::Approx(cycles).epsilon(0.02); };
       CHECK(test.result(1) == about(32));      // additions
-      CHECK(test.result(2) == about(32));      // wide ones: a word a cycle is just what the core fetches
-      CHECK(test.result(3) == about(32 * 4));  // two loads in a row take three
+      CHECK(test.result(2) == about(32));      // 32-bit instructions: one word per cycle equals the fetch rate of the
+                                               // core
+      CHECK(test.result(3) == about(32 * 4));  // two pipelined loads take three cycles
       CHECK(test.result(4) == about(32 * 2));
-      CHECK(test.result(5) == about(32 * 5));  // the address comes from the instruction before
-      CHECK(test.result(6) == about(32 * 2));  // a sum that is used at once
-      CHECK(test.result(7) == about(32 * 2));  // two sums that take turns
+      CHECK(test.result(5) == about(32 * 5));  // the previous instruction computes the address
+      CHECK(test.result(6) == about(32 * 2));  // a sum that the next instruction uses
+      CHECK(test.result(7) == about(32 * 2));  // two alternating sums
       CHECK(test.result(8) == about(32 * 3));
       CHECK(test.result(9) == about(32 * 5));  // 1 / 1: a quotient of one bit
     }
@@ -44,7 +44,7 @@ TEST_SUITE("virtual chip: cycles") {
       const double ahb = test.result(18), apb_at_full_rate = test.result(19), apb_at_a_quarter = test.result(20);
       CHECK(ahb == doctest::Approx(32 * 4).epsilon(0.02));
       CHECK(apb_at_full_rate == doctest::Approx(32 * (3 + 1 + 2)).epsilon(0.02));
-      // 3 + 1 + 2 * 4, and in exact mode none to align: 12 is a multiple of 4.
+      // 3 + 1 + 2 * 4 cycles. Exact mode adds no alignment cycles, because 12 is a multiple of 4.
       CHECK(apb_at_a_quarter >= 32 * 12);
       CHECK(apb_at_a_quarter <= 32 * (12 + 3));
     }
@@ -66,7 +66,8 @@ TEST_SUITE("virtual chip: cycles") {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);
       const double no_wait = test.result(10), off = test.result(11), prefetch = test.result(12), all = test.result(13);
-      // Four wide instructions a line: 4 cycles, or 5 more for a line that waits, or 6 behind a prefetch.
+      // Four 32-bit instructions per line take 4 cycles. A line that waits takes 5 more; after a prefetch a line takes
+      // 6.
       CHECK(no_wait == doctest::Approx(3 * 1024).epsilon(0.01));
       CHECK(off / no_wait == doctest::Approx(9.0 / 4).epsilon(0.02));
       CHECK(prefetch / no_wait == doctest::Approx(6.0 / 4).epsilon(0.02));
@@ -81,7 +82,7 @@ TEST_SUITE("virtual chip: cycles") {
     const Measured likely(Mode::fast), conservative(Mode::fast, Pricing::conservative);
     for (unsigned i = 1; i < 24; ++i) {
       CAPTURE(i);
-      // What the sources leave open about the cache can turn out either way for a single loop.
+      // For a single loop, unspecified cache behavior can have either effect.
       CHECK(conservative.result(i) >= 0.99 * likely.result(i));
     }
   }

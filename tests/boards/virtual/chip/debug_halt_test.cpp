@@ -1,4 +1,5 @@
-// What stands still while a debug probe halts the core (RM0090, "Debug support for timers, watchdog, bxCAN and I2C").
+// Peripherals that stop while a debug probe halts the core (RM0090, "Debug support for timers, watchdog, bxCAN and
+// I2C").
 #include <doctest/doctest.h>
 
 #include <array>
@@ -15,7 +16,7 @@ namespace {
 constexpr std::uint32_t stop_rtc = 1 << 10, stop_can_1 = 1 << 25, nothing = 0;
 constexpr double halt_s = 0.02;
 
-/// How far the parts come while the core is halted, as the firmware finds them afterwards.
+/// Progress of the peripherals during the halt, as measured by the firmware afterwards.
 struct Moved {
   std::uint32_t systick_counts, rtc_cycles, wake_ups, frames;
 };
@@ -42,7 +43,7 @@ Moved moved_by_halt(std::uint32_t stops) {
 TEST_SUITE("virtual chip: debugger halt") {
   TEST_CASE("SysTick stands with the core, the RTC and CAN go on") {
     const Moved moved = moved_by_halt(nothing);
-    CHECK(moved.systick_counts < 2'000);  // of 16 MHz: what ran beside the halt
+    CHECK(moved.systick_counts < 2'000);  // at 16 MHz: counts outside the halt
     CHECK(moved.rtc_cycles >= 640);
     CHECK(moved.wake_ups == 1);
     CHECK(moved.frames == 1);

@@ -1,4 +1,4 @@
-// Drivers of the firmware on the virtual chip, where the whole firmware gives no way to disturb them.
+// Firmware drivers on the virtual chip, with disturbances that are not possible with the complete firmware.
 #include <doctest/doctest.h>
 
 #include "chip_fixture.hpp"
@@ -36,7 +36,7 @@ TEST_CASE("supply and gimbal are measured again after an overrun and after an er
   SlowConversions test;
   test.run_to_period(90);
   REQUIRE(test.result(0) == finished);
-  CHECK(test.result(2) == 1);  // in the first period, which starts them
+  CHECK(test.result(2) == 1);  // the first period, which starts the conversions
   test.check_shown(18.0, 0.25);
 
   test.show(15.0, 0.5);
@@ -54,7 +54,7 @@ TEST_CASE("supply and gimbal are measured again after an overrun and after an er
 }
 
 TEST_CASE("the internal reference reads less of a VDDA that is higher, and its calibration is read for 3.3 V") {
-  constexpr double counts_V = 1.19 * 4096;  // of the virtual chip's reference
+  constexpr double counts_V = 1.19 * 4096;  // of the virtual chip's internal reference
   SlowConversions test;
   for (const double analog_supply_V : {3.3, 3.0, 3.6}) {
     CAPTURE(analog_supply_V);
@@ -63,7 +63,7 @@ TEST_CASE("the internal reference reads less of a VDDA that is higher, and its c
     CHECK(test.result(6) == doctest::Approx(counts_V / analog_supply_V).epsilon(0.001));
     CHECK(test.result(7) == doctest::Approx(counts_V / 3.3).epsilon(0.001));
   }
-  // The chip's own supply takes VDDA along.
+  // VDDA follows the chip's supply.
   test.chip.set_supply_V(3.1);
   test.run_to_period(test.result(1) + 5);
   CHECK(test.result(6) == doctest::Approx(counts_V / 3.1).epsilon(0.001));

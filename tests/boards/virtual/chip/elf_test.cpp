@@ -22,7 +22,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// What load_elf says of a file with this content.
+/// Returns the error message of load_elf for a file with this content.
 std::string complaint(const std::string& content) {
   const inkwell::tests::TemporaryDirectory directory;
   const auto path = directory / "corrupt.elf";
@@ -79,7 +79,7 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(complaint(with_word(vectors + 4, 0x0900'0001)), "0x09000001"));
     CHECK(contains(complaint(with_word(18, 243)), "RISC-V"));
 
-    // A second segment that lies over the first one's vectors: what comes last is what the flash holds.
+    // A second segment overlaps the vectors of the first segment. The last segment determines the flash content.
     std::string covered = good;
     const std::uint32_t segment_bytes = 32, places[] = {vectors, 0x0800'0004, 0x0800'0004, 1, 1};
     std::memcpy(covered.data() + headers + segment_bytes, good.data() + headers, segment_bytes);
@@ -87,7 +87,7 @@ TEST_SUITE("virtual chip: ELF") {
     covered[vectors] = '\x3A';
     CHECK(contains(complaint(covered), "no vector table"));
 
-    // A stack for more RAM is said, but firmware may set its stack by itself.
+    // A stack pointer beyond the RAM is only a warning, because firmware may set its stack pointer itself.
     const inkwell::tests::TemporaryDirectory directory;
     const auto path = directory / "other_chip.elf";
     std::ofstream(path, std::ios::binary) << with_word(vectors, 0x2003'0000);

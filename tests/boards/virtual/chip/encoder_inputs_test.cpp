@@ -1,4 +1,4 @@
-// Timers as decoders of encoders: directions, polarities, filters (RM0090, "Encoder interface mode", TIMx_CCMR1).
+// Encoder mode of the timers: directions, polarities, filters (RM0090, "Encoder interface mode", TIMx_CCMR1).
 #include <doctest/doctest.h>
 
 #include <array>
@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t tim3 = 0x4000'0400, cr1 = 0x00, smcr = 0x08, sr = 0x10, ccmr1 = 0x18, ccer = 0x20, cnt = 0x24;
 constexpr std::uint32_t cc1if = 1 << 1, cc1e = 1 << 0;
-constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware leaves the chip at its first clock
+constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware keeps the reset clock
 
-/// TIM3 counts B4 and B5, both low to begin with. The firmware writes counter and direction down all the time.
+/// TIM3 counts edges of B4 and B5, which are initially low. The firmware records counter and direction continuously.
 struct Encoder {
   Encoder() : test("encoder", Mode::fast) {
     for (const unsigned pin : {4, 5}) test.chip.input_pins().drive('B', pin, PinLevel::low);
@@ -38,7 +38,7 @@ struct Encoder {
   void drive(unsigned pin, bool high, Ticks since) {
     test.chip.input_pins().drive('B', pin, high ? PinLevel::high : PinLevel::low, since);
   }
-  /// Steps through the quadrature, forward for positive counts, so long from edge to edge.
+  /// Steps through the quadrature sequence with `pause` from edge to edge; positive counts are forward.
   void turn(int counts, Ticks pause) {
     constexpr bool a[] = {false, true, true, false}, b[] = {false, false, true, true};
     Ticks when = test.chip.now();
@@ -51,7 +51,8 @@ struct Encoder {
       drive(5, b[phase], when);
     }
   }
-  /// B4 was high for so long, from `phase_of_sampling` behind a sample; true if a rising edge came behind the filter.
+  /// Applies a pulse of this length to B4, starting `phase_of_sampling` after a sample. True if a rising edge passed
+  /// the filter.
   bool passes(Ticks length, Ticks sampling, std::int64_t phase_of_sampling) {
     test.chip.run_until(test.chip.now() + 2 * length + 3 * sampling);
     write(sr, 0);
@@ -87,7 +88,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("modes 1 and 2 count the edges of one input alone") {
-    // From low and low forward: B4, B5, B4, B5.
+    // Forward from low and low: the edges are on B4, B5, B4, B5.
     struct Row {
       std::uint32_t mode;
       int of_first_edge, of_four;
@@ -132,7 +133,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("what no sample sees does not count, and what one sees does, without a filter too") {
-    // Both inputs sampled once a clock: faster than that the encoder runs away from its counter.
+    // Both inputs are sampled once per clock; the counter misses faster edges.
     Encoder slow, fast;
     slow.turn(2000, timer_clock);
     CHECK(slow.count() == 2000);
@@ -143,10 +144,10 @@ TEST_SUITE("virtual chip: encoder inputs") {
   TEST_CASE("ICxF: so many equal samples in a row, at the rate of the code and of CKD") {
     struct Row {
       unsigned code, clock_division;
-      Ticks sampling;  ///< in clocks of the timer
+      Ticks sampling;  ///< in timer clocks
       unsigned samples;
     };
-    // RM0090, TIMx_CCMR1: codes 1 to 3 sample with the timer's clock, the others with tDTS, which CKD makes longer.
+    // RM0090, TIMx_CCMR1: codes 1 to 3 sample with the timer clock, the other codes with tDTS, which CKD prolongs.
     for (const Row row : {Row{0, 0, 1, 1}, {0, 2, 4, 1},   {1, 0, 1, 2},   {2, 0, 1, 4},   {3, 0, 1, 8},
                           {3, 2, 1, 8},    {4, 0, 2, 6},   {5, 0, 2, 8},   {6, 0, 4, 6},   {7, 0, 4, 8},
                           {7, 1, 8, 8},    {8, 0, 8, 6},   {9, 0, 8, 8},   {10, 0, 16, 5}, {11, 0, 16, 6},
@@ -162,10 +163,10 @@ TEST_SUITE("virtual chip: encoder inputs") {
         CAPTURE(phase);
         CHECK(encoder.passes(whole, sampling, phase));
         if (row.samples > 1) CHECK_FALSE(encoder.passes(whole - sampling, sampling, phase));
-        // In between it depends on where the samples fall.
+        // Between these lengths the result depends on the sampling phase.
         CHECK(encoder.passes(whole - sampling + 2, sampling, phase) == (phase <= 0));
       }
-      CHECK(encoder.count() == 0);  // each pulse was counted there and back, or not at all
+      CHECK(encoder.count() == 0);  // each pulse was counted in both directions or not at all
     }
   }
 
@@ -173,7 +174,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
     Encoder encoder;
     constexpr unsigned code = 7, samples = 8, sampling = 4;
     encoder.write(ccmr1, 0x0101 | code << 4 | code << 12);
-    // Each input holds its level for two counts.
+    // Each input keeps its level for two counts.
     constexpr Ticks filter = samples * sampling * timer_clock;
     encoder.turn(500, filter / 2);
     encoder.turn(-300, filter / 2);

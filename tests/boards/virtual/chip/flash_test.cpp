@@ -1,4 +1,4 @@
-// The flash while it erases and programs: how long it takes, who waits, and what a power cut leaves.
+// Erasing and programming of the flash: duration, waiting accesses, and the effect of a power cut.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -48,13 +48,13 @@ TEST_SUITE("virtual board: chip") {
       test.run_for(0.6);
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(2) / cycles_per_us == doctest::Approx(250'000).epsilon(0.001));
-      CHECK(test.result(3) >= 249);  // a millisecond each, in time
+      CHECK(test.result(3) >= 249);  // one per millisecond, without delay
       CHECK(test.result(3) <= 251);
       CHECK(test.result(4) == 0);
       CHECK(test.result(5) / cycles_per_us == doctest::Approx(32).epsilon(0.05));
       CHECK(test.result(6) == 0x0F0F'0000);
       CHECK(test.result(7) == 0x1234'5678);
-      // 230 ms of the second erase are left when the interrupt reads.
+      // The interrupt reads with 230 ms of the second erase remaining.
       CHECK(test.result(9) == 0xFFFF'FFFF);
       CHECK(test.result(10) / cycles_per_us == doctest::Approx(230'000).epsilon(0.01));
     }
@@ -110,7 +110,7 @@ TEST_SUITE("virtual board: chip") {
   TEST_CASE("an image replaces the sectors that it needs, and the others stay") {
     SlowChip test(false);
     test.chip.flash()[store_offset] = 0x5A;
-    test.chip.flash()[0x3000] = 0x5A;  // in the image's own sector, behind it
+    test.chip.flash()[0x3000] = 0x5A;  // after the image, in its last sector
     test.chip.load_elf(firmware_path("flash_times"));
     CHECK(test.chip.flash()[store_offset] == 0x5A);
     CHECK(test.chip.flash()[0x3000] == 0xFF);

@@ -1,5 +1,4 @@
-// What is put into the chip from outside: late interrupts, stopped converters and DMA, flipped bits, a crystal that
-// drifts.
+// Faults injected into the chip: late interrupts, stopped converters and DMA, flipped bits, and crystal drift.
 #include <array>
 #include <cmath>
 
@@ -10,7 +9,7 @@ namespace {
 
 constexpr unsigned converters_interrupt = 16 + 18;
 
-/// The address of the first half word of the flash with this content, or 0.
+/// Returns the address of the first half word of the flash with this content, or 0.
 std::uint32_t find_in_flash(const Chip& chip, std::uint16_t content) {
   for (std::uint32_t address = 0x0800'0000; address < 0x0801'0000; address += 2) {
     const std::uint32_t word = chip.memory_word(address & ~3u);
@@ -24,14 +23,14 @@ TEST_CASE("an exception comes as late as it was told to, in each period, and in 
     CAPTURE(static_cast<int>(mode));
     ChipUnderTest test("converters", mode);
     test.run_for(0.003);
-    // Counts of TIM2, 84 MHz, from the trigger of the conversion until the handler reads them.
+    // Counts of TIM2 at 84 MHz from the conversion trigger to the handler's read.
     const std::uint32_t in_time = test.result(5);
     test.chip.delay_exception(converters_interrupt, 840);
     test.run_for(0.001);
     const std::uint32_t handled = test.result(1);
     CHECK(test.result(5) == doctest::Approx(in_time + 420).epsilon(0.03));
     test.run_for(0.001);
-    CHECK(test.result(1) - handled == doctest::Approx(50).epsilon(0.05));  // each comes, none twice
+    CHECK(test.result(1) - handled == doctest::Approx(50).epsilon(0.05));  // each interrupt is handled exactly once
     test.chip.delay_exception(converters_interrupt, 0);
     test.run_for(0.001);
     CHECK(test.result(5) == doctest::Approx(in_time).epsilon(0.05));
@@ -39,7 +38,7 @@ TEST_CASE("an exception comes as late as it was told to, in each period, and in 
 }
 
 TEST_CASE("a pin that touches something is at its level, whatever the chip drives it with") {
-  ChipUnderTest test("converters");  // which toggles B2
+  ChipUnderTest test("converters");  // toggles B2
   std::array<unsigned, 3> seen{};
   const auto look = [&] {
     seen.fill(0);
@@ -61,7 +60,7 @@ TEST_CASE("a pin that touches something is at its level, whatever the chip drive
   test.chip.input_pins().hold('B', 2, PinLevel::floating);
   look();
   CHECK(seen[1] > 20);
-  test.chip.input_pins().hold('Z', 2, PinLevel::low);  // no pin
+  test.chip.input_pins().hold('Z', 2, PinLevel::low);  // not an existing pin
   test.chip.input_pins().hold('B', 16, PinLevel::low);
 }
 
@@ -70,18 +69,18 @@ TEST_CASE("a converter that has stopped starts no conversion; its register keeps
   test.circuit.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}};
   test.run_for(0.003);
   test.chip.stop_converter(2, true);
-  // The first shares its converter with C3 and C4.
+  // C0 shares its converter with C3 and C4.
   test.circuit.voltages = {{{'C', 0}, 1.65}, {{'C', 1}, 0.825}, {{'C', 2}, 0.825}, {{'C', 3}, 1.65}, {{'C', 4}, 1.65}};
   test.run_for(0.001);
   CHECK(test.result(2) == 2048);
-  CHECK(test.result(3) == 2048);  // of the time before
+  CHECK(test.result(3) == 2048);  // value from before the fault
   CHECK(test.result(4) == 1024);
   test.chip.stop_converter(2, false);
   test.run_for(0.001);
   CHECK(test.result(3) == 1024);
 
   const std::uint32_t handled = test.result(1);
-  test.chip.stop_converter(1, true);  // whose end of conversion is the interrupt
+  test.chip.stop_converter(1, true);  // its end of conversion triggers the interrupt
   test.run_for(0.001);
   CHECK(test.result(1) - handled <= 1);
 }
@@ -119,7 +118,7 @@ TEST_CASE("a bit of the flash turns over, and the core runs what stands there th
       return test.chip.counters().sleep_share();
     };
     CHECK(asleep() > 0.3);
-    constexpr std::uint16_t wait_for_interrupt = 0xBF30;  // with bits 4 and 5 turned it is NOP
+    constexpr std::uint16_t wait_for_interrupt = 0xBF30;  // becomes NOP when bits 4 and 5 are inverted
     const std::uint32_t address = find_in_flash(test.chip, wait_for_interrupt);
     REQUIRE(address != 0);
     for (const unsigned bit : {4u, 5u}) CHECK(test.chip.flip_bit(address, bit));

@@ -1,4 +1,4 @@
-// What the memory protection unit allows, and what becomes of what it does not.
+// Access checks of the memory protection unit, and the effects of refused accesses.
 #include <doctest/doctest.h>
 
 #include "chip_fixture.hpp"
@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t passes = 0, refused = 0x82, refused_instruction = 0x01, unaligned = 1u << 24,
                         no_answer = 0x8200, as_hard_fault = 1u << 30;
 
-/// By their index, as the firmware's comments have them.
+/// The indices are those in the comments of the test firmware.
 void check_results(const ChipUnderTest& test, unsigned first, const std::vector<std::uint32_t>& expected) {
   for (unsigned i = 0; i < expected.size(); ++i) {
     const unsigned number = first + i;
@@ -32,16 +32,16 @@ TEST_SUITE("virtual chip: memory protection") {
       // A read-only page; a region above it without its third eighth; 32 bytes in another page, from both sides.
       check_results(test, 1,
                     {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});
-      // An instruction of 32 bits that reaches into 32 bytes without instructions, and one that begins there.
+      // A 32-bit instruction that extends into 32 non-executable bytes, and an instruction that starts there.
       check_results(test, 12,
                     {passes, passes, refused_instruction, 0x3E, refused_instruction, 0x40, passes, refused_instruction,
                      0x40, refused_instruction});
-      // AP: privileged load and store, a user's load and store (PM0214, "AP encoding").
+      // AP: privileged load and store, unprivileged load and store (PM0214, "AP encoding").
       check_results(test, 22, {0b0000, 0b0011, 0b0111, 0b1111, 0b0000, 0b0001, 0b0101, 0b0101});
       check_results(test, 30, {passes, refused, refused, passes, no_answer, 0x800});
       check_results(test, 36, {refused, passes, refused, refused | as_hard_fault, 1, refused | as_hard_fault});
       check_results(test, 42, {passes, unaligned, passes});
-      // CONTROL has nPRIV in a handler too, SPSEL only in the thread.
+      // nPRIV of CONTROL is also readable in a handler, SPSEL only in thread mode.
       check_results(test, 45, {passes, 1, static_cast<std::uint32_t>(-32), 3, 0});
       CHECK(stop == Stop::locked_up);
       CHECK(test.chip.lockup_reason().find("the memory protection unit refuses 0x20010000") != std::string::npos);

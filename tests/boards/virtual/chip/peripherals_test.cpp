@@ -24,7 +24,8 @@ TEST_SUITE("virtual chip: peripherals") {
     REQUIRE(first.size() > 60);
     REQUIRE(second.size() > 60);
 
-    // PWM mode 1: high within 400 cycles of the bottom, low elsewhere; the last edges have the new duty of 250.
+    // PWM mode 1: high within 400 cycles of the counter's bottom, otherwise low. The last edges have the new duty of
+    // 250.
     std::vector<Ticks> high_times;
     for (std::size_t i = 2; i + 1 < first.size(); ++i) {
       CHECK(first[i].level != first[i - 1].level);
@@ -32,7 +33,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
     CHECK(high_times.front() == 800 * cycle);
     CHECK(high_times.back() == 500 * cycle);
-    // The new duty comes at the bottom, in the middle of one pulse.
+    // The new duty becomes active at the bottom, in the middle of one pulse.
     unsigned mixed = 0;
     for (const Ticks t : high_times) {
       CHECK((t == 800 * cycle || t == 500 * cycle || t == 650 * cycle));
@@ -40,7 +41,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
     CHECK(mixed == 1);
 
-    // Both timers turn round at the same instants: the middles of their pulses are the same.
+    // Both timers reverse at the same times, so the centers of their pulses coincide.
     const auto rising = [](const std::vector<Edge>& edges, std::size_t from) {
       while (edges[from].level != PinLevel::high) ++from;
       return from;
@@ -61,8 +62,8 @@ TEST_SUITE("virtual chip: peripherals") {
     // Six half periods of 1000 cycles.
     CHECK(test.result(1) - before == 168'000'000 / 10 / 6000);
     for (unsigned n = 0; n < 4; ++n) {
-      CHECK(test.result(4 + 2 * n) == 0);  // counting up again
-      // After the bottom: entry, first lines from the flash, a crossing to APB.
+      CHECK(test.result(4 + 2 * n) == 0);  // counting up
+      // After the bottom: exception entry, first flash lines, APB access.
       CHECK(test.result(5 + 2 * n) < 100);
     }
   }
@@ -82,7 +83,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(2) == 1);
 
     test.circuit.edges.clear();
-    // In the middle of a pulse, so that there is an output to switch off.
+    // The break comes in the middle of a pulse, so that an active output is switched off.
     while (test.circuit.edges_of('A', 8).empty() || test.circuit.edges_of('A', 8).back().level != PinLevel::high)
       test.run_for(1e-6);
     const Ticks when = test.chip.now();
@@ -95,7 +96,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(1) == 1);
     CHECK(test.result(2) == 0);
 
-    // While the input stays active, MOE cannot be set.
+    // MOE cannot be set while the input is active.
     pins.drive('A', 0, PinLevel::high);
     CHECK(edges_in(0.001).empty());
     pins.drive('A', 6, PinLevel::high);
@@ -117,12 +118,13 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(2) == 1024);
     CHECK(test.result(3) == 2048);
     CHECK(test.result(4) == 3072);
-    // 15 cycles of 21 MHz are 60 counts of TIM2; then entry, and the first instructions with their waits.
+    // 15 cycles at 21 MHz are 60 counts of TIM2, followed by exception entry and the first instructions with their wait
+    // states.
     CHECK(test.result(5) >= 60);
     CHECK(test.result(5) < 100);
     REQUIRE(sequences.size() > 50);
     for (std::size_t i = 1; i < sequences.size(); ++i) CHECK(sequences[i] - sequences[i - 1] == ticks(20e-6));
-    // Sampled 3 cycles of the converter after the trigger.
+    // The inputs are sampled 3 converter cycles after the trigger.
     unsigned at_once = 0;
     for (const auto& sample : test.circuit.samples)
       if (sample.pin <= 2 && sample.port == 'C' && sample.when == sequences[5] + 3 * 8 * cycle) ++at_once;
@@ -139,7 +141,8 @@ TEST_SUITE("virtual chip: peripherals") {
     for (unsigned i = 0; i < 4; ++i) CHECK(test.result(8 + i) == (channel_13 | channel_14 << 16));
     const std::uint32_t before = test.result(6);
     test.run_for(0.01);
-    // 96 cycles of 21 MHz a conversion, 8 to a round; each injected group costs one 84-cycle start over and itself.
+    // 96 cycles of 21 MHz per conversion, 8 conversions per round. Each injected group costs its own time and a
+    // restarted 84-cycle sampling.
     const double undisturbed = 0.01 * 21e6 / (96 * 8);
     CHECK(test.result(6) - before < undisturbed);
     CHECK(test.result(6) - before > 0.7 * undisturbed);
@@ -151,7 +154,7 @@ TEST_SUITE("virtual chip: peripherals") {
       test.run_for(0.003);
       const auto edges = test.circuit.edges_of('B', 2);
       REQUIRE(edges.size() > 20);
-      return edges[1].when;  // the pin became an output before
+      return edges[1].when;  // the first edge is the switch to output
     };
     CHECK(first_interrupt(Mode::fast) < first_interrupt(Mode::exact) + ticks(1.5e-6));
   }
@@ -159,7 +162,7 @@ TEST_SUITE("virtual chip: peripherals") {
   TEST_CASE("a reading holds some of the channel before until its source has charged the sampling capacitor") {
     constexpr double switch_ohm = 6000, sampling_F = 4e-12, adc_Hz = 21e6;
     const auto counts = [](double volts) { return volts / 3.3 * 4096; };
-    // C3 and C4 are sampled for 84 cycles in turn, C0 for 3 of them between the two.
+    // C3 and C4 are sampled alternately for 84 cycles, and C0 between them for 3 cycles.
     const auto read = [&](AnalogSource source) {
       ChipUnderTest test("converters");
       test.circuit.voltages = {{{'C', 0}, 1.0}, {{'C', 3}, 1.0}, {{'C', 4}, 3.0}};
@@ -170,14 +173,14 @@ TEST_SUITE("virtual chip: peripherals") {
       return both >> 16;
     };
     CHECK(read({}) == std::floor(counts(3.0)));
-    // Through a megohm, the capacitor charges for a time constant or so.
+    // Through 1 Mohm, the sampling capacitor charges for about one time constant.
     const double constant_s = (1e6 + switch_ohm) * sampling_F;
     const double reached_V = 3.0 - 2.0 * std::exp(-84 / adc_Hz / constant_s);
     CHECK(read({1e6, 0.0}) == doctest::Approx(counts(reached_V)).epsilon(0.001));
-    // A capacitor at the pin gives its charge at once: 2 V times 4 pF of 1 nF are missing.
+    // A capacitor at the pin transfers its charge immediately: the missing voltage is 2 V times 4 pF / 1 nF.
     CHECK(read({1e6, 1e-9}) == doctest::Approx(counts(3.0 - 2.0 * 0.004)).epsilon(0.0003));
     CHECK(read({1e6, 100e-9}) == std::floor(counts(3.0 - 2.0 * 0.00004)));
-    // Three cycles are six time constants of the switch alone.
+    // Three cycles are six time constants of the switch resistance alone.
     ChipUnderTest test("converters");
     test.circuit.voltages = {{{'C', 0}, 0.5}, {{'C', 3}, 3.0}, {{'C', 4}, 3.0}};
     test.run_for(0.003);
@@ -218,7 +221,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(sent == "chip\n");
     constexpr Ticks frame = 10 * 365 * 4 * cycle;  // ten bits of 365 cycles of PCLK1
     CHECK(times[2] - times[1] == frame);
-    // The crystal and the PLL take 0.6 ms to start; the text follows at once, and time does not stand still after it.
+    // The crystal and the PLL start in 0.6 ms. The text follows immediately, and time continues after it.
     CHECK(times[0] < ticks(0.66e-3) + frame);
     CHECK(test.circuit.edges_of('C', 10).back().level == PinLevel::high);
     CHECK(test.result(2) == 1u << 5);
@@ -232,7 +235,7 @@ TEST_SUITE("virtual chip: peripherals") {
     for (int i = 0; i < 3; ++i) {
       test.chip.input_pins().drive('B', 13, PinLevel::low);
       test.run_for(1e-5);
-      test.chip.input_pins().drive('B', 13, PinLevel::floating);  // the pull-up
+      test.chip.input_pins().drive('B', 13, PinLevel::floating);  // uses the pull-up
       test.run_for(1e-5);
       CHECK(test.result(1) == static_cast<std::uint32_t>(i + 1));
     }
@@ -249,14 +252,14 @@ TEST_SUITE("virtual chip: peripherals") {
       test.run_for(0.01);
       REQUIRE(test.result(0) == finished);
       constexpr std::uint32_t first = 620, second = 1241, third = 1861;  // of 4096 at 3.3 V
-      CHECK(test.result(1) == (second << 16 | first));                   // six half words, one at a time
+      CHECK(test.result(1) == (second << 16 | first));                   // six half words, one per transfer
       CHECK(test.result(2) == (first << 16 | third));
       CHECK(test.result(3) == (third << 16 | second));
       CHECK(test.result(4) == (second << 16 | first));  // three words
       CHECK(test.result(5) == (first << 16 | third));
       CHECK(test.result(6) == (third << 16 | second));
       const auto low = [](std::uint32_t value) { return value & 0xFF; };
-      CHECK((test.result(7) & 0xFFFF) == (low(second) << 8 | low(first)));  // three half words of two bytes
+      CHECK((test.result(7) & 0xFFFF) == (low(second) << 8 | low(first)));  // three half words of two results each
       CHECK((test.result(7) >> 16) == (low(first) << 8 | low(third)));
       CHECK((test.result(8) & 0xFFFF) == (low(third) << 8 | low(second)));
       CHECK(test.result(9) == 0);
@@ -275,7 +278,8 @@ TEST_SUITE("virtual chip: peripherals") {
       for (unsigned i = 0; i < 6; ++i) CHECK(test.result(1 + i) == (one_volt << 16 | one_volt));
       for (unsigned i = 0; i < 3; ++i) CHECK(test.result(9 + i) == (one_volt << 16 | one_volt));
       CHECK(test.result(7) == 0);
-      // 4 MHz: five cycles apart, as long as three samples take; then the sampling time of 15 and two more.
+      // At 4 MHz the conversions are five cycles apart, the length of three samples. In the second run the conversions
+      // are 17 cycles apart, the sampling time of 15 cycles plus two.
       const auto& samples = test.circuit.samples;
       constexpr Ticks cycle = ticks_per_s / 4'000'000;
       REQUIRE(samples.size() > 18);
@@ -285,7 +289,7 @@ TEST_SUITE("virtual chip: peripherals") {
         slow |= samples[i + 1].when - samples[i].when == 17 * cycle &&
                 samples[i + 2].when - samples[i + 1].when == 17 * cycle;
       CHECK(slow);
-      CHECK(samples.size() < 50);  // overrun ended both runs
+      CHECK(samples.size() < 50);  // overrun stopped both runs
       CHECK(test.log.empty());
     }
   }
@@ -296,13 +300,13 @@ TEST_SUITE("virtual chip: peripherals") {
       ChipUnderTest test("unconnected", mode);
       test.run_for(0.1);
       REQUIRE(test.result(0) == finished);
-      CHECK(test.result(1) == 1);  // SPI: the frame ends, and nothing but ones came
+      CHECK(test.result(1) == 1);  // SPI: the frame is complete and contains only ones
       CHECK(test.result(2) == 0xFF);
       CHECK(test.result(3) == 1);
       CHECK(test.result(4) >= 5 * 8 * 8);  // five frames of eight bits at PCLK / 8
       CHECK(test.result(4) < 5 * 8 * 8 + 200);
       CHECK(test.result(5) == 2 * 0xFF);
-      CHECK(test.result(6) == 1);  // I2C: the start comes about, the address is not acknowledged
+      CHECK(test.result(6) == 1);  // I2C: the start condition is generated, the address is not acknowledged
       CHECK(test.result(7) == 1);
       CHECK(test.result(8) == 1u << 10);
       CHECK(test.result(9) == 1);
@@ -311,16 +315,16 @@ TEST_SUITE("virtual chip: peripherals") {
       CHECK(test.result(12) == 1);
       CHECK(test.result(13) == (128u << 16 | 3u << 4 | 3));
       CHECK(test.result(14) == 1);
-      CHECK(test.result(15) == 0x123);  // DAC: at once, or when triggered
+      CHECK(test.result(15) == 0x123);  // DAC: immediate, or triggered
       CHECK(test.result(16) == 0);
       CHECK(test.result(17) == 0xABC);
       CHECK(test.result(20) == 1);  // RTC: alarm at midnight before a leap day, a Thursday
       CHECK(test.result(21) == 1);
       CHECK(test.result(22) == 0);
       CHECK(test.result(23) == 0x24'8229);
-      CHECK(test.result(24) / 2 == 3);  // the wake-up timer, every 16 ms
+      CHECK(test.result(24) / 2 == 3);  // wake-up timer every 16 ms
       CHECK(test.result(25) == 0xB0);
-      CHECK(test.result(26) == 31);  // protected again
+      CHECK(test.result(26) == 31);  // write protection is active again
       CHECK(test.log.empty());
     }
   }
@@ -339,7 +343,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(8) == 1);
     CHECK(test.result(9) == 1);
     CHECK(test.result(10) == 3 << 8);  // the fourth identifier of the list
-    CHECK(test.result(14) == 4 << 8);  // whole words go before halves
+    CHECK(test.result(14) == 4 << 8);  // 32-bit filters have priority over 16-bit filters
     CHECK(test.result(11) == (3 | 1 << 3 | 1 << 4));
     CHECK(test.result(12) == 2);
     CHECK(test.result(13) == 3);

@@ -12,12 +12,13 @@ TEST_SUITE("virtual chip: processor") {
       ChipUnderTest test("exceptions", mode);
       test.run_for(0.01);
       REQUIRE(test.result(0) == finished);
-      CHECK(test.result(1) == 0x1324);               // 7 preempts 6 in its middle, 8 waits and follows
-      CHECK(test.result(2) == 0x394893);             // BASEPRI: 3, then 4 on release; PRIMASK: 3 on release
-      CHECK(test.result(3) == 42);                   // SVC found its argument on the process stack
+      CHECK(test.result(1) == 0x1324);               // 7 preempts 6; 8 waits and follows
+      CHECK(test.result(2) == 0x394893);             // BASEPRI: 3, then 4 after its release; PRIMASK: 3 after its
+                                                     // release
+      CHECK(test.result(3) == 42);                   // SVC read its argument from the process stack
       CHECK((test.result(4) | 0x10) == 0xFFFFFFFD);  // PendSV returns to thread mode on the process stack
       CHECK(test.result(5) == 0x40100000);           // S15 is still 2.25
-      CHECK(test.result(6) == 0);                    // FPSCR's rounding mode too
+      CHECK(test.result(6) == 0);                    // FPSCR's rounding mode is also restored
       CHECK(test.result(7) == 5);
       CHECK(test.result(8) == 10);
       const auto& counters = test.chip.counters();
@@ -49,7 +50,7 @@ TEST_SUITE("virtual chip: processor") {
     ChipUnderTest test("faults");
     CHECK(test.chip.run_until(ticks(0.01)) == Stop::locked_up);
     REQUIRE(test.result(0) == finished);
-    // A precise bus fault with its address, escalated: BusFault is off.
+    // A precise bus fault with its address. The fault escalates because BusFault is disabled.
     CHECK(test.result(4) == 0x8200);
     CHECK(test.result(5) == 1u << 30);
     CHECK(test.result(6) == 0x60000000);
@@ -61,7 +62,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.result(12) == 1u << 16);  // UNDEFINSTR
     CHECK(test.result(15) == 0);
     CHECK(test.chip.lockup_reason().find("0x60000000") != std::string::npos);
-    // Only a reset helps.
+    // Only a reset resolves a lock-up.
     test.chip.reset();
     CHECK(test.chip.run_until(test.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
@@ -125,7 +126,7 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(100) == 7);
       CHECK(record(11, 0) == refused_code);
       CHECK(test.result(101) == 8);
-      // In the middle of an if-then block: the third of four, then as if nothing had been.
+      // Inside an IT block: the third of four instructions faults, then the block continues normally.
       CHECK(record(12, 0) == no_answer);
       CHECK(record(12, 2) == 0);
       CHECK(record(12, 3) != 0);
@@ -147,11 +148,11 @@ TEST_SUITE("virtual chip: processor") {
       test.run_for(0.001);
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 1u << 12);          // STKERR, on BusFault
-      CHECK(test.result(2) == 0x2002'0000 + 96);  // the frame's place
+      CHECK(test.result(2) == 0x2002'0000 + 96);  // address of the frame
       CHECK(test.result(3) == 0);
-      CHECK(test.result(4) == 1u << 4);  // MSTKERR, on HardFault: MemManage is off
+      CHECK(test.result(4) == 1u << 4);  // MSTKERR, in HardFault because MemManage is disabled
       CHECK(test.result(5) == 1u << 30);
-      CHECK(test.result(6) == 7);  // SVC itself came behind the fault of its stack
+      CHECK(test.result(6) == 7);  // SVC followed the fault of its stacking
     }
   }
 
@@ -168,7 +169,7 @@ TEST_SUITE("virtual chip: processor") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional", mode);
-      // In steps of 22 cycles, so that most stops come without an interrupt.
+      // With steps of 22 cycles, most stops occur without an interrupt.
       for (int step = 0; step < 60'000 && test.result(0) != finished; ++step) test.run_for(1.375e-6);
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (1 + 256 + 4096));
@@ -187,7 +188,7 @@ TEST_SUITE("virtual chip: processor") {
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (3 + 256));
       CHECK(test.result(2) > 1000);
-      // A few come before and behind what counts them.
+      // A few interrupts occur before and after the counting.
       const auto entries = test.chip.counters().exceptions[15].count;
       CHECK(entries - test.result(2) <= 4);
       CHECK(test.log.empty());
@@ -203,7 +204,8 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(1) == 0);
       CHECK(test.result(2) == 7 + 1 + 16);
       CHECK(test.result(3) == 7 + 1 + 32);
-      // A push of twelve registers in place of an addition. In fast mode the counter is read at a block's price.
+      // A push of twelve registers replaces an addition. In fast mode the counter advances by the cycles of a whole
+      // block.
       if (mode == Mode::exact) CHECK(test.result(5) == test.result(4) + 12);
       CHECK(test.result(5) > test.result(4));
       CHECK(test.log.empty());
@@ -233,7 +235,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.result(1) == (1u << 29 | 1u << 26));  // IWDGRSTF and PINRSTF
     REQUIRE(resets.size() == 1);
     CHECK(resets[0].first == ResetCause::independent_watchdog);
-    // 500 counts of 4 cycles of 32 kHz, after a few instructions.
+    // 500 counts of 4 cycles at 32 kHz, after a few instructions.
     CHECK(seconds(resets[0].second) == doctest::Approx(0.0625).scale(0).epsilon(0.01));
     CHECK(test.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)] == 1);
   }

@@ -1,4 +1,4 @@
-// A thread that stands while exceptions are handled, put in as a fault.
+// Injected fault: the thread stalls while exceptions are still handled.
 #include "chip_fixture.hpp"
 
 using namespace inkwell::virtual_board;
@@ -30,7 +30,7 @@ TEST_SUITE("virtual chip: stalled thread") {
     test.chip.stall_thread(ticks(0.01));
     test.run_for(0.0099);
     CHECK(test.looped() == looped);
-    CHECK(test.handled() == doctest::Approx(handled + 158).epsilon(0.02));  // of 16 MHz
+    CHECK(test.handled() == doctest::Approx(handled + 158).epsilon(0.02));  // at 16 MHz
     test.run_for(0.0002);
     CHECK(test.looped() > looped);
   }
@@ -46,7 +46,7 @@ TEST_SUITE("virtual chip: stalled thread") {
       CHECK(test.result(3) == holds);
       CHECK(test.handled() > handled + 100);
       const auto looped = test.looped();
-      CHECK(looped % 1000 == 0);  // to the end of what held them
+      CHECK(looped % 1000 == 0);  // the stall lasts until the masking section ends
       test.run_for(0.01);
       CHECK(test.looped() == looped);
     }

@@ -1,5 +1,5 @@
-// What timers do with edges of their inputs beside decoding encoders: captures, external clocks, triggers of other
-// timers (RM0090, "Input capture mode", "Clock selection", TIMx_SMCR, TIMx_CCMR1).
+// Timer inputs other than encoder mode: captures, external clocks, triggers of other timers (RM0090, "Input capture
+// mode", "Clock selection", TIMx_SMCR, TIMx_CCMR1).
 #include <doctest/doctest.h>
 
 #include <array>
@@ -19,9 +19,9 @@ constexpr std::uint32_t cr1 = 0x00, cr2 = 0x04, smcr = 0x08, sr = 0x10, egr = 0x
 constexpr std::uint32_t cen = 1 << 0, ug = 1 << 0, cc1if = 1 << 1, cc1e = 1 << 0, cc1_from_its_pin = 1,
                         cc1_from_trigger = 3;
 constexpr std::uint32_t etp = 1 << 15, ece = 1 << 14, external_clock_mode_1 = 7, gated = 5, behind_etr = 7 << 4;
-constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware leaves the chip at its first clock
+constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware keeps the reset clock
 
-/// TIM3 with its first channel on B4 and its external trigger on D2, both low to begin with; no mode yet.
+/// TIM3 with its first channel on B4 and its external trigger on D2, both initially low; no mode selected.
 struct Inputs {
   Inputs() : test("encoder", Mode::fast) {
     test.chip.input_pins().drive('B', 4, PinLevel::low);
@@ -49,7 +49,7 @@ struct Inputs {
     std::memcpy(&value, bytes.data(), sizeof value);
     return value;
   }
-  /// A pulse to the other level and back, so long.
+  /// Applies a pulse of this length and level.
   void pulse(char port, unsigned pin, Ticks length = 8 * timer_clock, PinLevel level = PinLevel::high) {
     const PinLevel back = level == PinLevel::high ? PinLevel::low : PinLevel::high;
     const Ticks begin = test.chip.now();
@@ -61,7 +61,7 @@ struct Inputs {
   void pulses(char port, unsigned pin, int count) {
     for (int i = 0; i < count; ++i) pulse(port, pin);
   }
-  /// At which of so many pulses on B4 the first channel captured, counted from 1.
+  /// Returns the numbers of the pulses on B4, counted from 1, at which the first channel captured.
   std::vector<int> captures(int count) {
     std::vector<int> at;
     for (int i = 1; i <= count; ++i) {
@@ -163,7 +163,7 @@ TEST_SUITE("virtual chip: timer inputs") {
     Inputs inputs;
     inputs.write(tim3 + smcr, ece | 1 << 12);
     inputs.write(tim3 + cr1, cen);
-    inputs.pulse('D', 2);  // the divider rises, and stays so
+    inputs.pulse('D', 2);  // the divider output rises and remains high
     CHECK(inputs.read(tim3 + cnt) == 1);
     inputs.write(tim3 + smcr, ece);
     inputs.pulses('D', 2, 3);

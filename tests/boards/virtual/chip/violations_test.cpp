@@ -1,4 +1,4 @@
-// Each rule is broken by a firmware that keeps all the others, and is seen.
+// A test firmware violates one rule at a time, and the virtual chip reports it.
 #include <doctest/doctest.h>
 
 #include <virtual_usb/otg_fs_device.hpp>
@@ -11,7 +11,7 @@ using namespace inkwell::virtual_board::test;
 namespace {
 
 struct Case {
-  unsigned number;  ///< in firmware/rules.cc
+  unsigned number;  ///< number in firmware/rules.cc
   Rule rule;
 };
 constexpr Case cases[] = {
@@ -52,7 +52,7 @@ constexpr Case cases[] = {
     {35, Rule::reference_hurried},
 };
 
-/// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
+/// The firmware with one violation, and the USB core with a host that resets the bus when a device appears.
 struct Planted {
   explicit Planted(unsigned fault, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
     test.breaks_rules = fault != 0;

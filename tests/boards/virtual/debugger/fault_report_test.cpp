@@ -23,7 +23,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(Symbols().name(reset).empty());
     CHECK(Symbols("/nowhere/at/all.elf").name(reset).empty());
 
-    // Cut anywhere, the file has names or none.
+    // A file truncated at any position yields either symbols or none.
     std::ifstream whole(firmware_path("lock_up"), std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(whole), {}};
     const inkwell::tests::TemporaryDirectory directory;
@@ -39,7 +39,7 @@ TEST_SUITE("virtual board: debugger") {
         {0x0800'0100, 0xF800'F000},                                                          // BL at 0x08000100
         {0x0800'0200, 0x4798'BF00},                                                          // BLX R3 at 0x08000202
         {0x0800'0300, 0xBF00'BF00}, {0x2000'0000, 0x0800'0205}, {0x2000'0004, 0x0800'0204},  // even: data
-        {0x2000'0008, 0x0800'0305},                                                          // behind no call
+        {0x2000'0008, 0x0800'0305},                                                          // not after a call
         {0x2000'000C, 0x0800'0105},
     };
     CoreRegisters registers;

@@ -9,13 +9,13 @@ using namespace inkwell::virtual_board::test;
 
 namespace {
 
-/// A GDB without the wire, at a chip in exact mode.
+/// A GDB session without a connection, on a chip in exact mode.
 struct Debugger {
   explicit Debugger(const std::string& firmware) : test(firmware), session(test.chip) {
     session.attach();
     CHECK(session.receive(gdb_packet("QStartNoAckMode")) == "+" + gdb_packet("OK"));
   }
-  /// The payload of the answer, empty if there is none.
+  /// Returns the payload of the answer; empty if there is none.
   std::string ask(const std::string& packet) { return payload(session.receive(gdb_packet(packet))); }
   static std::string payload(const std::string& wire) {
     GdbPackets packets;
@@ -24,7 +24,7 @@ struct Debugger {
     while (const auto received = packets.take()) last = received->payload;
     return last;
   }
-  /// Runs as the simulation does; the payload of the stop reply, or nothing after `time_s`.
+  /// Runs like the simulation. Returns the payload of the stop reply, or an empty string after `time_s`.
   std::string run(double time_s = 0.01) {
     return payload(session.report(test.chip.run_until(test.chip.now() + ticks(time_s))));
   }
@@ -38,7 +38,7 @@ std::string digits(std::uint32_t value) {
   return hexadecimal(std::span(reinterpret_cast<const std::uint8_t*>(&value), 4));
 }
 
-/// Where the firmware lock_up reads what is not there: the first instruction of read_too_far.
+/// Address at which the firmware lock_up reads an unmapped address: the first instruction of read_too_far.
 std::uint32_t place_of_fault() {
   ChipUnderTest test("lock_up");
   test.run_for(0.01);
@@ -65,10 +65,10 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.ask("vCont;s:1").empty());
     CHECK(gdb.run() == "T05thread:1;");
     CHECK((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
-    // The handler's breakpoint is a stop for GDB, and no second fault.
+    // GDB treats the handler's breakpoint as a stop instead of a second fault.
     CHECK(gdb.ask("c").empty());
     CHECK(gdb.run() == "T05thread:1;");
-    // Without GDB it is one.
+    // Without GDB the breakpoint is a second fault.
     CHECK(gdb.session.receive(gdb_packet("D")) == gdb_packet("OK"));
     CHECK(gdb.test.chip.run_until(gdb.test.chip.now() + ticks(0.001)) == Stop::locked_up);
   }

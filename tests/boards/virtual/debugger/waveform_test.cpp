@@ -13,7 +13,7 @@ using namespace inkwell::virtual_board::test;
 
 namespace {
 
-/// What a firmware leaves in the file, line by line, after so long.
+/// Returns the lines that a firmware has written to the file after `time_s`.
 std::vector<std::string> lines_of(ChipUnderTest& test, double time_s, std::vector<PinName> pins) {
   const inkwell::tests::TemporaryDirectory directory;
   const auto path = directory / "waveform.vcd";
@@ -76,8 +76,8 @@ TEST_SUITE("virtual board: debugger") {
 
   TEST_CASE("the level at a pin is the chip's, the circuit's, or that of the pull") {
     ChipUnderTest test("pwm");
-    CHECK(test.chip.pin_level('A', 13) == PinLevel::high);  // pulled up after reset, for the debugger
-    CHECK(test.chip.pin_level('A', 14) == PinLevel::low);   // pulled down
+    CHECK(test.chip.pin_level('A', 13) == PinLevel::high);  // pull-up after reset, for the debugger
+    CHECK(test.chip.pin_level('A', 14) == PinLevel::low);   // pull-down
     CHECK(test.chip.pin_level('A', 0) == PinLevel::floating);
     test.chip.input_pins().drive('A', 0, PinLevel::high);
     CHECK(test.chip.pin_level('A', 0) == PinLevel::high);

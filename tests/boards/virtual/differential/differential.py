@@ -1,6 +1,6 @@
-"""Runs random Thumb-2 programs on the virtual chip, exact and fast, and under QEMU, and compares what they leave.
+"""Runs random Thumb-2 programs on the virtual chip in exact and fast mode and under QEMU, and compares their results.
 
-A difference is told by program and register; the image and the program's assembler stay in the folder of --work.
+A difference is reported with program and register. The image and the assembly source remain in the folder of --work.
 """
 import argparse
 import pathlib
@@ -10,7 +10,7 @@ import sys
 import programs
 
 HERE = pathlib.Path(__file__).parent
-BATCH = 200  # the text of all their registers must fit the SRAM
+BATCH = 200  # the text of all their registers must fit into the SRAM
 QEMU = ["qemu-system-arm", "-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "null",
         "-semihosting-config", "enable=on,target=native", "-icount", "shift=0,sleep=off", "-kernel"]
 STATE = [f"R{i}" for i in range(13)] + ["LR", "APSR", "FPSCR"] + [f"S{i}" for i in range(32)] + ["hash"]
@@ -32,7 +32,8 @@ def run(command):
 
 
 def results(run_image, image):
-    """Lines of each machine, and how often SysTick came to the virtual chip in exact mode."""
+    """Returns the output lines of each machine, and the number of SysTick interrupts of the virtual chip in exact
+    mode."""
     exact, fast = (run([run_image, mode, image]) for mode in ("exact", "fast"))
     qemu = run([*QEMU, image])
     lines = {"exact": exact.stdout, "fast": fast.stdout, "QEMU": qemu.stdout + qemu.stderr}
@@ -83,7 +84,7 @@ def main():
         if sys.stdout.isatty():
             print(f"\r{first + count} programs", end="", flush=True)
     print(f"{arguments.programs} programs, {differing} differ, interrupted {interrupts} times")
-    # Without interrupts the comparison would be worth little.
+    # The comparison requires a sufficient number of interrupts.
     return 0 if differing == 0 and interrupts > arguments.programs else 1
 
 

@@ -1,15 +1,15 @@
-// Runs the programs that programs.py has written, one after the other, each from its own state of registers and memory
-// and with SysTick interrupting it, and writes a line of what is left of each by semihosting: a hash, or with DUMP all.
+// Runs the programs of programs.py in sequence, with SysTick interrupts. Each program has a separate initial state of
+// registers and memory. Prints one line per final state by semihosting: a hash, or the complete state with DUMP.
 .syntax unified
 .cpu cortex-m4
 .fpu fpv4-sp-d16
 .thumb
 
-.equ data, 0x20000000          // 1 kB that programs read and write
+.equ data, 0x20000000          // 1 kB that the programs read and write
 .equ data_bytes, 1024
 .equ state, 0x20000400         // R0 to R12, LR, APSR, FPSCR, S0 to S31
 .equ state_words, 48
-.equ variables, 0x20000600     // number of the program, end of the text, count of interrupts
+.equ variables, 0x20000600     // program number, end of the text, interrupt count
 .equ text, 0x20001000
 .equ stack, 0x20018000
 .equ systick, 0xE000E010
@@ -38,11 +38,11 @@ reset:
   str r0, [r4, #4]
 
 next_program:
-  // R4: the number from which all of the program's state comes.
+  // R4: the random seed of the program's state.
   ldr r0, =variables
   ldr r1, [r0]
   ldr r2, =programs
-  add r2, r2, r1, lsl #4       // seed, where it begins, period of SysTick, FPSCR
+  add r2, r2, r1, lsl #4       // seed, start address, SysTick period, FPSCR
   ldr r4, [r2]
   ldr r5, =data
   ldr r6, =(data_bytes + state_words * 4) / 4
@@ -51,7 +51,7 @@ fill:
   str r4, [r5], #4
   subs r6, #1
   bne fill
-  // Half of the floats near 1, the others any bits.
+  // Half of the floats are near 1, the others have random bits.
   ldr r5, =state + 16 * 4
   movs r6, #16
 near_one:
@@ -72,7 +72,7 @@ near_one:
   ldr r0, [r2, #12]
   vmsr fpscr, r0
   ldr r1, [r2, #4]
-  push {r1}                    // where to go
+  push {r1}                    // start address
   ldr r0, =state
   add r1, r0, #16 * 4
   vldm r1, {s0-s31}
@@ -146,7 +146,7 @@ hash:
   ldr r1, =0x20026             // ADP_Stopped_ApplicationExit
   bkpt #0xAB
 
-// R4 in hexadecimal digits and the end of a line, behind the text. Spoils R0 to R3.
+// Appends R4 in hexadecimal digits and a newline to the text. Changes R0 to R3.
 write_word:
   ldr r0, =variables
   ldr r1, [r0, #4]
@@ -166,14 +166,14 @@ digit:
   str r1, [r0, #4]
   bx lr
 
-// R4 becomes the next number of a sequence (Marsaglia's xorshift).
+// R4 becomes the next random number (Marsaglia's xorshift).
 random:
   eor r4, r4, r4, lsl #13
   eor r4, r4, r4, lsr #17
   eor r4, r4, r4, lsl #5
   bx lr
 
-// Spoils all that a program must find again: what the core stacks, the flags, an if-then block, the FPU.
+// Changes all state that must be restored for a program: stacked registers, flags, IT state, FPU.
 .thumb_func
 interrupt:
   ldr r0, =variables

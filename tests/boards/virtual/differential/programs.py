@@ -1,7 +1,8 @@
-"""Random Thumb-2 programs for the Cortex-M4F, in assembler, for harness.S to run.
+"""Random Thumb-2 assembly programs for the Cortex-M4F, run by harness.S.
 
-A program repeats a body of random instructions 32 times. R8 points into the memory that belongs to it, R10 counts,
-SP is what it was; all else is free. Whatever interrupts it, what it leaves depends on its seed alone.
+A program repeats a body of random instructions 32 times. R8 points to the program's memory, R10 is the loop counter,
+and SP is preserved. All other registers are free. The result depends only on the random seed, independent of
+interrupts.
 """
 import random
 
@@ -57,7 +58,7 @@ class Program:
             return f"{self.general()}, rrx"
         return self.general() + (f", {kind} #{self.random.randrange(1, 32)}" if kind else "")
 
-    # Each of these is one instruction, which `c` makes conditional.
+    # Each of these returns one instruction, which `c` makes conditional.
     def arithmetic(self, c, flags):
         r = self.random
         s = self.one_of(["", "s"]) if flags else ""
@@ -113,7 +114,7 @@ class Program:
                                   ("ldrsb", 1), ("strb", 1), ("ldrd", 8), ("strd", 8)])
         if size == 8:
             return f"{name}{c} {', '.join(self.two())}, [r8, #{4 * self.random.randrange(-60, 60)}]"
-        # Up to a word may lie anywhere.
+        # Accesses of up to one word may be unaligned.
         return f"{name}{c} {self.general()}, [r8, #{self.random.randrange(-252, 500)}]"
 
     def float_one(self, c):
@@ -142,7 +143,7 @@ class Program:
             return self.access(c)
         return self.float_one(c)
 
-    # Each of these is a group of lines.
+    # Each of these returns a group of lines.
     def if_then(self):
         condition = self.one_of(CONDITIONS)
         pattern = [True] + [self.random.random() < 0.5 for _ in range(self.random.randrange(4))]
@@ -190,7 +191,7 @@ class Program:
                                   f"{self.one_of(['vldmia', 'vstmia'])} {base}{back}, {{s{first}-s{first + self.random.randrange(1, 12)}}}",
                                   f"{self.one_of(['ldr', 'str'])} {chosen[0]}, [{base}, #{4 * self.random.randrange(-9, 9)}]!",
                                   f"{self.one_of(['ldrb', 'strh'])} {chosen[0]}, [{base}], #{self.random.randrange(-99, 99)}"]))
-        # An address is the same wherever the image lies, but keeps the state from spreading.
+        # Addresses do not depend on the image position, but their use as data would make the state less random.
         return lines + [f"eor {base}, {base}, {chosen[0]}"]
 
     def indexed(self):
@@ -225,14 +226,14 @@ class Program:
         for _ in range(self.random.randrange(10, 30)):
             body += self.one_of(groups)() if self.random.random() < 0.5 else [self.any_one()]
         again = self.label()
-        # One at random lies at an odd half word, so that pages divide all kinds of instructions.
+        # Half of the programs start at an odd half word, so that page boundaries divide all kinds of instructions.
         start = ["nop"] if self.random.random() < 0.5 else []
         end = ["sub r10, #1", "cmp r10, #0", f"beq.w {again}_ends", f"b.w {again}", f"{again}_ends: bx lr"]
         return start + [f"{again}:"] + body + end + self.subroutines + [".ltorg"]
 
 
 def programs(seed, first, count):
-    """Assembler of the programs with these numbers, of the sequence that the seed begins."""
+    """Returns the assembly source of the programs `first` to `first + count - 1` of this seed."""
     text = [".syntax unified", ".cpu cortex-m4", ".fpu fpv4-sp-d16", ".thumb", ".section .programs, \"ax\""]
     table = [".align 2", ".global programs, program_count", f".equ program_count, {count}", "programs:"]
     for number in range(first, first + count):

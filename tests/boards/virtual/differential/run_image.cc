@@ -1,4 +1,4 @@
-// Runs an image on the virtual chip alone, without a board, and passes on what it writes by semihosting.
+// Runs an image on the virtual chip without a board, and prints its semihosting output.
 #include <chip/chip.hpp>
 #include <cstdio>
 #include <cstring>
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     chip.on_console = [](std::uint8_t byte) { std::putchar(byte); };
     chip.load_elf(argv[2]);
     chip.reset();
-    constexpr double patience_s = 60.0;  // of board time
+    constexpr double patience_s = 60.0;  // in board time
     const Stop stop = chip.run_until(ticks(patience_s));
     if (stop != Stop::firmware_exit) {
       std::printf("the image did not end: %s\n",

@@ -1,4 +1,4 @@
-// Each fault of the table, put into a chip with its arm by name: what it does to them, and that healing undoes it.
+// Injects each fault of the table by name into a chip with its arm, and checks its effect and its removal.
 #include <injection/injector.hpp>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using protocol::InjectedFault;
 
 namespace {
 
-/// A chip with a servo's load, soldered to the driver board; nothing enables the bridges.
+/// A chip with a control load on the driver board; the firmware does not enable the bridges.
 struct Rig {
   explicit Rig(const std::string& firmware = "servo")
       : plant(test::omni(), board::omni_driver),
@@ -31,7 +31,7 @@ struct Rig {
     chip.clear_counters();
     run(0.001);
   }
-  /// As the board does it.
+  /// Runs like the virtual board.
   void run(double time_s) {
     const Ticks end = chip.now() + ticks(time_s);
     while (chip.now() < end) {
@@ -59,7 +59,7 @@ struct Rig {
   Injector injector;
 };
 
-/// A place for each row of the table.
+/// Returns a valid location for each row of the table.
 std::string example(const protocol::InjectionInfo& row) {
   using protocol::InjectionPlace;
   const std::string name(row.name);
@@ -121,7 +121,7 @@ TEST_CASE("a fault comes at its time, to the tick, and goes after its duration")
   REQUIRE(rig.injector.active().size() == 1);
   const double came_s = seconds(rig.injector.active()[0].since - begin);
   CHECK(came_s >= 0.0012345);
-  CHECK(came_s < 0.0012345 + 2e-6);  // the end of an instruction, or of a block of them
+  CHECK(came_s < 0.0012345 + 2e-6);  // the end of an instruction or of a block of instructions
   rig.run(0.0003);
   CHECK(rig.injector.active().empty());
   CHECK_FALSE(rig.plant.truth(rig.chip.now()).bridge_fault);
@@ -141,7 +141,7 @@ TEST_CASE("faults of one kind at one place follow each other, at other places th
   rig.injector.heal_all();
   CHECK(rig.injector.active().empty());
   CHECK(rig.injector.next() == ~Ticks{0});
-  CHECK(rig.level({'B', 15}) == PinLevel::low);  // the inkwell's switch is closed
+  CHECK(rig.level({'B', 15}) == PinLevel::low);  // the inkwell switch is closed
 }
 
 TEST_CASE("wires") {
@@ -155,7 +155,7 @@ TEST_CASE("wires") {
   rig.inject("wire_frozen:PB12");
   rig.inject("bridge_fault");
   rig.run(0.0002);
-  CHECK(rig.level(fault_wire) == PinLevel::high);  // as it was when it froze
+  CHECK(rig.level(fault_wire) == PinLevel::high);  // the level at the time of the freeze
   CHECK(rig.level(board::omni_driver.bridge_fault_tim8.pin) == PinLevel::low);
   rig.inject("wire_high:PB12");
   CHECK(rig.level(fault_wire) == PinLevel::high);
@@ -163,7 +163,7 @@ TEST_CASE("wires") {
   rig.injector.heal_all();
   rig.run(0.0002);
   rig.inject("wires_shorted:PB12+PB15");
-  CHECK(rig.level(fault_wire) == PinLevel::low);  // by the inkwell's switch
+  CHECK(rig.level(fault_wire) == PinLevel::low);  // from the inkwell switch
   rig.injector.heal_all();
   CHECK(rig.level(fault_wire) == PinLevel::high);
 }
@@ -233,7 +233,7 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
   rig.inject("encoder_lost_counts:1=0.5");
   CHECK(turn() < 0.9 * sound);
   rig.injector.heal_all();
-  rig.inject("encoder_slip:1=4000");  // 20 a step of the arm, so that it takes 3.3 ms
+  rig.inject("encoder_slip:1=4000");  // 20 counts per step of the arm, so the slip takes 3.3 ms
   CHECK(turn() > sound + 3500);
 }
 
@@ -247,12 +247,12 @@ TEST_CASE("more faults than a board holds are refused, until some are healed") {
 }
 
 TEST_CASE("legs of bridges by motor and terminal") {
-  Rig rig("converters");  // which leaves the bridges alone
+  Rig rig("converters");  // does not drive the bridges
   const auto drive = [&](board::Pin pin, bool high) {
     rig.wires.output_changed(pin.port, pin.number, high ? PinLevel::high : PinLevel::low, rig.chip.now());
   };
   const auto enable = [&](bool on) { drive(board::omni_driver.bridge_enable, on); };
-  const auto run_on = [&](double time_s) {  // with heartbeats
+  const auto run_on = [&](double time_s) {  // with heartbeat pulses
     for (double left_s = time_s; left_s > 0; left_s -= 50e-6) {
       for (const bool high : {true, false}) drive(board::omni_driver.bridge_heartbeat, high);
       rig.run(50e-6);
@@ -276,7 +276,7 @@ TEST_CASE("legs of bridges by motor and terminal") {
   CHECK_FALSE(trips("leg_open:3A"));
   CHECK_FALSE(trips("leg_slow:3A=0.00002"));
 
-  // One step of the voltage across motor 3.
+  // Step response of the voltage across motor 3.
   const auto risen_A = [&](const std::string& fault) {
     if (!fault.empty()) rig.inject(fault);
     enable(true);
@@ -338,7 +338,7 @@ TEST_CASE("supplies") {
     rig.inject(fault);
     CHECK(wiper_V() == doctest::Approx(1.5).epsilon(0.01));
   }
-  CHECK(rig.injector.active().size() == 1);  // one takes the other's place
+  CHECK(rig.injector.active().size() == 1);  // the new fault replaces the old one
   rig.injector.heal_all();
   CHECK(wiper_V() == doctest::Approx(1.65).epsilon(0.01));
 
@@ -349,7 +349,7 @@ TEST_CASE("supplies") {
   rig.run(0.0005);
   CHECK(rig.instructions_in(0.0005) > 0);
 
-  // Another amount of the same fault takes its place without a sound moment: one that is low stays so.
+  // Changing the amount of an active fault does not remove the fault in between: a low supply remains low.
   const auto brown_outs = [&] { return rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)]; };
   const auto before = brown_outs();
   for (const char* fault : {"logic_sag=2", "logic_sag=1.9"}) {
@@ -364,7 +364,7 @@ TEST_CASE("crystal, cable and host") {
   rig.inject("crystal_drift=-5000");
   CHECK(rig.chip.clocks().hclk_Hz == 167'160'000);
   rig.injector.heal_all();
-  CHECK(rig.chip.clocks().hclk_Hz == 168'008'400);  // the 50 ppm that it had before
+  CHECK(rig.chip.clocks().hclk_Hz == 168'008'400);  // the original 50 ppm remain
   rig.inject("crystal_stop");
   CHECK(rig.instructions_in(0.001) == 0);
   rig.injector.heal_all();
@@ -388,7 +388,7 @@ TEST_CASE("the core that stands, interrupts that stay away or come late, convert
     CHECK(rig.instructions_in(0.001) > 1000);
   }
   const auto handled = [](Rig& rig) {
-    const auto before = rig.chip.memory_word(0x2001F004);  // counted by the firmware's handler
+    const auto before = rig.chip.memory_word(0x2001F004);  // counter of the firmware's handler
     rig.run(0.001);
     return rig.chip.memory_word(0x2001F004) - before;
   };
@@ -403,7 +403,7 @@ TEST_CASE("the core that stands, interrupts that stay away or come late, convert
     CHECK(handled(rig) >= 18);
   }
   Rig stalled;
-  const auto looped = [&stalled] { return stalled.chip.memory_word(0x2001F008); };  // counted by its main loop
+  const auto looped = [&stalled] { return stalled.chip.memory_word(0x2001F008); };  // counter of its main loop
   stalled.inject("main_loop_stalled=10");
   const auto before = looped();
   CHECK(handled(stalled) >= 19);
@@ -417,7 +417,8 @@ TEST_CASE("the core that stands, interrupts that stay away or come late, convert
   CHECK(looped() > between + 400);
   CHECK(looped() < between + 800);  // of 1200 in a whole millisecond
   Rig late;
-  late.inject("exception_late:34=12600");  // a period and a half, so that every second one falls into the next
+  late.inject("exception_late:34=12600");  // one and a half periods, so that every second interrupt falls into the next
+                                           // period
   CHECK(handled(late) < 15);
   Rig dma("converters");
   dma.run(0.002);
@@ -432,7 +433,7 @@ TEST_CASE("bits and the program counter, at an address or by the seed") {
   Rig rig;
   rig.inject("ram_bit:0x2001EF01=3");
   CHECK((rig.chip.memory_word(0x2001'EF00) >> 11 & 1) == 1);
-  rig.injector.heal_all();  // what has happened stays so
+  rig.injector.heal_all();  // does not undo a change that has already happened
   CHECK((rig.chip.memory_word(0x2001'EF00) >> 11 & 1) == 1);
   const std::uint32_t before = rig.chip.memory_word(0x0800'0000);
   rig.inject("flash_bit:0x08000000=0");
@@ -449,7 +450,7 @@ TEST_CASE("bits and the program counter, at an address or by the seed") {
     CHECK(chosen(fault).address == chosen(fault).address);
     CHECK(chosen(fault).amount >= 0.0);
   }
-  CHECK(chosen("flash_bit").address.value() - 0x0800'0000 < 0x4000);  // where the image is
+  CHECK(chosen("flash_bit").address.value() - 0x0800'0000 < 0x4000);  // within the image
   rig.inject("program_astray:0x08000101");
   CHECK(rig.injector.active()[0].injection.address == 0x0800'0100u);
 

@@ -27,7 +27,7 @@ double energy_J(const ArmMotion& arm) {
          arm.dynamics().potential_energy_J(arm.joints_rad());
 }
 
-/// Stops so far away that the arm never meets them.
+/// Moves the stops so far away that the arm never reaches them.
 arms::Description unbounded(arms::Description arm) {
   using protocol::Parameter;
   for (auto p : {Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad, Parameter::elbow_minimum_rad})
@@ -82,7 +82,7 @@ TEST_CASE("Coulomb friction holds a torque below its cone at rest and lets a lar
 
   run(arm, 0.1, {0.012, 0.0, 0.0});
   CHECK(arm.joints_rad()[0] > 0.105);
-  // and it stops for good once the torque is gone
+  // Without torque the arm comes to rest permanently.
   run(arm, 1.0, no_torque);
   const Vector3 rest = arm.joints_rad();
   run(arm, 1.0, no_torque);
@@ -100,7 +100,7 @@ TEST_CASE("a steady hand brings the arm to rest, at any stiffness it may have") 
     const Vector3 rest = arm.joints_rad();
     run(arm, 1.0, no_torque, hand);
     CHECK((arm.joints_rad() - rest).norm() < 1e-9);
-    // Within what friction and gravity can hold against the spring: some 1.3 N of force.
+    // Within the force of friction and gravity against the spring, about 1.3 N.
     CHECK((position_m(arm) - target).norm() < 1.3 / stiffness + 1e-4);
   }
 }
@@ -127,7 +127,7 @@ TEST_CASE("the stops bear the falling arm, the elbow's one between the links") {
     run(arm, 3.0, {0.2, 0.0, 0.0});
     CHECK(arm.joint_speeds_rad_s().norm() < 1e-9);
     const double torque_Nm = 0.2;
-    // Joint 1 leans on its stop with what friction does not hold.
+    // Joint 1 presses against its stop with the torque that friction does not balance.
     const double beyond_rad = arm.joints_rad()[0] - p[Parameter::joint_1_maximum_rad];
     CHECK(beyond_rad > (torque_Nm - 0.011) / 20.0);
     CHECK(beyond_rad < (torque_Nm + 0.011) / 20.0);

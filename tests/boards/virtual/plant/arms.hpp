@@ -1,4 +1,4 @@
-// The arms of the repository, for tests of what is simulated.
+// Arm descriptions of this repository, for tests of the simulation.
 #pragma once
 
 #include <filesystem>
@@ -23,25 +23,24 @@ inline std::vector<arms::Description> all_arms() {
 inline arms::Description omni() { return arms::read(arms_directory() / "omni.toml"); }
 inline arms::Description paper() { return arms::read(arms_directory() / "paper.toml"); }
 
-/// Gear times torque constant of motor 0, 1 or 2, both counted positive.
+/// Gear ratio times torque constant of motor 0, 1 or 2; both are counted as positive.
 inline double torque_Nm_per_A(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
   return static_cast<double>(p[of_axis(protocol::Parameter::gear_ratio_1, motor)]) *
          static_cast<double>(p[of_axis(protocol::Parameter::torque_constant_1_Nm_per_A, motor)]);
 }
 
-/// Of the motors' windings, which are alike.
+/// Winding resistance, equal for all motors.
 inline double winding_ohm(const arms::Description& arm) {
   return static_cast<double>(arm.parameters[protocol::Parameter::motor_resistance_1_ohm]);
 }
 
-/// All that a motor's current flows through: winding, shunt and the switches of both legs.
+/// Total resistance in the motor's current path: winding, shunt and the switches of both half bridges.
 inline double circuit_ohm(const arms::Description& arm) {
   return winding_ohm(arm) + static_cast<double>(board::omni_driver.shunt_ohm) +
          2.0 * virtual_board::Imperfections{}.leg_resistance_ohm;
 }
 
-/// The arm without friction.
 inline arms::Description frictionless(arms::Description description) {
   description.simulation.coulomb_friction_Nm = {};
   description.simulation.viscous_friction_Nms_per_rad = {};

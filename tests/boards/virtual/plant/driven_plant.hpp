@@ -1,4 +1,4 @@
-// A plant that is driven: the edges that the timers would give it, and a decoder for its encoders.
+// A plant with simulated timers: PWM edges, and a decoder for its encoders.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace inkwell::virtual_board;
 inline constexpr Ticks servo_period = ticks_per_s / board::servo_rate_Hz;
 inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 
-/// Levels of the chip's inputs, with a quadrature decoder as the timers have one.
+/// Input levels of the chip, with a quadrature decoder like that of the timers.
 class DecodedInputs final : public InputPins {
  public:
   explicit DecodedInputs(const board::Facts& board) : facts(board) {}
@@ -30,7 +30,7 @@ class DecodedInputs final : public InputPins {
       const bool a = at(w.a.pin) == PinLevel::high, b = at(w.b.pin) == PinLevel::high;
       const int phase = a ? (b ? 2 : 1) : (b ? 3 : 0);
       const int moved = (phase - phases[i]) & 3;
-      if (moved == 2) ++jumps;  // both pins at once: the direction is lost
+      if (moved == 2) ++jumps;  // both inputs changed simultaneously: the direction is unknown
       counts[i] += moved == 1 ? 1 : moved == 3 ? -1 : 0;
       if (moved != 0 && since != just_now) {
         if (since < newest_edge[i]) ++out_of_order;
@@ -50,11 +50,11 @@ class DecodedInputs final : public InputPins {
   std::array<int, 3> phases{};
   std::array<std::int64_t, 3> counts{};
   int calls = 0, jumps = 0, out_of_order = 0;
-  std::array<Ticks, 3> newest_edge{};  ///< of each encoder
+  std::array<Ticks, 3> newest_edge{};  ///< per encoder
   Ticks shortest_pause = just_now;     ///< between two edges of one encoder
 };
 
-/// A plant with the edges that timers would give it: centre-aligned, unipolar, as the board's facts say.
+/// A plant with center-aligned, unipolar PWM edges as defined in the board's facts.
 struct DrivenPlant {
   explicit DrivenPlant(const arms::Description& arm, const PlantOptions& options = {},
                        const board::Facts& board = board::omni_driver)
@@ -68,7 +68,7 @@ struct DrivenPlant {
     beat();
   }
   void set_enable(bool on) { drive(facts.bridge_enable, on ? PinLevel::high : PinLevel::low); }
-  /// As each control interrupt does, unless it `is_halted`.
+  /// Generates the heartbeat of a control interrupt, unless `is_halted`.
   void beat() {
     if (is_halted) return;
     drive(facts.bridge_heartbeat, PinLevel::high);
@@ -80,14 +80,14 @@ struct DrivenPlant {
       for (const auto& leg : {bridge.leg_a, bridge.leg_b})
         plant.output_changed(leg.pin.port, leg.pin.number, level, now);
   }
-  /// Runs without any edge.
+  /// Runs without PWM edges.
   void idle(double time_s) {
     for (const Ticks end = now + ticks(time_s); now < end;) {
       beat();
       plant.advance(now += servo_period);
     }
   }
-  /// Runs with PWM at these duties.
+  /// Runs with PWM at these duty cycles.
   void run(double time_s, std::array<double, 3> duty) {
     struct Edge {
       Ticks at;

@@ -16,7 +16,7 @@ TEST_CASE("the meter adds up what the arm gives to the hand, and nothing that it
   meter.start({0.0, 0.0, 0.1}, 7);
   CHECK(meter.reading().since == 7);
   meter.step({0.0, 0.0, 0.12}, {0.0, 0.0, 0.1}, {0.0, 3.0, 4.0});   // 4 N over 20 mm
-  meter.step({0.0, 0.0, 0.11}, {0.0, 0.0, 0.14}, {0.0, 0.0, 4.0});  // the hand gives 40 mJ back
+  meter.step({0.0, 0.0, 0.11}, {0.0, 0.0, 0.14}, {0.0, 0.0, 4.0});  // the hand returns 40 mJ
   meter.step({0.0, 0.0, 0.11}, {0.0, 0.0, 0.11}, {0.0, 0.0, 1.0});
   CHECK(meter.reading().peak_force_N == doctest::Approx(5.0));
   CHECK(meter.reading().energy_J == doctest::Approx(0.08));
@@ -42,7 +42,7 @@ TEST_CASE("the plant's meter tells the force and the work of motors on a hand th
   CHECK(reading.peak_force_N >= 0.99 * t.hand_force_N.norm());
   CHECK(reading.travel_m >= 0.99 * stretched_m);
   CHECK(reading.lag_m == doctest::Approx(reading.travel_m).scale(0).epsilon(0.02));
-  // At least what the hand's spring holds now.
+  // At least the energy that is now stored in the spring of the hand.
   CHECK(reading.energy_J > 0.9 * 0.5 * 2000.0 * stretched_m * stretched_m);
 }
 

@@ -27,13 +27,13 @@ TEST_CASE("the hand takes the stylus out, moves it with minimum jerk, holds it s
       driven.idle(0.001);
       fastest_m_s = std::max(fastest_m_s, driven.plant.truth(driven.now).velocity_m_s.norm());
     }
-    // A minimum-jerk movement is fastest in its middle, at 15/8 of its mean speed.
+    // The peak speed of a minimum-jerk movement is 15/8 of its mean speed, at its midpoint.
     CHECK(fastest_m_s == doctest::Approx(1.875 * (goal - start).norm() / 0.5).scale(0).epsilon(0.1));
     Truth t = driven.plant.truth(driven.now);
     CHECK((t.position_m - goal).norm() < 0.002);
     CHECK_FALSE(t.docked);
     CHECK(driven.inputs.at(board::omni_driver.inkwell_switch) == PinLevel::floating);
-    // A steady hand: the arm rests, and so do the encoders.
+    // With a steady hand the arm and the encoders are stationary.
     driven.idle(0.5);
     const auto counts = driven.inputs.counts;
     driven.idle(0.5);
@@ -46,7 +46,7 @@ TEST_CASE("the hand takes the stylus out, moves it with minimum jerk, holds it s
       driven.idle(0.001);
       fastest_m_s = std::max(fastest_m_s, driven.plant.truth(driven.now).velocity_m_s.norm());
     }
-    // It goes straight home at 0.2 m/s, as calm as a hand would.
+    // The hand returns straight to the inkwell at 0.2 m/s with a minimum-jerk movement.
     CHECK(fastest_m_s == doctest::Approx(1.875 * 0.2).scale(0).epsilon(0.1));
     t = driven.plant.truth(driven.now);
     CHECK(t.docked);
@@ -78,8 +78,8 @@ TEST_CASE("an arm that is let go falls onto its stops and rests") {
 }
 
 TEST_CASE("a wall made by the motors is stable against a stiff hand and keeps still") {
-  // Proportional-derivative force in the workspace at 20 kHz, turned into duty without a current loop: a crude
-  // device, but with the true plant between duty and position.
+  // A proportional-derivative force in the workspace at 20 kHz, converted to duty cycles without a current loop. The
+  // device is simple, but the complete plant is between duty cycle and position.
   const auto arm = test::omni();
   DrivenPlant driven(arm);
   driven.enable(true);
@@ -107,7 +107,7 @@ TEST_CASE("a wall made by the motors is stable against a stiff hand and keeps st
     highest = highest.cwiseMax(t.joints_rad);
   }
   const Truth t = driven.plant.truth(driven.now);
-  CHECK(t.position_m.y() < centre.y() - 0.001);  // the hand is in the wall
+  CHECK(t.position_m.y() < centre.y() - 0.001);  // the hand is inside the wall
   CHECK(std::abs(t.current_A[1]) > 0.3);
   for (int i = 0; i < 3; ++i) CHECK(highest[i] - lowest[i] < 2.0 * 0.4e-3);  // two encoder counts
 }

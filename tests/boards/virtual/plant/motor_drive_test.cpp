@@ -31,7 +31,7 @@ MotorDrive drive(double dead_time_s = 0.0, const Imperfections& imperfections = 
   return motor;
 }
 
-/// Runs centre-aligned, unipolar switching and returns the extremes and the mean of the current in the last period.
+/// Runs center-aligned, unipolar switching and returns the extremes and the mean of the current in the last period.
 struct Ripple {
   double lowest_A = 1e9, highest_A = -1e9, mean_A = 0.0, at_turning_point_A = 0.0;
 };
@@ -48,7 +48,8 @@ Ripple switch_bridge(MotorDrive& motor, double duty, int periods, Ticks& now) {
       ripple.highest_A = std::max(ripple.highest_A, motor.current_A());
     };
     if (last) motor.take_charges();
-    // From the middle of the low zero vector: the leg with the larger duty rises first and falls last.
+    // The period starts in the middle of the low zero vector. The leg with the larger duty cycle rises first and falls
+    // last.
     const unsigned first = duty >= 0.0 ? 0 : 1;
     const double longer = std::max(duty_a, duty_b), shorter = std::min(duty_a, duty_b);
     edge((1.0 - longer) / 2.0, first, Leg::high);
@@ -76,7 +77,7 @@ TEST_CASE("a voltage step drives the current along R and L") {
     CHECK(motor.current_A() ==
           doctest::Approx(bus_V / resistance_ohm * (1.0 - std::exp(-at_s / time_constant_s))).epsilon(1e-6));
   }
-  // Charge is the current's integral: V t / R minus what the inductance keeps.
+  // The charge is the integral of the current: V t / R minus the charge of the inductance.
   const auto charges = motor.take_charges();
   CHECK(charges.motor_As == doctest::Approx(bus_V / resistance_ohm * (2e-3 - time_constant_s)).scale(0).epsilon(1e-6));
   CHECK(charges.supply_As == doctest::Approx(charges.motor_As));
@@ -110,7 +111,8 @@ TEST_CASE("the supply gives the power that the motor takes") {
   auto motor = drive();
   Ticks now = 0;
   const double mean_A = switch_bridge(motor, 0.5, 1000, now).mean_A;
-  // One more period by hand, whose charges are still there: duty 0.5 puts the supply on the motor half the time.
+  // One more period with single edges, whose charges have not been read. At duty cycle 0.5 the supply drives the motor
+  // half of the time.
   const Ticks period = virtual_board::ticks_per_s / board::pwm_Hz;
   motor.set_leg(0, Leg::high, now + period / 8);
   motor.set_leg(1, Leg::high, now + 3 * period / 8);
@@ -141,11 +143,11 @@ TEST_CASE("a floating bridge kills the current through its diodes and leaves it 
     CHECK(sign * motor.current_A() > 0.0);
     motor.advance(ticks(100e-6 + 1.1 * to_zero_s));
     CHECK(motor.current_A() == 0.0);
-    CHECK(motor.take_charges().supply_As < 0.0);  // the inductance's energy goes back into the supply
-    motor.set_back_emf_V(sign * 15.0);            // too little to open the diodes
+    CHECK(motor.take_charges().supply_As < 0.0);  // the energy of the inductance returns to the supply
+    motor.set_back_emf_V(sign * 15.0);            // too low to open the diodes
     motor.advance(ticks(10e-3));
     CHECK(motor.current_A() == 0.0);
-    motor.set_back_emf_V(sign * 25.0);  // a motor spun beyond the supply feeds it
+    motor.set_back_emf_V(sign * 25.0);  // a motor with a back-EMF above the supply voltage feeds the supply
     motor.advance(ticks(20e-3));
     CHECK(motor.current_A() == doctest::Approx(-sign * (25.0 - 19.6) / resistance_ohm));
   }
@@ -155,8 +157,8 @@ TEST_CASE("the dead time costs a voltage against the current's direction") {
   auto motor = drive(static_cast<double>(board::omni_driver.bridge_dead_time_s));
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.3, 2000, now);
-  // Leg A loses the dead time at its rising edge, leg B gains it at its falling one: each dead time the
-  // diode's drop comes on top.
+  // Leg A loses the dead time at its rising edge, and leg B gains it at its falling edge. During each dead time the
+  // diode's forward voltage is added.
   const double lost_V =
       2.0 * static_cast<double>(board::omni_driver.bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
   CHECK(lost_V > 0.4);

@@ -1,4 +1,4 @@
-// Encoders, shunts, motors, bridges and supply that have failed, by their numbers.
+// Faults of encoders, shunts, motors, bridges and supply, by index.
 #include <plant/plant.hpp>
 
 #include <array>
@@ -14,7 +14,7 @@ using namespace inkwell::test;
 
 namespace {
 
-/// An arm without friction and weight that swings about its waist, with its encoders' edges decoded.
+/// An arm without friction and weight that rotates about its waist axis, with decoded encoder edges.
 struct Swinging {
   Swinging() : arm(weightless()), driven(arm) {
     driven.plant.place({-0.9, 0.8, 0.4}, {20.0, 0.0, 0.0});
@@ -34,7 +34,8 @@ struct Swinging {
   std::int64_t before, true_before;
 };
 
-/// Bridges on at these duties until the currents stand; joints held by nothing for so short a time.
+/// Runs the bridges at these duty cycles until the currents are constant. The time is too short for the free joints to
+/// move.
 DrivenPlant driven_at(std::array<double, 3> duty, double time_s = 0.003) {
   DrivenPlant driven(test::omni());
   driven.enable(true);
@@ -132,7 +133,8 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     DrivenPlant driven(arm);
     driven.plant.set_motor_fault(2, fault);
     driven.enable(true);
-    // All of the supply in one direction and next to no time to move: the current is that of the resistance.
+    // Full supply voltage in one direction for a time without significant motion: the resistance determines the
+    // current.
     driven.plant.output_changed(board::omni_driver.bridges[2].leg_a.pin.port,
                                 board::omni_driver.bridges[2].leg_a.pin.number, PinLevel::high, 0);
     driven.idle(0.0012);
@@ -140,7 +142,7 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
   };
   const Truth sound = steady({}), shorted = steady({.turns_left = 0.5}), hot = steady({.warmer_K = 100.0});
   const auto ohm = [](const Truth& t, double factor) {
-    // Of the voltage a part is back-EMF, which goes with speed and torque constant.
+    // Part of the voltage is back-EMF, which is proportional to speed and torque constant.
     const double constant = std::abs(t.torque_Nm[2] / t.current_A[2]);
     CHECK(factor > 0.0);
     return (t.supply_V - constant * std::abs(t.joint_speeds_rad_s[2])) / std::abs(t.current_A[2]);
@@ -157,7 +159,7 @@ TEST_CASE("a leg whose upper switch has fused drives the motor until its bridge 
   auto driven = driven_at({-0.3, 0.0, 0.0});
   CHECK(current_A(driven, 0) < -1.0);
   driven.plant.set_leg_fault(0, 0, LegFault::high);
-  driven.run(0.0003, {-0.3, 0.0, 0.0});  // the lower switch is asked for at once
+  driven.run(0.0003, {-0.3, 0.0, 0.0});  // the lower switch is requested immediately
   Truth t = driven.plant.truth(driven.now);
   CHECK(t.bridge_fault);
   CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::low);
@@ -167,7 +169,7 @@ TEST_CASE("a leg whose upper switch has fused drives the motor until its bridge 
   driven.enable(false);
   driven.idle(0.0001);
   CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::high);
-  driven.enable(true);  // the inputs rest low: through both switches of the leg
+  driven.enable(true);  // the inputs are low at rest: current flows through both switches of the leg
   driven.idle(0.0001);
   CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::low);
 
@@ -189,7 +191,7 @@ TEST_CASE("a fused leg conducts though the bridge is disabled: a motor that is t
     driven.idle(0.001);
     const double back_emf_V = test::torque_Nm_per_A(arm, 0) * 20.0;
     CHECK(back_emf_V > 2.0);
-    // Out of ground through the diode of one leg and back into it through the other: only in one direction.
+    // From ground through the diode of one leg and back through the other leg: possible in one direction only.
     if (speed_rad_s > 0.0)
       CHECK(std::abs(current_A(driven, 0)) > 0.7 * (back_emf_V - 0.8) / test::circuit_ohm(arm));
     else
@@ -211,7 +213,7 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
   slow.plant.set_leg_delay(1, 0, 1e-6);
   slow.plant.set_leg_delay(1, 1, 1e-6);
   slow.run(0.003, {0.0, 0.4, 0.0});
-  // The diodes take what the dead time takes as well: once a period in each leg.
+  // The diodes conduct during the delay, as in a dead time: once per period in each leg.
   const double lost_V = 2.0 * 1e-6 * board::pwm_Hz * static_cast<double>(board::supply_nominal_V);
   CHECK(sound_A - current_A(slow, 1) ==
         doctest::Approx(lost_V / test::circuit_ohm(test::omni())).scale(0).epsilon(0.4));
@@ -224,7 +226,7 @@ TEST_CASE("a supply that fails gives what the fault says, and then again what it
   driven.idle(0.01);
   CHECK(driven.plant.truth(driven.now).supply_V == doctest::Approx(30.0).epsilon(0.01));
   driven.plant.fail_supply_at_V(0.0);
-  driven.idle(0.7);  // 300 ohm on 2200 uF
+  driven.idle(0.7);  // 300 ohm and 2200 uF
   CHECK(driven.plant.truth(driven.now).supply_V == doctest::Approx(30.0 * std::exp(-0.7 / 0.66)).epsilon(0.02));
   driven.plant.fail_supply_at_V(std::nullopt);
   driven.idle(0.01);

@@ -77,7 +77,7 @@ TEST_CASE("encoders count through fast motion without a lost edge") {
   CHECK(std::abs(encoder_after[0] - encoder_before[0]) > 500);
   for (unsigned i = 0; i < 3; ++i) CHECK(driven.inputs.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
   CHECK(driven.inputs.jumps == 0);
-  // Two edges come in a step of the arm, each at its own time: the chip's filters would swallow them otherwise.
+  // Two edges within one step of the arm have separate times; otherwise the chip's filters would suppress them.
   const double counts_per_s = 40.0 *
                               static_cast<double>(arm.parameters[protocol::Parameter::gear_ratio_1] *
                                                   arm.parameters[protocol::Parameter::encoder_1_counts_per_turn]) /
@@ -103,7 +103,7 @@ TEST_CASE("shunt amplifiers read the current within their imperfections") {
       squares_A += read_A * read_A;
     }
     const double mean_A = sum_A / 1000.0;
-    // Between the pulses the current falls with R / L, and the amplifier is late by its time constant.
+    // Between the pulses the current decays with R / L, and the amplifier lags by its time constant.
     const double late_A = t.current_A[i] * (test::circuit_ohm(arm) / arm.motor.inductance_H) /
                           (2.0 * 3.14159265358979 * imperfections.amplifier_bandwidth_Hz);
     const double expected_A = (t.current_A[i] + late_A) * (1.0 + imperfections.amplifier_gain_error[i]) +
@@ -138,7 +138,8 @@ TEST_CASE("the enable pin and the bridges' fault take the current away at once, 
     if (how == 2) driven.plant.set_bridge_fault(true);
     driven.idle(0.0005);
     const Truth t = driven.plant.truth(driven.now);
-    if (how == 1) {  // low through their pull-downs: each motor is shorted and its back-EMF drives what is left
+    if (how == 1) {  // low through their pull-downs: each motor is shorted and its back-EMF drives the remaining
+                     // current
       const double back_emf_V = test::torque_Nm_per_A(arm, 2) * t.joint_speeds_rad_s[2];
       CHECK(std::abs(t.current_A[2] + back_emf_V / test::circuit_ohm(arm)) < 0.03);
     } else {
@@ -175,17 +176,17 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at == PinLevel::high ? PinLevel::low : PinLevel::high);
     driven.now += 10;
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);
-    // The rise that came last starts the time anew, whether it came with this level or before it.
+    // The last rising edge restarts the hold time, at this level change or before it.
     const Ticks off = (stopped_at == PinLevel::high ? driven.now : newest) + hold;
     driven.now += 10;
-    driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);  // still there, which is no rise
+    driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);  // unchanged level, no rising edge
     CHECK(is_on_at(off - 1));
     CHECK_FALSE(is_on_at(off));
     driven.now = off;
     driven.is_halted = true;
     driven.idle(0.0005);
     CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
-    // Neither wire's level brings them back, only a heartbeat.
+    // Neither input level enables the bridges again; only a heartbeat edge does.
     driven.set_enable(false);
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::low);
     driven.set_enable(true);
@@ -196,7 +197,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.set_enable(false);
     driven.set_enable(true);
     CHECK_FALSE(is_on_at(driven.now));
-    // It begins in the control interrupt as well, in which the heartbeat is high.
+    // A start inside the control interrupt, with the heartbeat high, behaves in the same way.
     driven.set_enable(false);
     CHECK_FALSE(is_on_at(driven.now));
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::high);
@@ -239,7 +240,7 @@ TEST_CASE("the supply sags under load, rises while the arm is braked, and is mea
   CHECK(loaded.supply_V < 17.5);
   CHECK(std::abs(driven.read_V(board::omni_driver.supply) * 11.0 - loaded.supply_V) < 0.05);
 
-  driven.plant.place({-0.9, 0.8, 0.4}, {30.0, 0.0, 0.0});  // back-EMF 9.3 V against half the supply
+  driven.plant.place({-0.9, 0.8, 0.4}, {30.0, 0.0, 0.0});  // back-EMF 9.3 V at half the supply voltage
   double highest_V = 0.0;
   for (int i = 0; i < 40; ++i) {
     driven.run(0.0005, {0.2, 0.0, 0.0});
@@ -257,10 +258,10 @@ TEST_CASE("the supply's reading follows through its divider's 0.9 ms") {
   DrivenPlant driven(test::omni());
   driven.idle(0.01);
   driven.plant.fail_supply_at_V(24.0);
-  driven.idle(0.0025);  // the bus itself takes a third of a millisecond
+  driven.idle(0.0025);  // the bus itself needs a third of a millisecond
   const double bus_V = driven.plant.truth(driven.now).supply_V;
   CHECK(bus_V == doctest::Approx(24.0).epsilon(0.005));
-  // A rise by exp(-t / 0.33 ms), seen by a filter of 0.909 ms.
+  // A rise with exp(-t / 0.33 ms), measured through a filter of 0.909 ms.
   CHECK(driven.read_V(board::omni_driver.supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
 }
 

@@ -101,10 +101,10 @@ TEST_CASE("an analogue wire that is broken, shorted or frozen") {
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 3.3);
   w.wires.set(c3, WireFault::sound);
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 1.0);
-  w.wires.set(c3, WireFault::open);  // the converter's capacitor leaks
+  w.wires.set(c3, WireFault::open);  // the converter's capacitor discharges slowly
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == doctest::Approx(1.0));
   CHECK(w.wires.analog_V('C', 3, ticks(0.51)) == doctest::Approx(std::exp(-1.0)));
-  w.ends.pull_down_ohm = 20e3;  // a resistor takes it down sooner
+  w.ends.pull_down_ohm = 20e3;  // a resistor discharges the capacitor faster
   CHECK(w.wires.analog_V('C', 3, ticks(0.502)) == doctest::Approx(std::exp(-1.0)));
   CHECK(w.wires.analog_V('C', 3, ticks(0.504)) == doctest::Approx(std::exp(-2.0)));
 }
@@ -121,7 +121,7 @@ TEST_CASE("of two wires that touch low wins, and voltages meet half-way") {
   w.wires.drive('A', 0, PinLevel::low, 6);
   CHECK(w.ends.seen[{'A', 1}] == PinLevel::low);
   CHECK(w.ends.newest == 6);
-  w.wires.output_changed('A', 0, PinLevel::high, 7);  // the other one is not driven from there
+  w.wires.output_changed('A', 0, PinLevel::high, 7);  // the other wire is not driven from this pin
   CHECK(w.ends.heard[{'A', 1}] == PinLevel::high);
   w.ends.volts = {{{'A', 0}, 1.0}, {{'A', 1}, 2.0}};
   CHECK(w.wires.analog_V('A', 0, 8) == 1.5);

@@ -1,4 +1,4 @@
-// The control socket's server without a board: who is served, and who is not.
+// The control socket's server without a board: accepted and refused clients.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server whose requests a thread answers, with how many there have been.
+/// A server with a thread that answers and counts its requests.
 class AnsweringServer {
  public:
   explicit AnsweringServer(const local::SocketAddress& where = {}) : server_(where) {
@@ -130,7 +130,7 @@ TEST_SUITE("virtual board: control socket") {
     ::setrlimit(RLIMIT_NOFILE, &lowest);
     const bool is_connected =
         ::connect(next.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    // A server that waits with its lock would let through one call in 20 ms.
+    // A server that waits while it owns the lock would allow only one call per 20 ms.
     const auto give_up_at = std::chrono::steady_clock::now() + 60s;
     int calls = 0;
     for (; calls < 20'000 && std::chrono::steady_clock::now() < give_up_at; ++calls)

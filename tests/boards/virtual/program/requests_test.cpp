@@ -1,4 +1,4 @@
-// What clients of the control socket ask for, and what of it is refused, without a board.
+// Requests of the control socket and their validation, without a board.
 #include <program/requests.hpp>
 
 #include <string>
@@ -62,11 +62,11 @@ TEST_CASE("what is beyond its bounds is refused, and what is missing") {
         }) == "\"action\" must be \"start\" or \"read\"");
   CHECK(trace_action(json{{"action", "stop"}}) == TraceAction::stop);
   CHECK(trace_rows(json::object()) == 10'000);
-  CHECK(trace_rows(json{{"maximum", Trace::rows_maximum}}) == 100'000);  // the rest waits for the next answer
+  CHECK(trace_rows(json{{"maximum", Trace::rows_maximum}}) == 100'000);  // the remaining rows follow in the next answer
 }
 
 TEST_CASE("a name that is no text is not written out, however deep its lists are") {
-  constexpr std::size_t deep = 500'000;  // a line of the longest length that the socket takes
+  constexpr std::size_t deep = 500'000;  // the longest line that the socket accepts
   CHECK(contains(refusal_of(R"({"command": )" + std::string(deep, '[') + std::string(deep, ']') + "}"),
                  "must be the name of a command"));
 }

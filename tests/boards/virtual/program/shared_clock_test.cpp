@@ -1,4 +1,4 @@
-// Several virtual boards with one clock.
+// Several virtual boards with a shared clock.
 #include <doctest/doctest.h>
 
 #include <sys/wait.h>
@@ -24,9 +24,9 @@ TEST_CASE("a board waits for those that are behind, however long, and for none t
   const auto file = directory / "clock";
   SharedClock first(file);
   first.note(40);
-  CHECK(first.lets_pass());  // it is alone
+  CHECK(first.lets_pass());  // this board is the only board
   {
-    SharedClock second(file);  // which starts where the first one is
+    SharedClock second(file);  // starts at the time of the first board
     CHECK(first.lets_pass());
     first.note(41);
     CHECK_FALSE(first.lets_pass());

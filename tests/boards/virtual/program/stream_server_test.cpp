@@ -1,4 +1,4 @@
-// The servers of GDB and UARTs without a board: whose bytes arrive, and how many of them wait.
+// The servers for GDB and UARTs without a board: forwarded bytes and buffer limits.
 #include <doctest/doctest.h>
 #include <poll.h>
 
@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server, and what has arrived there.
+/// A server and its received bytes.
 class Receiver {
  public:
   explicit Receiver(FirstBytes welcome)
@@ -30,7 +30,7 @@ class Receiver {
         }) {}
   const local::SocketAddress& address() const { return server_.address(); }
 
-  /// Takes until the condition holds; false if it does not within a minute.
+  /// Receives until the condition is true; returns false after one minute.
   template <class Condition>
   bool take_until(Condition holds) {
     const auto give_up_at = std::chrono::steady_clock::now() + 60s;

@@ -1,4 +1,4 @@
-// Counts that follow from the rules of the core's manuals, one short program each.
+// Cycle counts that follow from the rules in the core's manuals, with one short program each.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -42,8 +42,8 @@ TEST_CASE("n loads that do not depend on each other take n + 1 cycles") {
 
 TEST_CASE("an address that the instruction before has computed costs a cycle") {
   CHECK(cycles({0x3401, load_r0_from_r4, add_r1}) == 5);                       // adds r4, #1
-  CHECK(cycles({0x3401, add_r1, load_r0_from_r4, add_r1}) == 5);               // hidden by what stands between
-  CHECK(cycles({load_r0_from_r4, load_r1_from_r0, add_r1}) == 2 + 1 + 2 + 1);  // a chain of pointers
+  CHECK(cycles({0x3401, add_r1, load_r0_from_r4, add_r1}) == 5);               // hidden by the instruction in between
+  CHECK(cycles({load_r0_from_r4, load_r1_from_r0, add_r1}) == 2 + 1 + 2 + 1);  // a pointer chain
 }
 
 TEST_CASE("stores: a cycle, behind a load too; a load behind them waits") {
@@ -87,10 +87,10 @@ TEST_CASE("the FPU: a result that is used at once, multiply-accumulate, division
   CHECK(cycles({0xEE30, 0x0A81, 0xEE60, 0x1A02}) == 3);
   CHECK(cycles({0xEE30, 0x0A81, 0xEE62, 0x1A82}) == 2);
   CHECK(cycles({0xEEA0, 0x0A81}) == 3);                      // vfma.f32 s0, s1, s2
-  CHECK(cycles({0xEE30, 0x0A81, 0xEEA1, 0x0A21}) == 1 + 3);  // its addend comes late enough
+  CHECK(cycles({0xEE30, 0x0A81, 0xEEA1, 0x0A21}) == 1 + 3);  // the addend is needed late enough
   CHECK(cycles({0xEE80, 0x0A81}) == 1);                      // vdiv.f32 s0, s1, s2
   CHECK(price_of({0xEE80, 0x0A81}).float_busy_cycles == 13);
-  CHECK(cycles({0xEE80, 0x0A81, add_r0, 0xEE30, 0x1A81}) == 15);  // the next of the FPU waits
+  CHECK(cycles({0xEE80, 0x0A81, add_r0, 0xEE30, 0x1A81}) == 15);  // the next FPU instruction waits
   CHECK(cycles({0xED90, 0x0A00}) == 2);                           // vldr s0, [r0]
   CHECK(cycles({0xEC90, 0x0A04}) == 5);                           // vldm r0, {s0-s3}
 }
@@ -105,7 +105,7 @@ TEST_CASE("a divide costs by the bits of its quotient, between 2 and 12 cycles")
 }
 
 TEST_CASE("a block tells which lines of flash it runs through, and when") {
-  // Nine narrow instructions from 0x...E: one in the first line, eight in the second.
+  // Nine 16-bit instructions from 0x...E: one in the first line, eight in the second.
   const auto block = price_of({add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0}, start + 14);
   REQUIRE(block.requests.size() == 2);
   CHECK(block.requests[0].address == start);
@@ -119,7 +119,7 @@ TEST_CASE("a block tells which data it reads: literals, and tables by their base
   REQUIRE(literal.requests.size() == 2);
   CHECK(literal.requests[1].is_data);
   CHECK(literal.requests[1].address == start + 8);
-  // add r1, #1; ldrb r0, [r2, r1]: the index changes in the block, the base does not.
+  // add r1, #1; ldrb r0, [r2, r1]: the block changes the index but not the base.
   const auto table = price_of({add_r1, 0x5C50});
   REQUIRE(table.reads.size() == 1);
   CHECK(table.reads[0].base_at_entry);

@@ -1,4 +1,4 @@
-"""docs/cycles.md holds the table that print-cycle-costs prints.
+"""docs/cycles.md contains the table that print-cycle-costs prints.
 
 usage: cycles_page_test.py PRINT_CYCLE_COSTS PAGE
 """
@@ -14,7 +14,7 @@ def main():
     printed = table_of(subprocess.run([sys.argv[1]], capture_output=True, text=True, check=True).stdout.splitlines())
     with open(sys.argv[2], encoding="utf-8") as page:
         written = table_of(page.read().splitlines())
-    # Tables of other things may stand before it.
+    # Other tables may precede the cost table.
     if printed[0] in written and written[written.index(printed[0]):] == printed:
         return 0
     print(f"The table of {sys.argv[2]} is not what the code charges. Put this in its place:\n")

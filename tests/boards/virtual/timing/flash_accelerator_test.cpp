@@ -8,7 +8,7 @@ namespace {
 constexpr Costs likely{Pricing::likely}, conservative{Pricing::conservative};
 constexpr std::uint32_t flash_bytes = 64 * 1024, line = FlashAccelerator::line_bytes;
 
-/// Runs through `lines` lines, each for `cycles_a_line`, `rounds` times; the waits of the last round.
+/// Reads `lines` lines with `cycles_a_line` each, `rounds` times. Returns the wait cycles of the last round.
 unsigned waits_of_loop(FlashAccelerator& flash, unsigned lines, unsigned cycles_a_line, unsigned rounds) {
   std::uint64_t now = 1000;
   unsigned waited = 0;
@@ -70,7 +70,7 @@ TEST_CASE("the data cache keeps eight lines, the one used longest ago goes") {
   flash.set(5, false, false, true);
   for (std::uint32_t i = 0; i < 8; ++i) CHECK(flash.read(i * line, 0) == 5);
   CHECK(flash.read(0, 0) == 0);
-  CHECK(flash.read(8 * line, 0) == 5);  // takes the place of line 1
+  CHECK(flash.read(8 * line, 0) == 5);  // replaces line 1
   CHECK(flash.read(0, 0) == 0);
   CHECK(flash.read(1 * line, 0) == 5);
 }

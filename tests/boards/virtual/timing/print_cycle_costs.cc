@@ -1,4 +1,4 @@
-// Prints the table of docs/cycles.md from the one home of the figures.
+// Prints the table of docs/cycles.md from the costs in the code.
 #include <cstdio>
 #include <timing/costs.hpp>
 

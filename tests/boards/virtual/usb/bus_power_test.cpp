@@ -1,4 +1,4 @@
-// The flashed firmware and the cable's supply: USB 2.0, section 7.1.5.
+// The flashed firmware and the power supply through the cable: USB 2.0, section 7.1.5.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -46,8 +46,8 @@ TEST_CASE("a bus that falls asleep with the cable in stops the scope, and poses 
   bus.stream_scope(std::array{protocol::Signal::position_x_m});
   bus.run_for(0.05);
   CHECK(frames > 5);
-  bus.core.suspend();  // the next start of frame wakes it
-  bus.run_for(0.02);   // what was on its way may still come
+  bus.core.suspend();  // the next start of frame resumes the bus
+  bus.run_for(0.02);   // packets in progress may still arrive
   frames = poses = 0;
   bus.run_for(0.05);
   CHECK(frames == 0);

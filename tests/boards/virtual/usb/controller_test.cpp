@@ -1,4 +1,4 @@
-// The flashed firmware as a multi-axis controller, beside poses and scope.
+// The flashed firmware as a multi-axis controller, in addition to poses and scope.
 #include <doctest/doctest.h>
 
 #include <algorithm>

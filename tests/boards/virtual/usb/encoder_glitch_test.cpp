@@ -1,4 +1,4 @@
-// Spikes on the wire of an encoder, as from the bridges beside it, and what they make of the pose.
+// Spikes on an encoder wire, such as crosstalk from the bridges, and their effect on the pose.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace inkwell::virtual_usb_test {
 namespace {
 
-/// The angles of joint 1 that poses show while spikes of this length follow each other on a wire of its encoder.
+/// Returns the angles of joint 1 in the poses while spikes of this length and period occur on an encoder wire.
 std::set<float> angles_under_spikes(board::Pin wire, double spike_s, double period_s) {
   FirmwareOnBus bus(flashed_image());
   for (const auto& input : {board::omni_driver.encoders[0].a.pin, board::omni_driver.encoders[0].b.pin})
@@ -34,13 +34,13 @@ std::set<float> angles_under_spikes(board::Pin wire, double spike_s, double peri
 
 }  // namespace
 
-// The spikes' periods share no factor with the control period, so that they meet it at every phase.
+// The spike periods have no common factor with the control period, so that spikes occur at every phase.
 TEST_CASE("spikes of 100 ns on an encoder's wire leave the pose alone, longer ones move it by a count") {
   for (const board::Pin wire : {board::omni_driver.encoders[0].a.pin, board::omni_driver.encoders[0].b.pin}) {
     CAPTURE(wire.number);
     CHECK(angles_under_spikes(wire, 100e-9, 207e-9).size() == 1);
     CHECK(angles_under_spikes(wire, 330e-9, 700e-9).size() == 1);
-    // Half of the time the wire tells of a count that is not there; each spike is counted there and back.
+    // The wire shows a false count half of the time. Each spike is counted up and down.
     CHECK(angles_under_spikes(wire, 1e-6, 2.03e-6).size() == 2);
   }
 }

@@ -1,4 +1,4 @@
-// What the host does between a read and a write of the driver, where neither knows of the other.
+// Host actions between a register read and a register write of the driver.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -25,7 +25,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
-    // The driver reads the register when it replaces a pose that is still there, and once more to change it.
+    // The driver reads the register when it replaces a waiting pose, and reads it again to change it.
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
@@ -48,7 +48,8 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
 }
 
 TEST_CASE("a pose that the host takes while a newer one of the same frame replaces it does not come twice") {
-  // While nobody asks, a report is taken back twice in each frame: for the spare one, and for the newest.
+  // Without requests of the host, the driver replaces a report twice per frame: with the spare report and with the
+  // newest.
   for (const int replacement : {1, 2}) {
     CAPTURE(replacement);
     FirmwareOnBus bus(flashed_image());
@@ -72,7 +73,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     protocol::PoseReport first;
     std::memcpy(&first, packet.data(), sizeof first);
     bus.registers.on_read = {};
-    // The port knows nothing of the packet that was taken beside it, so it is not the one that asks on.
+    // The port model does not see a packet that this test reads directly, so this test also requests the next packet.
     std::optional<protocol::PoseReport> next;
     bus.cable.on_start_of_frame = [&](std::uint16_t) {
       if (next || bus.core.in(own_address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;
@@ -96,27 +97,27 @@ Setup descriptor_request(std::uint8_t type) {
   return {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{type}, {}, {}, std::byte{64}, {}};
 }
 
-/// The firmware, a host that sends one SETUP and a token, and then another SETUP when it is told to.
+/// The firmware, and a host that sends one SETUP and a token, and a second SETUP at a chosen time.
 struct Race {
   Race() : bus(flashed_image()) { bus.connect(); }
 
   void begin(const Setup& setup) {
     bus.cable.setup(own_address, 0, setup);
-    bus.cable.in(own_address, 0, packet);  // ends the stage of this SETUP
+    bus.cable.in(own_address, 0, packet);  // completes the stage of this SETUP
     came = read = false;
   }
   void interfere() {
     came = true;
     bus.cable.setup(own_address, 0, descriptor_request(configuration_descriptor));
-    // Well before the next token, which ends 4 us after the SETUP at the earliest.
+    // Before the next token, which follows the SETUP by at least 4 us.
     auto& scheduler = bus.chip.connections().scheduler;
     scheduler.at(scheduler.now() + ticks(1e-6), [this] {
-      if (read || fills) return;  // a look would disturb the words of a packet
+      if (read || fills) return;  // a register read would disturb the words of a packet
       CHECK((bus.core.read(control_in, 4) & naksts) != 0);
       CHECK((bus.core.read(control_out, 4) & naksts) != 0);
     });
   }
-  /// The second byte of what the device sends at last, the type of a descriptor; 0 if it sends none.
+  /// Returns the second byte of the device's final answer, the descriptor type; 0 without an answer.
   std::uint8_t answer() {
     for (int i = 0; i < 300; ++i) {
       bus.run_for(10e-6);
@@ -172,7 +173,8 @@ TEST_CASE("a SETUP that comes while the one before is answered gets its own answ
 TEST_CASE("while a SETUP has been read and its end has not, nothing is made ready") {
   Race race;
   race.begin(descriptor_request(device_descriptor));
-  // When the driver answers the first one, the next one is there; that is read before the answer is given.
+  // The second SETUP arrives while the driver answers the first one. The driver reads the second SETUP before it sends
+  // the answer to the first.
   constexpr std::uint32_t setup_done = 4;
   race.bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
     if (!race.came && offset == receive_pop && (value >> 17 & 0xF) == setup_done) race.interfere();

@@ -1,4 +1,4 @@
-// What stands around the USB core in these tests: time, the interrupt line, the log.
+// Environment of the USB core in these tests: time, interrupt line, log.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class FakeScheduler final : public virtual_board::Scheduler {
   void cancel(Id id) override {
     std::erase_if(events_, [&](const auto& event) { return event.first.second == id; });
   }
-  /// Runs one event, if there is one until `end`.
+  /// Runs one event, if there is one before or at `end`.
   bool run_one(Ticks end) {
     if (events_.empty() || events_.begin()->first.first > end) return false;
     auto node = events_.extract(events_.begin());
@@ -79,7 +79,7 @@ class FakeLog final : public virtual_board::UnmodelledLog, public virtual_board:
   std::vector<virtual_board::Rule> broken;
 };
 
-/// Clocks and pins as a driver should have set them.
+/// Clocks and pins with the settings of a correct driver.
 class FakeChipState final : public virtual_board::ChipState {
  public:
   std::uint32_t hclk_Hz() const override { return hclk; }

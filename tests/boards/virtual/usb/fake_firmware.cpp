@@ -130,7 +130,7 @@ void FakeFirmware::bus_reset() {
   write(doeptsiz(0), 3u << 29 | 1u << 19 | 64);
 }
 
-// The core keeps endpoints enabled over a bus reset, and packets in the receive FIFO.
+// The core keeps endpoints enabled and the receive FIFO filled during a bus reset.
 void FakeFirmware::stop_everything() {
   for (unsigned n = 0; n < 4; ++n) stop_in(n);
   write(dctl, read(dctl) | 1u << 9);
@@ -194,7 +194,7 @@ void FakeFirmware::handle_setup() {
   write(doeptsiz(0), 3u << 29 | 1u << 19 | 64);
   control_in_active_ = false;
   control_out_expected_ = 0;
-  if ((read(diepctl(0)) & epena) != 0) {  // an earlier request was given up by the host
+  if ((read(diepctl(0)) & epena) != 0) {  // the host has abandoned an earlier request
     stop_in(0);
     flush_transmit(0);
   }
@@ -298,7 +298,7 @@ void FakeFirmware::send_report(std::span<const std::byte> report) {
   write_packet(1, report);
 }
 
-// Long transfers, refilled whenever half of the FIFO is free.
+// Long transfers; the FIFO is refilled when it is half empty.
 void FakeFirmware::fill_stream() {
   if (!stream_running_) return;
   if ((read(diepctl(2)) & epena) == 0) {

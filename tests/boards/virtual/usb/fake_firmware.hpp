@@ -1,4 +1,4 @@
-// A USB device driver as RM0090's programming model describes it, working on the core's registers only.
+// A USB device driver that follows the programming model of RM0090 and uses only the core's registers.
 //
 // Endpoints: 0x81 interrupt IN, 0x01 interrupt OUT, 0x82 bulk IN, 0x03 bulk OUT, 64 bytes each.
 #pragma once
@@ -19,17 +19,16 @@ class FakeFirmware {
  public:
   FakeFirmware(virtual_board::OtgFsDevice& core, FakeScheduler& scheduler) : core_(core), scheduler_(scheduler) {}
 
-  /// Starts the core and pulls D+ up.
+  /// Starts the core and enables the pull-up of D+.
   void start();
-  /// The interrupt handler.
   void handle_interrupt();
 
   void send_report(std::span<const std::byte> report);  ///< on 0x81
-  void stream(bool on) { stream_wanted_ = on; }         ///< counting words on 0x82, from SET_CONFIGURATION on
-  void take_bulk(bool take);                            ///< 0x03 answers NAK while false
+  void stream(bool on) { stream_wanted_ = on; }         ///< counting words on 0x82 after SET_CONFIGURATION
+  void take_bulk(bool take);                            ///< 0x03 answers NAK while `take` is false
   void halt_bulk_in();
 
-  // What happened.
+  // Recorded events.
   unsigned resets = 0;
   unsigned suspends = 0;
   unsigned frames = 0;
@@ -38,11 +37,11 @@ class FakeFirmware {
   unsigned reports_sent = 0;
   std::uint8_t address = 0;
   std::uint8_t configuration = 0;
-  Bytes control_received;  ///< data of the vendor request 2
+  Bytes control_received;  ///< data of vendor request 2
   Bytes report_received;
   Bytes bulk_received;
 
-  // How to behave.
+  // Selected behavior.
   bool report_every_millisecond = false;
   bool answers_requests = true;
   bool clears_nak_too_early = false;
@@ -57,7 +56,7 @@ class FakeFirmware {
   void stop_everything();
   void stop_in(unsigned endpoint);
   void flush_transmit(unsigned fifo);
-  /// Lets time pass meanwhile.
+  /// Advances time while it waits.
   void wait_until_clear(std::uint32_t offset, std::uint32_t bits);
   void receive_word();
   void handle_setup();
@@ -85,7 +84,7 @@ class FakeFirmware {
   bool bulk_taken_ = true;
 };
 
-/// Byte i of the answer to the vendor request 1.
+/// Returns byte i of the answer to vendor request 1.
 constexpr std::byte pattern(std::size_t i) { return std::byte((i * 7 + 3) & 0xFF); }
 
 }  // namespace inkwell::virtual_usb_test

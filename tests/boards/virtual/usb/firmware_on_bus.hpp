@@ -1,5 +1,5 @@
-// The firmware that would be flashed on the virtual chip, and a host at the other end of its USB cable whose every
-// transaction can be looked at. All of it in one program: what it measures is board time, to the tick.
+// The flashed firmware on the virtual chip, and a host that can observe every transaction on the USB cable. All parts
+// run in one program, so that times are measured exactly in board time.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ using virtual_board::Ticks;
 using virtual_board::ticks;
 using virtual_board::Urb;
 
-/// What is soldered to the chip holds still: supply and sensors read as on a board at rest, but for what a test moves.
+/// A constant circuit: supply and sensors have the values of a board at rest, unless a test changes them.
 class RestingCircuit final : public virtual_board::Circuit {
  public:
   void output_changed(char, unsigned, virtual_board::PinLevel, Ticks) override {}
@@ -33,7 +33,7 @@ class RestingCircuit final : public virtual_board::Circuit {
   std::function<double(char port, unsigned pin, Ticks now)> voltage_V;
 };
 
-/// The cable: passes everything on and tells what went over it.
+/// The cable: forwards all transactions and reports them.
 class Cable : public virtual_board::BusDevice {
  public:
   explicit Cable(virtual_board::BusDevice& device) : device_(device) {}
@@ -74,8 +74,8 @@ class Cable : public virtual_board::BusDevice {
   virtual_board::BusDevice& device_;
 };
 
-/// The core's registers, as the chip's bus sees them; tells what the firmware reads there, before it can do anything
-/// with it, and where it has written.
+/// The core's registers on the chip's bus. This object reports each read before the firmware receives the value, and
+/// each write.
 class WatchedRegisters final : public virtual_board::Peripheral {
  public:
   explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
@@ -97,7 +97,7 @@ class WatchedRegisters final : public virtual_board::Peripheral {
   virtual_board::Peripheral& registers_;
 };
 
-/// build/board/inkwell.elf, beside the build folder of this program.
+/// build/board/inkwell.elf, next to the build directory of this program.
 std::filesystem::path flashed_image();
 
 /// Chip, cable and a host that enumerates and configures the device.
@@ -106,32 +106,32 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0,
                          virtual_board::ChipOptions options = {});
 
-  /// The cable, and VBUS with it; it is in to begin with.
+  /// Connects or disconnects the cable with VBUS; initially connected.
   void plug(bool in);
-  /// Enumerates and configures the device; throws std::runtime_error if it does not come within a second.
+  /// Enumerates and configures the device. Throws std::runtime_error if the device does not appear within one second.
   void connect();
   void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
-  /// A control transfer; its status, and what came in. Throws std::runtime_error if it does not end within two
-  /// seconds: the flash takes one for a sector.
+  /// Runs a control transfer and returns its status and data. Throws std::runtime_error after two seconds, because a
+  /// sector erase takes one second.
   struct Answer {
     std::int32_t status;
     std::vector<std::byte> data;
   };
   Answer control(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
                  std::uint16_t length, std::vector<std::byte> data = {});
-  /// From now on there is always a request for the next pose.
+  /// Keeps a request for the next pose pending from now on.
   void keep_asking_for_poses();
-  /// And one for the next report of the controller.
+  /// The host also keeps a request for the next controller report pending.
   void keep_asking_the_controller();
-  /// Selects signals for the scope and reads it from now on.
+  /// Selects signals for the scope and reads the scope continuously.
   void stream_scope(std::span<const protocol::Signal> signals);
-  /// An output report on the interrupt endpoint.
+  /// Sends an output report on the interrupt endpoint.
   template <class Report>
   void send_report(const Report& report) {
     send_report(std::as_bytes(std::span(&report, 1)));
   }
   void stop_asking_for_poses() { asks_for_poses_ = false; }
-  /// Rules of the chip that the firmware broke, as sentences.
+  /// Rules of the chip that the firmware has violated, as sentences.
   std::vector<std::string> violations() const;
 
   std::function<void(const protocol::PoseReport&)> on_pose;

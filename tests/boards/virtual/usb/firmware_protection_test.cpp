@@ -1,4 +1,4 @@
-// The flashed firmware is led astray, and its protection of the memory stops it.
+// Checks that the memory protection stops the flashed firmware after deliberate errors.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,23 +20,23 @@ namespace {
 using virtual_board::CoreRegisters;
 
 constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [r0]; str r0, [r0]
-constexpr std::uint32_t if_then_bits = 0x0600'FC00;                 // of xPSR: whether the next instructions are run
+constexpr std::uint32_t if_then_bits = 0x0600'FC00;                 // in xPSR: IT state
 
-// boards/facts/stm32f405.ld
+// Addresses of boards/facts/stm32f405.ld.
 constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000, interrupt_code = 0x2001'C200;
 
 std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
   return static_cast<std::uint16_t>(bus.chip.memory_word(address & ~3u) >> 8 * (address & 2));
 }
 
-/// Where half a word of the flash is this instruction, whatever it was meant to be.
+/// Returns the address of any half word in flash that equals this instruction.
 std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
   for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
     if (half_word(bus, address) == instruction) return address;
   return 0;
 }
 
-/// What the board keeps of a crash.
+/// Returns the crash record of the board.
 protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   const auto answer = bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::black_box), 0,
                                   sizeof(protocol::BlackBoxReport));
@@ -46,8 +46,7 @@ protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   return report.crash;
 }
 
-/// The control interrupt runs by then; a self-test would fail without motors, and what is kept of that fault would
-/// stay.
+/// The control interrupt runs by this time. A later self-test would fail without motors, and its fault would be stored.
 constexpr double before_self_test_s = 0.05;
 
 constexpr unsigned control_interrupt = 16 + 18;
@@ -56,14 +55,14 @@ void run_into_control_interrupt(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != control_interrupt) bus.run_for(1e-6);
 }
 
-/// Just behind a control interrupt, because it holds interrupts back where it goes to sleep: a fault would be another
-/// there.
+/// Stops directly after a control interrupt. The main loop masks interrupts before it sleeps, which would change the
+/// type of the fault.
 void run_into_main_loop(FirmwareOnBus& bus) {
   run_into_control_interrupt(bus);
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);
 }
 
-/// Nothing takes from the stack there before an interrupt puts something on it.
+/// During sleep the stack does not change before the next interrupt.
 void run_into_sleep(FirmwareOnBus& bus) {
   constexpr double step_s = 1e-6;
   for (Ticks before = 0; bus.chip.counters().asleep - before < virtual_board::ticks(step_s);) {
@@ -72,7 +71,7 @@ void run_into_sleep(FirmwareOnBus& bus) {
   }
 }
 
-/// Of one with this program counter and r0.
+/// Returns the crash record of a fault with this program counter and r0.
 protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   FirmwareOnBus bus(flashed_image());
   bus.run_for(before_self_test_s);
@@ -91,8 +90,7 @@ protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   return crash;
 }
 
-/// The first address from `begin` on that lies behind such instructions: the last half word before it, and the one
-/// before that.
+/// Returns the first address from `begin` on whose two preceding half words satisfy `are_such`.
 std::uint32_t place_behind(const FirmwareOnBus& bus, std::uint32_t begin,
                            const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
   std::uint32_t address = begin + 4;
@@ -103,7 +101,7 @@ std::uint32_t place_behind(const FirmwareOnBus& bus, std::uint32_t begin,
   return address;
 }
 
-// ARMv7-M, A7.7.18 and A7.7.19
+// Encodings: ARMv7-M, A7.7.18 and A7.7.19.
 bool is_first_half_of_bl(std::uint16_t half) { return half >> 11 == 0b11110; }
 bool is_second_half_of_bl(std::uint16_t half) { return (half >> 14 & 3) == 3 && (half >> 12 & 1) == 1; }
 bool is_blx(std::uint16_t half) { return half >> 7 == 0b0100'0111'1 && half % 8 == 0; }
@@ -112,7 +110,8 @@ bool is_bl(std::uint16_t last, std::uint16_t before) {
 }
 bool is_call(std::uint16_t last, std::uint16_t before) { return is_blx(last) || is_bl(last, before); }
 
-/// A null pointer is read with this link register and these words on the stack, all of it; what was noted of callers.
+/// Reads a null pointer with this link register and these words as the whole stack. Returns the crash record with the
+/// callers.
 protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<const std::uint32_t> words) {
   FirmwareOnBus bus(flashed_image());
   bus.run_for(before_self_test_s);
@@ -185,7 +184,7 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
     std::string name;
     std::uint32_t stack_pointer;
     Place place;
-    std::uint16_t instruction;  ///< that the core comes to; 0: whatever it was going to do
+    std::uint16_t instruction;  ///< instruction that the core executes; 0: its next instruction
     std::uint32_t status, exception;
   };
   const Loss losses[] = {
@@ -195,7 +194,7 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
       {"it lies where nothing is", behind_ram, Place::main_loop, push, 1u << 12, 3},
       {"the same, and an interrupt comes", behind_ram, Place::sleep, 0, 1u << 12, 5},
       {"the same, and then no instruction", behind_ram, Place::main_loop, undefined, 1u << 12 | 1u << 16,
-       5},  // the stack's, a BusFault
+       5},  // a BusFault of the stack
   };
   for (const Loss& loss : losses) {
     CAPTURE(loss.name);
@@ -215,7 +214,7 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
       REQUIRE(registers.general[CoreRegisters::pc] != 0);
     }
     bus.chip.debug_port().set_core_registers(registers);
-    bus.run_for(0.001);  // long before the watchdog
+    bus.run_for(0.001);  // shorter than the watchdog time
     using virtual_board::ResetCause;
     CHECK(bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::software)] == 1);
     bus.run_for(0.2);
@@ -231,7 +230,7 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
 
 TEST_CASE("of link register and stack the first eight words that lie behind a call are noted, and no others") {
   FirmwareOnBus bus(flashed_image());
-  bus.run_for(before_self_test_s);  // the start has copied the code of interrupts
+  bus.run_for(before_self_test_s);  // by this time, the startup code has copied the interrupt code
   const auto behind_bl = [&](std::uint32_t begin) { return place_behind(bus, begin, is_bl); };
   const std::uint32_t by_address = behind_bl(code), later = behind_bl(by_address),
                       in_interrupt = behind_bl(interrupt_code);
@@ -247,14 +246,14 @@ TEST_CASE("of link register and stack the first eight words that lie behind a ca
       return is_second_half_of_bl(last) && !is_call(last, before);
     });
     const std::uint32_t words[] = {
-        by_address,  // an address in Thumb code is odd where it is returned to
+        by_address,  // a return address in Thumb code is odd
         only_first_half | 1,
         only_second_half | 1,
         in_interrupt | 1,
         0x0000'0101,                         // null
         virtual_board::flash_base + 0x8101,  // the parameters
-        0x0810'0001,                         // behind the flash
-        0x2002'0101,                         // behind the memory
+        0x0810'0001,                         // after the flash
+        0x2002'0101,                         // after the memory
         0x4001'0001,                         // a peripheral
         0xFFFF'FFFF,
         by_register | 1,
@@ -266,7 +265,7 @@ TEST_CASE("of link register and stack the first eight words that lie behind a ca
 
   SUBCASE("more than have room") {
     std::vector<std::uint32_t> words(10, by_address | 1);
-    words[6] = by_register | 1;  // with the link register the eighth
+    words[6] = by_register | 1;  // the eighth caller, counted with the link register
     const auto crash = crash_with_stack(later | 1, words);
     const std::vector<std::uint32_t> expected{later,      by_address, by_address, by_address,
                                               by_address, by_address, by_address, by_register};

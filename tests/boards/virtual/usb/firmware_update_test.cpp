@@ -1,4 +1,4 @@
-// From the flashed firmware to the boot loader in the chip, what it does there, and back.
+// From the flashed firmware to the chip's boot loader, an update, and back.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Bytes command(std::uint8_t code, std::uint32_t address) {
           std::byte(address >> 24)};
 }
 
-/// A host that updates the firmware: raw requests, so that each state is seen.
+/// A host that updates the firmware with single requests, so that each state is observed.
 struct Loader {
   explicit Loader(FirmwareOnBus& the_bus) : bus(the_bus) {}
 
@@ -45,7 +45,7 @@ struct Loader {
     const auto byte = [&](std::size_t i) { return std::to_integer<unsigned>(answer.data[i]); };
     return {byte(0), byte(1) | byte(2) << 8 | byte(3) << 16, byte(4)};
   }
-  /// Board time that the next answer takes.
+  /// Returns the board time until the next answer.
   double wait_s() {
     const Ticks begin = bus.chip.now();
     CHECK(status().state == download_idle);
@@ -87,7 +87,7 @@ TEST_CASE("a detach request starts the chip's boot loader, and a reset the firmw
   CHECK(loader.status().state == idle);
   CHECK(bus.violations().empty());
   bus.chip.reset();
-  bus.run_for(0.05);  // the port sees that the loader is gone
+  bus.run_for(0.05);  // the port detects that the boot loader has disconnected
   bus.connect();
   CHECK(loader.text(2) == "Inkwell haptic arm");
   CHECK(bus.violations().empty());
@@ -104,7 +104,7 @@ TEST_CASE("the boot loader erases and programs the flash in the flash's own time
   const auto told = loader.status();
   CHECK(told.state == busy);
   CHECK(told.poll_ms == 1000);
-  CHECK(loader.wait_s() == doctest::Approx(1.0).epsilon(0.02));  // data sheet: 128 KiB, words, typical
+  CHECK(loader.wait_s() == doctest::Approx(1.0).epsilon(0.02));  // data sheet: 128 KiB, word programming, typical
   CHECK(loader.read(free_sector + free_sector_bytes - 4, 4) == Bytes(4, std::byte{0xFF}));
 
   loader.carry_out(0, command(0x21, free_sector));
@@ -114,7 +114,7 @@ TEST_CASE("the boot loader erases and programs the flash in the flash's own time
   CHECK(loader.read(free_sector + 2048, 2048) == block);
   CHECK(loader.read(free_sector, 4) == Bytes(4, std::byte{0xFF}));
 
-  // Without an erase it only clears bits.
+  // Without an erase, programming only clears bits.
   loader.carry_out(0, command(0x21, free_sector + 2048));
   loader.carry_out(2, Bytes(4, std::byte{0x0F}));
   const auto mixed = loader.read(free_sector + 2048, 4);
@@ -126,14 +126,14 @@ TEST_CASE("the boot loader refuses what it cannot do, says why, and goes on once
   FirmwareOnBus bus(flashed_image());
   Loader loader(bus);
   loader.enter();
-  CHECK(loader.send(1, Bytes(4)) != 0);  // no such block
+  CHECK(loader.send(1, Bytes(4)) != 0);  // invalid block
   CHECK(loader.status().state == error);
-  CHECK(loader.send(2, Bytes(4)) != 0);  // not before it is cleared
+  CHECK(loader.send(2, Bytes(4)) != 0);  // not accepted before the error is cleared
   CHECK(bus.control(class_out, clear_status, 0, 0, 0).status == 0);
   CHECK(loader.status().state == idle);
-  CHECK(loader.send(0, Bytes{std::byte{0x77}}) != 0);  // no such command
+  CHECK(loader.send(0, Bytes{std::byte{0x77}}) != 0);  // invalid command
   CHECK(bus.control(class_out, clear_status, 0, 0, 0).status == 0);
-  REQUIRE(loader.send(0, command(0x41, 0x4000'0000)) == 0);  // no flash
+  REQUIRE(loader.send(0, command(0x41, 0x4000'0000)) == 0);  // not flash memory
   const auto told = loader.status();
   CHECK(told.state == error);
   CHECK(told.status == 1);  // errTARGET
@@ -161,14 +161,14 @@ TEST_CASE("option bytes that the boot loader writes hold after the reset that it
   constexpr std::uint32_t options_address = 0x1FFF'C000;
   auto options = loader.read(options_address, 16);
   CHECK(options[1] == std::byte{0xAA});                      // not protected
-  CHECK((options[0] & std::byte{0x0C}) == std::byte{0x0C});  // a new chip: brown-out reset off
+  CHECK((options[0] & std::byte{0x0C}) == std::byte{0x0C});  // new chip: brown-out reset disabled
   options[0] &= ~std::byte{0x0C};
   loader.carry_out(0, command(0x21, options_address));
   REQUIRE(loader.send(2, options) == 0);
   CHECK(loader.status().state == busy);
   bus.run_for(0.5);
   bus.connect();
-  CHECK(loader.text(2) == "Inkwell haptic arm");  // the reset started the firmware
+  CHECK(loader.text(2) == "Inkwell haptic arm");  // the firmware runs after the reset
   CHECK(bus.control(class_out, detach, 1000, 3, 0).status == 0);
   bus.run_for(0.05);
   bus.connect();

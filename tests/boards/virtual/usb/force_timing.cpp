@@ -16,12 +16,13 @@ namespace {
 
 using protocol::Signal;
 
-/// The force rises from one of these to the other over the whole measurement, so that it tells the time of its pose.
+/// The force rises linearly between these values during the measurement, so that its value identifies the time of its
+/// pose.
 constexpr float first_N = -3.0f, last_N = 3.0f;
 
 constexpr std::uint32_t claim_number = 7;
 
-/// Only the program that has claimed the arm may send forces.
+/// Only the driver may send forces.
 void claim_arm(FirmwareOnBus& bus) {
   const protocol::ClaimReport claim{
       .operation = protocol::ClaimOperation::claim, .claim = claim_number, .process_id = 1, .program = "forces"};
@@ -104,7 +105,7 @@ ForceTiming measure_forces(const std::filesystem::path& image, double host_clock
   bus.run_for(time_s);
   bus.on_pose = nullptr;
   bus.on_scope_frame = nullptr;
-  bus.run_for(0.01);  // the last one arrives
+  bus.run_for(0.01);  // the last force arrives
   const auto answer = bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::information), 0,
                                   sizeof(protocol::InformationReport));
   protocol::InformationReport information;

@@ -1,4 +1,4 @@
-// A program's forces arrive in every frame of the host, and soon.
+// The forces of a program arrive in every frame of the host, with low latency.
 #include <doctest/doctest.h>
 
 #include <numeric>

@@ -1,4 +1,4 @@
-// The flashed firmware on a bus that has hardly any room left: 14 floats at 20 kHz, poses and controller.
+// The flashed firmware on an almost full bus: 14 floats at 20 kHz, poses and controller.
 #include <doctest/doctest.h>
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// The flashed firmware and a gimbal that never stands still.
+// The flashed firmware with a gimbal in continuous motion.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -15,7 +15,7 @@ namespace inkwell::virtual_usb_test {
 TEST_CASE("every potentiometer of the gimbal is measured anew whenever its turn comes") {
   using protocol::Signal;
   FirmwareOnBus bus(flashed_image());
-  // Some seven steps of the converter from one turn to the next, three control periods later.
+  // About seven converter steps between two samples, which are three control periods apart.
   bus.circuit.voltage_V = [](char, unsigned, Ticks now) {
     constexpr double ramp_s = 0.05;
     return 0.5 + 2.0 * std::fmod(virtual_board::seconds(now), ramp_s) / ramp_s;

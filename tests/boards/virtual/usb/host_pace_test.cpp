@@ -1,4 +1,4 @@
-// When board time waits for the host, and when it no longer does.
+// Conditions under which board time waits for the host.
 #include <doctest/doctest.h>
 
 #include <virtual_usb/host_pace.hpp>
@@ -94,13 +94,13 @@ TEST_CASE("a host that takes a request back, gets an error, is too late or is an
   }
   CHECK_FALSE(pace.is_starved());
   CHECK_FALSE(pace.is_owed());
-  answer(pace, 2, 1);  // this one is waited for as before
+  answer(pace, 2, 1);  // the host is still expected to repeat this request
   CHECK(pace.is_owed());
   submit(pace, 2, 1);
   submit(pace, 1, 1);
   answer(pace, 1, 1);
   CHECK_FALSE(pace.is_starved());
-  submit(pace, 1, 1);  // the second time, anew
+  submit(pace, 1, 1);  // the second request after the restart
   answer(pace, 1, 1);
   CHECK(pace.is_starved());
 }
@@ -120,7 +120,7 @@ TEST_CASE("a host that streams is waited for without a limit, but not while it w
     answer(pace, 2, 1);
   }
   CHECK_FALSE(pace.is_waited_for_without_limit());
-  submit(pace, 2, 1);  // it owes nothing there
+  submit(pace, 2, 1);  // no request is expected on this endpoint
   CHECK(pace.is_waited_for_without_limit());
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("in lock step a host that asks for each report lets time pass until it
   HostPace pace;
   CHECK_FALSE(pace.waits_for_board());
   pace.submitted(in(0));
-  CHECK(pace.waits_for_board());  // it has asked for no report yet
+  CHECK(pace.waits_for_board());  // the host has not requested a report yet
   pace.completed(in(0), transfer_status::success);
   CHECK_FALSE(pace.waits_for_board());
   submit(pace, 2, 3);

@@ -20,7 +20,7 @@ using Packet = std::vector<std::byte>;
 
 constexpr std::uint64_t cases_in_a_batch = 200;
 constexpr double byte_s = 1.0 / 1'500'000;
-constexpr std::size_t token_bytes = 8;  // with what surrounds it
+constexpr std::size_t token_bytes = 8;  // including overhead
 constexpr unsigned own_address = 2;
 constexpr std::uint8_t device_descriptor = 1, configuration_descriptor = 2, string_descriptor = 3;
 
@@ -60,7 +60,7 @@ class HostileHost {
     ++outcome.cases;
   }
 
-  /// A sentence on what is wrong; none if the device is well.
+  /// Returns an error message; empty if the device works.
   std::optional<std::string> recover() {
     leave_packets_behind();
     reset();
@@ -96,7 +96,7 @@ class HostileHost {
     return bus_.cable.setup(address_, 0, packet);
   }
 
-  /// The packet of an IN transaction that the device answers with data.
+  /// Returns the data packet of an IN transaction; empty if the device sends none.
   std::optional<Packet> in(unsigned endpoint, bool acknowledged = true) {
     pause_s(token_bytes * byte_s);
     std::array<std::byte, full_speed_packet_maximum> data;
@@ -112,7 +112,7 @@ class HostileHost {
     return bus_.cable.out(address_, endpoint, data1, data);
   }
 
-  static constexpr int tries = 300;  // of about 10 us
+  static constexpr int tries = 300;  // about 10 us each
   std::optional<Packet> read_packet() {
     for (int i = 0; i < tries; ++i)
       if (auto packet = in(0)) return packet;
@@ -129,7 +129,7 @@ class HostileHost {
     return status && status->empty();
   }
 
-  /// What the firmware finds in the receive FIFO together with the reset: reports, and a request to move elsewhere.
+  /// Sends reports and a SET_ADDRESS request, which the firmware finds in the receive FIFO together with the reset.
   void leave_packets_behind() {
     constexpr unsigned elsewhere = 77;
     for (const bool data1 : {false, true}) bus_.cable.out(address_, 1, data1, Packet(64));
@@ -137,8 +137,7 @@ class HostileHost {
     std::array<std::byte, full_speed_packet_maximum> data;
     bus_.cable.in(address_, 0, data);
   }
-  /// None may take or send packets before the device is configured, but endpoint 0 OUT, on which the core itself
-  /// decides.
+  /// Before configuration no endpoint may accept or send packets, except endpoint 0 OUT, which the core controls.
   bool any_endpoint_open() {
     constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, naksts = 1u << 17, epena = 1u << 31;
     const auto is_open = [this](std::uint32_t control) {
@@ -175,7 +174,7 @@ class HostileHost {
       setup(descriptor_request(kinds[first]));
       pause_s(between(0, 40e-6));
       if (random_() % 2 == 0) continue;
-      // A token ends the stage of this SETUP, and the next one comes while its answer is made ready.
+      // A token completes the stage of this SETUP, and the next SETUP arrives while the answer is prepared.
       random_() % 2 == 0 ? void(in(0, random_() % 2 == 0)) : void(out(0, true, {}));
       pause_s(between(0, 20e-6));
     }
@@ -210,7 +209,7 @@ class HostileHost {
     }
   }
 
-  // Not SET_ADDRESS: then the host would have to follow.
+  // Excludes SET_ADDRESS, because the host would have to change the address as well.
   void random_setup() {
     Setup packet;
     for (std::byte& one : packet) one = std::byte(random_() & 0xFF);

@@ -1,4 +1,5 @@
-// The flashed firmware against a host that keeps to no rule; more cases by `build/pc/usb-trial hostile --cases N`.
+// The flashed firmware against a host that violates the protocol. `build/pc/usb-trial hostile --cases N` runs more
+// cases.
 #include <doctest/doctest.h>
 
 #include "firmware_on_bus.hpp"

@@ -1,4 +1,4 @@
-// The flashed firmware on chips and crystals that are not as their names say, within the data sheets and beyond.
+// The flashed firmware with inaccurate oscillators and crystals, within the data sheets and beyond.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -83,7 +83,7 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
     FirmwareOnBus& bus = other.bus;
     bus.connect();
     bus.run_for(0.3);
-    bus.chip.clear_counters();  // it has bitten once for its trial
+    bus.chip.clear_counters();  // the watchdog has expired once in its test
     constexpr unsigned control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
     bus.chip.lose_exception(control_interrupt, true);
     bus.run_for(sort.not_before_s);
@@ -118,7 +118,7 @@ TEST_CASE("what the trial of the watchdog showed is told after other resets too,
   other.bus.connect();
   const float bitten_after_ms = other.watchdog_entry().figure;
   other.bus.chip.reset(ResetCause::pin);
-  other.bus.run_for(0.05);  // the port sees that the device was gone
+  other.bus.run_for(0.05);  // the port detects that the device was disconnected
   other.bus.connect();
   CHECK(other.watchdog_resets() == 1);
   CHECK(other.watchdog_entry().result == protocol::SelfTestResult::passed);

@@ -1,4 +1,4 @@
-// The core's registers against RM0090, and what it says of drivers that break the manual's rules.
+// The core's registers according to RM0090, and its reports of drivers that violate the manual.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -33,7 +33,7 @@ struct CoreBench {
   void write(std::uint32_t offset, std::uint32_t value) { core.write(offset, value, 4); }
   void wait_us(double time_us) { scheduler.run_until(scheduler.now() + virtual_board::ticks(time_us * 1e-6)); }
   InReply in(unsigned endpoint) { return core.in(0, endpoint, packet); }
-  /// Bulk endpoints 0x82 and 0x03, as after SET_CONFIGURATION.
+  /// Activates bulk endpoints 0x82 and 0x03, as after SET_CONFIGURATION.
   void activate() {
     write(0x940, 1u << 28 | 2u << 22 | 2u << 18 | 1u << 15 | 64);
     write(0xB60, 1u << 28 | 2u << 18 | 1u << 15 | 64);
@@ -95,7 +95,7 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
   core.write(gccfg, 1u << 16, 4);
   CHECK(core.attachment() == 0);  // VBUS is not sensed
   core.write(gccfg, 1u << 16 | 1u << 19, 4);
-  CHECK(core.attachment() == 0);  // sensed, and absent
+  CHECK(core.attachment() == 0);  // VBUS sensing is on, and VBUS is absent
   core.set_bus_power(true);
   CHECK(core.attachment() != 0);
   core.set_bus_power(false);
@@ -166,7 +166,7 @@ TEST_CASE("a SETUP packet is taken against NAK and STALL, clears the stall and s
   CHECK((status >> 4 & 0x7FF) == 8);
   bench.read(0x1000);
   bench.read(0x1000);
-  CHECK((bench.read(gintsts) & rxflvl) == 0);  // setup done is written with the next token
+  CHECK((bench.read(gintsts) & rxflvl) == 0);  // the next token writes the setup-done word
   CHECK(bench.in(0).handshake == Handshake::nak);
   CHECK((bench.read(grxstsp) >> 17 & 15) == 4);
   CHECK((bench.read(0xB08) & 1u << 3) != 0);
@@ -196,7 +196,7 @@ TEST_CASE("NAK that is cleared upon a SETUP that nobody could have seen loses th
     bench.read(grxstsp);
     for (int i = 0; i < 2; ++i) bench.read(0x1000);
     bench.in(0);
-    CHECK((bench.read(gintsts) & rxflvl) == 0);  // where the setup-done word would be
+    CHECK((bench.read(gintsts) & rxflvl) == 0);  // position of the setup-done word
     return !bench.log.broken.empty();
   };
   CHECK_FALSE(clear_nak(false, 0.5));
@@ -208,7 +208,7 @@ TEST_CASE("a new address holds from the end of the status stage") {
   CoreBench bench;
   bench.core.setup(0, 0, some_request);
   bench.write(dcfg, bench.read(dcfg) | 9u << 4);
-  bench.core.in(0, 0, bench.packet);  // ends the setup stage
+  bench.core.in(0, 0, bench.packet);  // completes the setup stage
   while ((bench.read(gintsts) & rxflvl) != 0)
     if ((bench.read(grxstsp) >> 4 & 0x7FF) == 8) bench.read(0x1000), bench.read(0x1000);
   bench.write(0x910, 1u << 19);
@@ -235,7 +235,7 @@ TEST_CASE("IN: NAK until the whole packet is loaded, then data with alternating 
   CHECK(first.length == 64);
   CHECK_FALSE(first.data1);
   CHECK(bench.packet[63] == std::byte{8});
-  CHECK(bench.in(2).length == 64);  // not acknowledged: the same again
+  CHECK(bench.in(2).length == 64);  // not acknowledged: the packet is repeated
   CHECK(bench.core.finish_in(2));
   CHECK((bench.read(0x948) & 1) == 0);
   const InReply second = bench.in(2);
@@ -420,7 +420,7 @@ TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK wh
   bench.write(0xB60, bench.read(0xB60) | epena | cnak);
   CHECK(bench.out(3, false, 64) == Handshake::ack);
   CHECK(bench.out(3, true, 64) == Handshake::ack);
-  CHECK(bench.out(3, false, 64) == Handshake::nak);  // 56 words: 2 packets of 17 and no more
+  CHECK(bench.out(3, false, 64) == Handshake::nak);  // 56 words: room for only 2 packets of 17 words
   for (int i = 0; i < 3; ++i) CHECK(bench.core.setup(0, 0, some_request) == Handshake::ack);
   CHECK((bench.read(grxstsp) >> 17 & 15) == 2);
   for (int i = 0; i < 16; ++i) bench.read(0x1000);
@@ -428,7 +428,7 @@ TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK wh
   for (int i = 0; i < 16; ++i) bench.read(0x1000);
   CHECK(bench.out(3, true, 64) == Handshake::ack);  // a repetition: acknowledged, not stored
   CHECK((bench.read(0xB70) >> 19 & 0x3FF) == 6);
-  CHECK(bench.out(3, false, 10) == Handshake::ack);  // short: the transfer ends
+  CHECK(bench.out(3, false, 10) == Handshake::ack);  // a short packet completes the transfer
   CHECK(bench.out(3, true, 64) == Handshake::nak);
   CHECK(bench.log.sentences.empty());
 }

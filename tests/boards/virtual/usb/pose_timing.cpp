@@ -56,8 +56,8 @@ struct Measurement {
     last = pose;
   }
 
-  /// The first encoder moves by one edge to and fro, at any phase of frames and control periods; the next edge
-  /// comes when the host has seen this one.
+  /// Moves the first encoder back and forth by one edge, at any phase of frames and control periods. The next edge
+  /// follows after the host has received the previous edge.
   void plan_edge() {
     const Ticks pause = std::uniform_int_distribution<Ticks>(ticks_per_s / 10'000, ticks_per_s / 500)(random);
     bus.chip.connections().scheduler.at(bus.chip.now() + pause, [this] {
@@ -84,7 +84,7 @@ struct Measurement {
 
 constexpr std::uint16_t parameters_feature = 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::parameters);
 
-/// Sets all parameters to what they are, for so long.
+/// Repeatedly sets all parameters to their current values, for `time_s`.
 void storm(FirmwareOnBus& bus, double time_s) {
   auto answer = bus.control(0xA1, 1, parameters_feature, 0, sizeof(protocol::ParametersReport));
   protocol::ParametersReport report{};
@@ -119,7 +119,7 @@ PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_p
   std::vector<protocol::Signal> signals;
   for (std::uint8_t i = 0; i < scope_signals; ++i) signals.push_back(static_cast<protocol::Signal>(i));
   if (!signals.empty()) bus.stream_scope(signals);
-  bus.run_for(0.1);  // the encoder's state settles
+  bus.run_for(0.1);  // the state of the encoder settles
   measurement.plan_edge();
   measurement.counting = true;
   if (beside == Beside::storm_of_parameters)

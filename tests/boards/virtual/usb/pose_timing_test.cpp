@@ -1,4 +1,4 @@
-// Poses follow the bus, whatever host's clock and control period are to each other.
+// Poses are synchronized to the bus, independent of the phase between host clock and control period.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -12,7 +12,7 @@
 namespace inkwell::virtual_usb_test {
 
 TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none is old") {
-  // Half a millisecond and more goes by between the clocks: control periods and frames meet at every phase.
+  // The clocks drift by more than half a millisecond, so that control periods and frames meet at every phase.
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
     const PoseTiming timing = measure_poses(flashed_image(), host_clock_ppm, 1.5, 14);
@@ -77,11 +77,11 @@ TEST_CASE("a pose that the host left is replaced by a newer one") {
   bus.cable.on_in = [&](unsigned endpoint, const virtual_board::InReply& reply, std::span<const std::byte> data) {
     if (endpoint != 1 || reply.handshake != virtual_board::Handshake::ack) return;
     REQUIRE(data.size() == sizeof(protocol::PoseReport));
-    if (pose) return;  // the first one counts
+    if (pose) return;  // only the first pose is used
     std::memcpy(&pose.emplace(), data.data(), sizeof *pose);
     taken_at = bus.chip.now();
   };
-  bus.run_for(0.05);  // nobody asks
+  bus.run_for(0.05);  // no requests
   bus.keep_asking_for_poses();
   bus.run_for(0.0015);
   REQUIRE(pose.has_value());
@@ -93,7 +93,7 @@ TEST_CASE("a pose that the host left is replaced by a newer one") {
   bus.keep_asking_for_poses();
   bus.run_for(0.0015);
   REQUIRE(pose.has_value());
-  // Frames went by, and the report is of the last of them.
+  // Frames have passed, and the report belongs to the last frame.
   CHECK(pose->sequence - first.sequence == (taken_at - first_at + ticks(0.0005)) / ticks(0.001));
   CHECK(pose->time_periods - first.time_periods ==
         doctest::Approx((pose->sequence - first.sequence) * 20.0).epsilon(0.005));

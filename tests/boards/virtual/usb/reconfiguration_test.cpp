@@ -1,4 +1,4 @@
-// The flashed firmware when a host configures it again, and when the bus is reset while transfers wait.
+// The flashed firmware after a repeated configuration, and after a bus reset during pending transfers.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ protocol::CommandReport clear_fault(std::uint8_t token) {
   return report;
 }
 
-/// The firmware, a host that asks for poses and controller, and what it has seen of both.
+/// The firmware, and a host that reads poses and controller reports and records both.
 struct Host {
   Host() : bus(flashed_image()) {
     bus.connect();
@@ -32,7 +32,7 @@ struct Host {
     };
   }
 
-  /// As a host does that has just configured the device: requests of before are gone.
+  /// Configures the device like a host, which discards its previous requests.
   void configure() {
     REQUIRE(bus.control(0x00, set_configuration, 1, 0, 0).status == 0);
     first_toggles.clear();
@@ -40,7 +40,7 @@ struct Host {
     bus.keep_asking_the_controller();
   }
 
-  /// Sends a command; true if the firmware takes it within 10 ms.
+  /// Sends a command. Returns true if the firmware executes the command within 10 ms.
   bool is_obeyed(std::uint8_t token) {
     bus.send_report(clear_fault(token));
     bus.run_for(0.01);
@@ -57,7 +57,8 @@ struct Host {
 TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
   Host host;
   std::uint8_t token = 0;
-  // Each round one packet of each kind more or less has passed before.
+  // The number of packets before a configuration differs between the rounds, so that both values of a data toggle
+  // precede a configuration.
   for (int round = 0; round < 4; ++round) {
     CAPTURE(round);
     host.configure();

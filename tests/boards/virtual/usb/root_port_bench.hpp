@@ -1,4 +1,4 @@
-// A root port with the OTG_FS core and a driver for it on the other side, and a host that notes every outcome.
+// A root port, the OTG_FS core with a driver, and a host that records every result.
 #pragma once
 
 #include <doctest/doctest.h>

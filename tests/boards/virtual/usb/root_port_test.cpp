@@ -1,4 +1,4 @@
-// Transfers over the modelled bus: a driver written against the manual on one side, a host on the other.
+// Transfers over the modeled bus between a host and a driver that follows the manual.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -103,7 +103,8 @@ TEST_CASE("control transfers of every awkward length") {
     const Outcome exact = bench.control(0xC0, 1, length, length);
     CHECK(exact.status == 0);
     CHECK(exact.data == patterned(length));
-    const Outcome shorter = bench.control(0xC0, 1, length, length + 64);  // needs a packet of 0 at multiples of 64
+    const Outcome shorter = bench.control(0xC0, 1, length, length + 64);  // needs a zero-length packet at multiples of
+                                                                          // 64
     CHECK(shorter.status == 0);
     CHECK(shorter.data == patterned(length));
     const Outcome sent = bench.control(0x40, 2, 0, length, patterned(length));
@@ -155,7 +156,7 @@ TEST_CASE("a zero is stuffed after six ones of a data packet") {
   using virtual_board::stuffed_bits;
   CHECK(stuffed_bits(false, {}) == 0);
   CHECK(stuffed_bits(false, Bytes(64)) == 1);  // in the checksum
-  // The identifier's last two bits are ones too.
+  // The last two bits of the packet identifier are also ones.
   CHECK(stuffed_bits(false, Bytes(64, std::byte{0xFF})) == 512 / 6 + 1);
   CHECK(stuffed_bits(false, Bytes{std::byte{0xF8}, std::byte{0x01}}) == 1);
   CHECK(stuffed_bits(false, Bytes{std::byte{0xF0}, std::byte{0x01}}) == 0);
@@ -196,7 +197,7 @@ TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
   std::vector<std::uint32_t> reports;
   for (int i = 0; i < 200; ++i) reports.push_back(bench.submit_in(1, 64));
   for (int i = 0; i < 100; ++i) bench.submit_in(2, 4096);
-  bench.run_for(0.202);  // the frame under way, and one more for the first report
+  bench.run_for(0.202);  // the frame in progress, and one more for the first report
   for (std::uint32_t i = 0; i < reports.size(); ++i) {
     REQUIRE(bench.outcomes.contains(reports[i]));
     std::uint32_t number = 0;
@@ -248,7 +249,7 @@ TEST_CASE("OUT transfers: reports, long bulk, a device that does not listen for 
 
   bench.firmware.bulk_received.clear();
   bench.firmware.take_bulk(false);
-  CHECK(bench.wait_for(bench.submit_out(3, patterned(64))).status == 0);  // the packet that was armed already
+  CHECK(bench.wait_for(bench.submit_out(3, patterned(64))).status == 0);  // the packet that was already armed
   const std::uint32_t urb = bench.submit_out(3, patterned(128), virtual_board::transfer_flag::zero_packet);
   bench.run_for(0.1);
   CHECK_FALSE(bench.outcomes.contains(urb));
@@ -262,7 +263,7 @@ TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles st
   RootPortBench bench;
   bench.firmware.stream(true);
   bench.use();
-  CHECK(bench.wait_for(bench.submit_in(2, 64 * 3)).status == 0);  // an odd number of packets: toggle at DATA1
+  CHECK(bench.wait_for(bench.submit_in(2, 64 * 3)).status == 0);  // an odd number of packets: the toggle is DATA1
   bench.firmware.halt_bulk_in();
   CHECK(bench.wait_for(bench.submit_in(2, 640)).status == status::stalled);
   CHECK(bench.wait_for(bench.submit_in(2, 640)).status == status::stalled);
@@ -271,7 +272,7 @@ TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles st
   CHECK(after.status == 0);
   std::uint32_t word = 0;
   std::memcpy(&word, after.data.data(), 4);
-  CHECK(word == 3 * 16);  // nothing lost, nothing twice
+  CHECK(word == 3 * 16);  // no word lost or repeated
 }
 
 TEST_CASE("a packet larger than the room left is an overflow") {

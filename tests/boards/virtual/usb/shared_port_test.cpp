@@ -1,4 +1,4 @@
-// Several programs at the one device of a virtual board.
+// Several programs that share the device of a virtual board.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ struct Program : UsbIpClient {
     REQUIRE(read_reply().status == 0);
   }
   void ask_for_report(std::uint32_t sequence) { submit(sequence, 1, true, 64); }
-  /// The first byte of the report that answers the oldest request.
+  /// Returns the first byte of the report that answers the oldest request.
   int read_report() {
     const auto reply = read_reply();
     REQUIRE(reply.status == 0);
@@ -32,7 +32,7 @@ struct Program : UsbIpClient {
   }
 };
 
-/// What programs have asked for by now is known to the board.
+/// Returns after the board has received all requests sent before.
 void settle(LiveBoard& board) {
   board.call([&] { board.usb.settle(); });
 }
@@ -61,7 +61,7 @@ TEST_CASE("each report reaches every program that asks, and the first alone rese
       program->ask_for_report(static_cast<std::uint32_t>(11 + i));
     }
   }
-  // A program that did not ask has missed them; it gets the next one.
+  // A program without a request has missed the reports and receives the next one.
   late.ask_for_report(10);
   send_report(board, 60);
   CHECK(late.read_report() == 60);
@@ -78,14 +78,14 @@ TEST_CASE("numbers of transfers are each program's own, and a request that is ta
   CHECK(first.receive<usbip::ReturnUnlink>().status == -104);
   send_report(board, 33);
   CHECK(second.read_report() == 33);
-  // Nobody asks any more: what comes now waits for the next who does.
+  // Without requests, a report waits for the next request.
   second.ask_for_report(9);
   second.unlink(10, 9);
   CHECK(second.receive<usbip::ReturnUnlink>().status == -104);
   send_report(board, 34);
   first.ask_for_report(11);
   CHECK(first.read_report() == 34);
-  // Control transfers of both go through.
+  // Control transfers of both programs are completed.
   constexpr std::array<std::uint8_t, 8> get_device_descriptor{0x80, 6, 0, 1, 0, 0, 18, 0};
   for (Program* program : {&first, &second}) {
     program->submit(20, 0, true, 18, {}, get_device_descriptor);
@@ -162,7 +162,7 @@ TEST_CASE("a program that takes no more reports is waited for, but not for ever 
   other.ask_for_report(63);
   send_report(board, 93);
   CHECK(other.read_report() == 93);
-  for (int i = 0; i < 2; ++i) CHECK(stopped.read_report() == 90 + i);  // and it missed the others
+  for (int i = 0; i < 2; ++i) CHECK(stopped.read_report() == 90 + i);  // the program missed the later reports
   stopped.ask_for_report(62);
   other.ask_for_report(64);
   send_report(board, 94);

@@ -1,5 +1,5 @@
-// The flashed firmware stores its parameters in the flash of the virtual chip: they outlive the power, which may fail
-// at any word, and neither control interrupt nor poses nor watchdog are held up.
+// The flashed firmware stores its parameters in the flash of the virtual chip. The stored parameters survive a power
+// loss at any word. Storing delays neither control interrupt nor poses nor watchdog.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct StoringBoard {
 
   void start() {
     bus.connect();
-    bus.run_for(0.35);  // the self-test, which runs after the start
+    bus.run_for(0.35);  // the self-test after start-up
   }
   void switch_off_and_on() {
     bus.plug(false);
@@ -63,7 +63,7 @@ struct StoringBoard {
   float held(Parameter parameter, ReportId of = ReportId::parameters) {
     return get<protocol::ParametersReport>(of).entries[static_cast<std::size_t>(parameter)].value;
   }
-  /// Of all parameters, as the board holds them.
+  /// Returns the board's values of all parameters.
   std::vector<float> values() {
     const auto report = get<protocol::ParametersReport>(ReportId::parameters);
     REQUIRE(report.count == protocol::parameter_count);
@@ -97,8 +97,8 @@ struct StoringBoard {
   }
 
   FirmwareOnBus bus;
-  bool trial_is_due = true;  ///< of the watchdog, when the power has come
-  unsigned resets = 0;       ///< by the watchdog at other times
+  bool trial_is_due = true;  ///< the watchdog is tested after power-on
+  unsigned resets = 0;       ///< other watchdog resets
   std::uint8_t token = 0;
 };
 
@@ -134,7 +134,7 @@ TEST_CASE("parameters that were stored hold after the power was off; others do n
   CHECK(report.out_of_range == 0);
   CHECK(report.stores_left == stores_left);
 
-  // The same again takes no room; another value does.
+  // Storing equal values needs no space; storing a changed value does.
   CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
   CHECK(board.report().records_written == 1);
   board.set_stiffness(600.0f);
@@ -164,11 +164,12 @@ TEST_CASE("nothing is stored while the board tests itself") {
 
 namespace {
 
-/// How often an erase or a word is torn, each time in another way.
+/// Number of variants of an interrupted erase or word.
 constexpr int tears = 4;
 constexpr std::size_t store_offset = 0x8000, sector_bytes = 0x4000;
 
-/// The store in a chip's flash, for the firmware's own log: contents are made with it that take the board hours.
+/// The store in a chip's flash as memory of the firmware's log. This class prepares contents that would take the board
+/// hours.
 class StoreSectors final : public link::FlashMemory {
  public:
   explicit StoreSectors(Chip& chip) : words_(reinterpret_cast<std::uint32_t*>(chip.flash().data() + store_offset)) {}
@@ -199,7 +200,7 @@ void put(const StoreImage& image, Chip& chip) {
 
 constexpr std::size_t entry_words = 2 * protocol::parameter_count;
 
-/// One set of all parameters, as this firmware would store it with this stiffness.
+/// Stores one set of all parameters with this stiffness, like this firmware.
 void store_set(link::FlashLog& log, float stiffness, std::uint16_t schema = protocol::store_schema) {
   std::vector<std::uint32_t> entries;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
@@ -216,7 +217,7 @@ void store_set(link::FlashLog& log, float stiffness, std::uint16_t schema = prot
 
 constexpr float stored_stiffness = 500.0f;
 
-/// Stores set after set until so many records of all parameters still fit.
+/// Stores sets until exactly this number of complete records still fits.
 void fill(Chip& chip, std::size_t (*left)(std::size_t room_of_blank)) {
   StoreSectors sectors(chip);
   link::FlashLog log;
@@ -234,8 +235,8 @@ void spoil(Chip& chip, std::size_t sector) {
 struct Contents {
   std::string name;
   void (*make)(Chip&);
-  float stiffness;         ///< that a start finds
-  std::size_t sector = 0;  ///< that a store then writes into
+  float stiffness;         ///< value after the next start-up
+  std::size_t sector = 0;  ///< sector that the next store writes
 };
 
 const Contents before_a_store[] = {
@@ -269,8 +270,8 @@ const Contents before_an_erase[] = {
      default_stiffness},
 };
 
-/// A board whose starts are looked at where its firmware keeps the parameters, because it takes a quarter of a second
-/// of board time until a host can ask for them.
+/// A board whose parameters are read directly from its memory after start-up. A request by the host would take a
+/// quarter of a second of board time.
 struct WatchedStarts {
   explicit WatchedStarts(const Contents& contents) {
     contents.make(board.bus.chip);
@@ -288,7 +289,7 @@ struct WatchedStarts {
     REQUIRE(held_at != 0);
   }
 
-  /// What it holds when its converters are triggered first, which is soon after the store was read.
+  /// Returns the parameters at the first trigger of the converters, shortly after the store was read.
   std::vector<float> after_power_on(const StoreImage& flash) {
     Chip& chip = board.bus.chip;
     put(flash, chip);
@@ -315,7 +316,7 @@ struct WatchedStarts {
     REQUIRE(board.bus.chip.debug_port().read(place, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
     return values;
   }
-  /// In the core coupled memory.
+  /// Returns the addresses in the core-coupled memory.
   std::vector<std::uint32_t> places_of(const std::vector<float>& values) {
     std::vector<float> memory(virtual_board::ccm_bytes / sizeof(float));
     const auto bytes = std::as_writable_bytes(std::span(memory));
@@ -332,19 +333,19 @@ struct WatchedStarts {
   std::uint32_t held_at = 0;
 };
 
-/// A word that is programmed, by its place in the store.
+/// A programmed word and its position in the store.
 struct Word {
   std::size_t place;
   std::uint32_t value;
 };
 
-/// Has the board store, and watches its flash.
+/// Makes the board store its parameters, and observes its flash.
 std::vector<Word> words_of_a_store(StoringBoard& board) {
   std::vector<Word> words;
   StoreImage seen = store_image(board.bus.chip);
   const std::uint64_t before = board.bus.chip.flash_operations();
   board.send(Command::store_parameters);
-  constexpr double step_s = 0.00005;  // a word takes ten of them
+  constexpr double step_s = 0.00005;  // a word takes ten steps
   for (int i = 0; i < 4000; ++i) {
     board.bus.run_for(step_s);
     const std::uint64_t operations = board.bus.chip.flash_operations() - before;
@@ -363,8 +364,8 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 
 }  // namespace
 
-// What a cut leaves of a word is made here, because nothing but the flash outlives it. The test behind the next one has
-// the chip cut its own power, at the cost of a self-test for each cut.
+// The result of the power cut is created directly in flash, because no other state survives a power cut. A later test
+// cuts the power of the chip itself, which costs one self-test per cut.
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);
@@ -464,7 +465,7 @@ TEST_CASE("neither the control interrupt nor the poses are held up by a store, h
     REQUIRE(longest > 0);
     longest = 0;
     CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
-    // A millisecond each; what the bus does in it may move a pose within its frame.
+    // Poses are one millisecond apart, and bus activity may shift a pose within its frame.
     CHECK(longest < ticks(0.0021));
     const auto information = board.get<protocol::InformationReport>(ReportId::information);
     CHECK(information.servo_overruns == 0);
@@ -476,7 +477,7 @@ TEST_CASE("neither the control interrupt nor the poses are held up by a store, h
 TEST_CASE("a start that has to erase takes so much longer, and no watchdog bites, on the slowest flash") {
   StoringBoard board({.low_speed_internal_Hz = 47'000, .slowest_flash = true});
   constexpr std::size_t second_sector = 0xC000;
-  board.bus.chip.flash()[second_sector + 100] = 0;  // what an erase that was cut off has left
+  board.bus.chip.flash()[second_sector + 100] = 0;  // result of an interrupted erase
   board.bus.chip.reset(ResetCause::power_on);
   board.bus.plug(false);
   board.bus.run_for(0.6);

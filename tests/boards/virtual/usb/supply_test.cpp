@@ -1,4 +1,5 @@
-// The flashed firmware while the supply of the chip fades: with the brown-out level of the board's page, and as new.
+// The flashed firmware during a slow supply loss, with the brown-out level of the board's page and with that of a new
+// chip.
 #include <doctest/doctest.h>
 
 #include <omni_driver/facts.hpp>
@@ -33,10 +34,10 @@ TEST_CASE("brown-out level 3 holds the chip in reset before the flash is misread
   CHECK(bus.chip.counters().instructions == instructions);
   CHECK(bus.core.attachment() == 0);
   CHECK(level(bus, board::omni_driver.bridge_enable) == PinLevel::floating);
-  bus.chip.set_supply_V(2.85);  // above where it fell, below where it rises
+  bus.chip.set_supply_V(2.85);  // between the falling and the rising threshold
   bus.run_for(0.1);
   CHECK(bus.chip.counters().instructions == instructions);
-  bus.chip.reset();  // the button changes nothing
+  bus.chip.reset();  // the reset button has no effect
   bus.run_for(0.1);
   CHECK(bus.chip.counters().instructions == instructions);
   bus.chip.set_supply_V(3.3);

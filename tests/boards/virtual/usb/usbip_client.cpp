@@ -76,7 +76,7 @@ UsbIpClient::UsbIpClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_ST
   const timeval limit{60, 0};
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   const int yes = 1;
-  ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // what is sent is there for settle() at once
+  ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // settle() requires immediate transmission
   if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     throw std::runtime_error("the server does not listen");
 }

@@ -1,4 +1,4 @@
-// A USB/IP client of few words, and a board that runs in a thread of its own.
+// A minimal USB/IP client, and a board that runs in a separate thread.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@
 
 namespace inkwell::virtual_usb_test {
 
-/// The board's thread runs board time as fast as it can unless it is paused.
+/// The board's thread advances board time as fast as possible unless it is paused.
 class LiveBoard {
  public:
   explicit LiveBoard(const local::SocketAddress& where = {});  ///< any free port
   ~LiveBoard();
 
-  /// Runs `action` between two milliseconds of board time, on the board's thread.
+  /// Runs `action` between two milliseconds of board time, in the board's thread.
   void call(std::function<void()> action);
   void pause(bool paused) {
     call([&] { paused_ = paused; });
   }
-  /// False if the device was not enumerated within a generous time.
+  /// Returns false if the device was not enumerated within a long time limit.
   bool wait_until_enumerated();
 
-  std::atomic<bool> is_ending = false;  ///< what the board is told
+  std::atomic<bool> is_ending = false;  ///< the result of `is_ending()` of the board
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
@@ -50,7 +50,7 @@ class LiveBoard {
   std::thread thread_;
 };
 
-/// How the server calls what it exports.
+/// Identifier of the exported device in the server.
 inline constexpr std::uint32_t exported_device = usbip::device_of(1, 2);
 
 class UsbIpClient {
@@ -59,14 +59,14 @@ class UsbIpClient {
   ~UsbIpClient();
 
   void send(std::span<const std::byte> bytes);
-  /// Fewer bytes than asked for if the server closed the connection or nothing came for a minute.
+  /// Returns fewer bytes if the server closes the connection or sends nothing for one minute.
   Bytes receive(std::size_t length);
   template <class Message>
   Message receive() {
     const Bytes bytes = receive(sizeof(Message));
     return bytes.size() == sizeof(Message) ? usbip::read<Message>(bytes) : Message{};
   }
-  /// The server closed the connection (and sent nothing before that).
+  /// True if the server closed the connection without sending anything.
   bool closed() { return receive(1).empty() && closed_; }
 
   void ask_for_list();
@@ -75,7 +75,7 @@ class UsbIpClient {
   void submit(std::uint32_t sequence, unsigned endpoint, bool in, std::uint32_t length, Bytes out_data = {},
               std::array<std::uint8_t, 8> setup = {});
   void unlink(std::uint32_t sequence, std::uint32_t victim);
-  /// An answer to `submit`, without its data; all zeros if none came.
+  /// Returns the header of an answer to `submit`; all zeros if none arrived.
   usbip::ReturnSubmit read_reply() { return receive<usbip::ReturnSubmit>(); }
 
  private:

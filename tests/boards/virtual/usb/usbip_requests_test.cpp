@@ -25,7 +25,7 @@ usbip::Submit submit_out(std::uint32_t sequence) {
 }  // namespace
 
 TEST_CASE("requests are found whole, with all that is in them, however their bytes arrive") {
-  // Its data is as long as a packet's description, and told from it by its contents.
+  // The data has the length of a packet descriptor, but different contents.
   const usbip::IsochronousPacket data{.offset = 0x01020304, .length = 0x05060708};
   usbip::Unlink unlink{.unlinked_sequence = 7};
   unlink.header.sequence = 9;

@@ -1,4 +1,4 @@
-// The device as programs of this computer see it: USB/IP over a loopback socket.
+// The device as programs on this computer see it: USB/IP over a loopback socket.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>
@@ -136,7 +136,7 @@ TEST_CASE("one importer too many is refused, an unknown device too, and a next o
     CHECK(third.closed());
     configure(importers.front());
   }
-  REQUIRE(board.wait_until_enumerated());  // until the release has arrived
+  REQUIRE(board.wait_until_enumerated());  // the release has arrived by this time
   unsigned resets = 0;
   board.call([&] { resets = board.firmware.resets; });
   for (int i = 0; i < 3; ++i) {
@@ -183,7 +183,7 @@ TEST_CASE(
   configure(client);
   board.pause(true);
   for (const std::uint32_t sequence : {30u, 31u}) client.submit(sequence, 2, true, 64);
-  board.call([&] { board.usb.settle(); });  // both are there before the first is answered
+  board.call([&] { board.usb.settle(); });  // both requests arrive before the first is answered
   board.pause(false);
   for (int i = 0; i < 2; ++i) REQUIRE(client.receive(client.read_reply().actual_length).size() == 64);
   SUBCASE("it takes the last one back, too late") {
@@ -192,7 +192,7 @@ TEST_CASE(
   }
   SUBCASE("the board ends") { board.is_ending = true; }
   const auto before = board.scheduler.now();
-  for (int i = 0; i < 2; ++i) board.call([] {});  // not before the board's thread is free again
+  for (int i = 0; i < 2; ++i) board.call([] {});  // waits until the board's thread is free again
   CHECK(board.scheduler.now() > before);
 }
 
@@ -215,12 +215,12 @@ TEST_CASE("an unlinked transfer is answered once, by the unlink") {
   CHECK(reply.header.command == Command::return_submit);
   CHECK(reply.header.sequence == 21);
   CHECK(client.receive(reply.actual_length) == report);
-  client.unlink(23, 21);  // too late: it was answered
+  client.unlink(23, 21);  // too late: already answered
   unlinked = client.receive<usbip::ReturnUnlink>();
   CHECK(unlinked.header.command == Command::return_unlink);
   CHECK(unlinked.header.sequence == 23);
   CHECK(unlinked.status == 0);
-  client.submit(20, 0, true, 18, {}, get_device_descriptor);  // its number is free again
+  client.submit(20, 0, true, 18, {}, get_device_descriptor);  // the sequence number is free again
   CHECK(client.read_reply().header.sequence == 20);
 }
 
@@ -328,7 +328,8 @@ TEST_CASE("nonsense closes the connection, not the server") {
         submit.length = 0x7FFF'FFFF;
       },
       [](usbip::Submit& submit) { submit.packet_count = 1025; },                        // too many
-      [](usbip::Submit& submit) { submit.header.direction = usbip::Direction::out; }};  // but the request says IN
+      [](usbip::Submit& submit) { submit.header.direction = usbip::Direction::out; }};  // contradicts the direction IN
+                                                                                        // of the request
   for (const auto& make : mistakes) {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
@@ -344,14 +345,14 @@ TEST_CASE("nonsense closes the connection, not the server") {
     REQUIRE(client.import() == OperationStatus::success);
     configure(client);
     client.submit(50, 1, true, 64);
-    client.submit(50, 1, true, 64);  // the same number twice
+    client.submit(50, 1, true, 64);  // repeated sequence number
     CHECK(client.closed());
   }
   {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
     REQUIRE(client.import() == OperationStatus::success);
-    client.send(Bytes(20));  // half a command, then gone
+    client.send(Bytes(20));  // half a command, then the connection closes
   }
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(port);
@@ -370,7 +371,7 @@ TEST_CASE("who imports right after a client died with transfers under way is ser
     UsbIpClient next(board.usb.port());
     dying.reset();
     const auto status = next.import();
-    if (status != OperationStatus::success) continue;  // it came before the server saw the other one die
+    if (status != OperationStatus::success) continue;  // accepted before the server detected the closed connection
     ask_for_device_descriptor(next);
   }
 }
@@ -421,14 +422,14 @@ TEST_CASE("a client that takes back more transfers than there can be is disconne
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
   REQUIRE(client.import() == OperationStatus::success);
-  board.call([&] {  // nothing is answered meanwhile
+  board.call([&] {  // no request is answered in the meantime
     for (std::uint32_t sequence = 1; sequence <= 5000; ++sequence) client.unlink(sequence, 0);
     CHECK(client.closed());
   });
   CHECK(board.wait_until_enumerated());
 }
 
-/// No further file can be opened while this lives.
+/// No further file can be opened while this object exists.
 class NoMoreFiles {
  public:
   NoMoreFiles() {

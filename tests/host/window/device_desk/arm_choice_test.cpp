@@ -1,4 +1,4 @@
-// One arm is taken by itself; of several none is, unless it was named or chosen.
+// A single arm is chosen automatically; several arms require a name or a choice.
 #include <doctest/doctest.h>
 
 #include <device_desk/arm_choice.hpp>
@@ -44,7 +44,7 @@ TEST_CASE("an arm that was taken alone is taken again beside another one, which 
   ArmChoice choice("");
   CHECK(picked(choice, {a}) == "A");
   CHECK(picked(choice, {b, a}) == "A");
-  CHECK(picked(choice, {}) == "none");  // it resets itself
+  CHECK(picked(choice, {}) == "none");  // the choice resets itself
   CHECK(contains(question(choice, {b}), "The arm A is gone, and B is another one"));
   CHECK(picked(choice, {b, a}) == "A");
 }

@@ -1,4 +1,3 @@
-// Which device the window's desk asks for.
 #include <doctest/doctest.h>
 
 #include <device/address.hpp>
@@ -22,7 +21,7 @@ TEST_CASE("with several arms the desk asks, and goes to the one that is chosen")
   desk.choose("B");
   desk.follow_choice();
   CHECK(desk.wanted_serial_number() == "B");
-  // It answers nothing that an arm would, which is another sentence than a question.
+  // The device answers no request of an arm, so an error is shown instead of a question.
   REQUIRE(eventually([&] { return !desk.refresh().status.message.empty(); }));
   CHECK_FALSE(desk.view().must_choose);
 }

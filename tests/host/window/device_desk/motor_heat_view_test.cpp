@@ -1,4 +1,3 @@
-// What the user is told of the motors' heat.
 #include <string>
 
 #include <doctest/doctest.h>

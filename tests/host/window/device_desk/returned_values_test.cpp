@@ -1,4 +1,4 @@
-// After a reconnection: which values are told to be others, how long, and what would bring them back.
+// After a reconnection: the values that changed, the duration of the notice, and the changes that restore them.
 #include <doctest/doctest.h>
 
 #include <device_desk/returned_values.hpp>
@@ -12,7 +12,7 @@ namespace {
 constexpr Parameter stiffness = Parameter::wall_stiffness_N_per_m;
 constexpr Parameter damping = Parameter::wall_damping_Ns_per_m;
 
-/// A device that came back with the table's defaults, and held these before.
+/// A device that returns with the default values and had these values before.
 window::DeviceView returned(std::initializer_list<device::ParameterChange> held_before) {
   window::DeviceView view;
   view.status.connection = device::Connection::connected;

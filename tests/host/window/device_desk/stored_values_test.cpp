@@ -1,4 +1,4 @@
-// What the window says of the values that the board has stored, and when it lets the user store them.
+// The window's messages about the stored parameters, and the conditions for storing them.
 #include <doctest/doctest.h>
 
 #include <device_desk/stored_values.hpp>

@@ -1,4 +1,4 @@
-// Labels that do not fit end in an ellipsis, and windows open as big as their text.
+// Labels that do not fit end with an ellipsis, and windows open in the size of their text.
 #include <doctest/doctest.h>
 
 #include <frame/ellipsis.hpp>
@@ -8,7 +8,7 @@ using namespace inkwell::window;
 
 namespace {
 
-/// Each character is as wide as another.
+/// Text width with one unit per character.
 float characters(std::string_view text) {
   float count = 0;
   for (const char byte : text) count += (static_cast<unsigned char>(byte) & 0xC0u) != 0x80u ? 1.0f : 0.0f;

@@ -1,4 +1,3 @@
-// Items in rows that wrap.
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -18,7 +17,7 @@ TEST_CASE("items stand in one row where they fit, and wrap into whole rows where
   CHECK(two_rows[1].x == 0);
 
   const auto narrow = flow(widths, 150, 220, 10);
-  CHECK(narrow[0].row == 1);  // the first row has no room for it
+  CHECK(narrow[0].row == 1);  // does not fit in the first row
   CHECK(narrow[1].row == 2);
   CHECK(narrow[2].row == 2);
   CHECK(narrow[3].row == 3);

@@ -1,4 +1,4 @@
-// What the file chooser shows, and the sentences that stand for what the file system refuses.
+// Entries of the file chooser, and the messages for errors of the file system.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -52,7 +52,7 @@ TEST_CASE("what cannot be listed, read or written is told in a sentence") {
   CHECK(writing_problem(file).empty());
   CHECK(writing_problem(directory.file("nowhere") + "/a.toml").find("There is no folder") == 0);
   CHECK(writing_problem(file.parent_path()).find("is a folder") != std::string::npos);
-  if (geteuid() == 0) return;  // whom nothing is forbidden
+  if (geteuid() == 0) return;  // root has access to every folder
   fs::permissions(file, fs::perms::none);
   CHECK(reading_problem(file).find("You may not read") == 0);
   CHECK(writing_problem(file).find("You may not write") == 0);

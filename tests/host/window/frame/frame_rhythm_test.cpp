@@ -1,4 +1,4 @@
-// A window at rest draws seldom, and wakes at once.
+// An idle window draws rarely and reacts immediately to changes.
 #include <doctest/doctest.h>
 
 #include <frame/frame_rhythm.hpp>
@@ -7,7 +7,7 @@ using namespace inkwell::window;
 
 namespace {
 
-/// Frames drawn in ten seconds of a loop that looks 60 times a second and always sees the same.
+/// Number of frames drawn in ten seconds by a loop that checks constant evidence 60 times per second.
 int frames_drawn(const FrameEvidence& evidence, double drawing_s = 0.0) {
   FrameRhythm rhythm;
   rhythm.took(drawing_s);
@@ -26,7 +26,7 @@ TEST_CASE("motion is drawn at the full rate, resting signals seldom, the same pi
   CHECK(frames_drawn({.differs = true}) >= 50);
   CHECK(frames_drawn({.differs = true}) <= 61);
   CHECK(frames_drawn({}) == 0);
-  CHECK(frames_drawn({.input = true}) == 0);  // a mouse that changes nothing
+  CHECK(frames_drawn({.input = true}) == 0);  // mouse input without a visible change
 }
 
 TEST_CASE("input wakes the window at once, and it stays awake for a moment") {

@@ -23,7 +23,7 @@ TEST_CASE("a letter is on the key that writes it") {
   CHECK(german['z' - 'a'] == 'Y');
   CHECK(german['y' - 'a'] == 'Z');
   CHECK(german['a' - 'a'] == 'A');
-  CHECK(with({{';', "m"}})['m' - 'a'] == ';');  // French: not on one of the keys of letters
+  CHECK(with({{';', "m"}})['m' - 'a'] == ';');  // French: m is not on a letter key of the US layout
 }
 
 TEST_CASE("a letter that no key writes stays where an American keyboard has it") {

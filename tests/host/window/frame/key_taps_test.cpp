@@ -9,7 +9,7 @@ using inkwell::window::KeyTaps;
 TEST_CASE("a key that is tapped between two frames is down for one of them") {
   KeyTaps taps;
   std::array<bool, 8> down{};
-  taps.note(3);  // and up again: down[3] stays false
+  taps.note(3);  // released again: down[3] stays false
   taps.apply(down);
   CHECK(down[3]);
   taps.apply(down);
@@ -24,6 +24,6 @@ TEST_CASE("a key that is held stays with whoever keeps its state") {
   taps.apply(down);
   taps.apply(down);
   CHECK(down[5]);
-  taps.note(99);  // unknown keys have no place
+  taps.note(99);  // unknown keys are ignored
   taps.apply(down);
 }

@@ -1,4 +1,4 @@
-// What of a window has to be drawn anew: what has changed, with all that lies over or under it, and nothing else.
+// The parts of a window that must be redrawn: changed parts and all parts above or below them.
 #include <doctest/doctest.h>
 
 #include <vector>
@@ -14,7 +14,7 @@ constexpr Box canvas{0, 50, 700, 500};
 constexpr Box status{0, 0, 1000, 50}, plot{50, 520, 340, 780}, other_plot{380, 520, 690, 780},
     slider{720, 300, 980, 320};
 
-/// Panes are known by where they are; these stand for them.
+/// The addresses identify panes.
 constexpr int panes[3] = {};
 
 DrawnPicture picture() {

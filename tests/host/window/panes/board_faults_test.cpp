@@ -1,4 +1,4 @@
-// The thread that puts faults into a virtual board, against a control socket whose answers the test gives.
+// The thread that injects faults into a virtual board, against a control socket whose answers the test sets.
 #include <panes/board_faults.hpp>
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ constexpr auto nothing_in =
     R"({"ok": true, "board_time_s": 1.5, "control_period": {"number": 7, "board_time_s": 1.4}, "injected": [], )"
     R"("still_to_come": []})";
 
-/// Takes news until one of this kind comes.
+/// Reads news until an item of this kind arrives.
 template <class Kind>
 Kind wait_for(BoardFaults& faults) {
   std::optional<Kind> come;

@@ -44,7 +44,7 @@ TEST_CASE("faults go into a virtual board whose control port is known, and what 
   device::SessionStatus real{.connection = Connection::connected}, simulation = real;
   simulation.is_simulation = true;
   CHECK(obstacle(simulation, true).empty());
-  CHECK(obstacle(none, true).empty());  // a board whose cable is out is still there
+  CHECK(obstacle(none, true).empty());  // a virtual board with an unplugged cable still exists
   CHECK(contains(obstacle(real, true), "real device"));
   CHECK(contains(obstacle(real, false), "real device"));
   CHECK(contains(obstacle(simulation, false), "`--control`"));

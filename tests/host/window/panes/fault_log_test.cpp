@@ -1,4 +1,4 @@
-// What the log says of faults that were put in, from answers of a board and of what the device told.
+// Log entries of injected faults, from the answers of a board and the reports of the device.
 #include <panes/fault_log.hpp>
 
 #include <doctest/doctest.h>
@@ -26,7 +26,7 @@ PutInFault to_come(unsigned number, double at_s) {
   return fault;
 }
 
-/// At this board time, of a firmware that started at 1 s.
+/// An answer at this board time of a firmware that started at 1 s.
 Injections answer(double board_time_s, std::vector<PutInFault> faults, double run_began_s = 1.0,
                   double period_s = 50e-6) {
   const double since_s = board_time_s - run_began_s;
@@ -110,7 +110,7 @@ TEST_CASE("a noticed fault is set beside each that came before, with the time to
   CHECK(*log.faults()[0].noticed->after_s == doctest::Approx(0.50505));
   CHECK(*log.faults()[1].noticed->after_s == doctest::Approx(0.00605));
   CHECK_FALSE(log.faults()[2].noticed);
-  CHECK_FALSE(log.faults()[3].noticed);  // it came later
+  CHECK_FALSE(log.faults()[3].noticed);  // injected later
 }
 
 TEST_CASE("only the first that was noticed is told") {
@@ -133,7 +133,7 @@ TEST_CASE("it waits for an answer that has come to the control period, but not f
   CHECK(*log.faults()[0].noticed->after_s == doctest::Approx(0.12505));
 
   log.take(answer(2.2, {put_in(2, 2.15)}));
-  log.notice({Fault::watchdog, 900'000});  // of a run before a reset
+  log.notice({Fault::watchdog, 900'000});  // from a run before a reset
   for (int i = 0; i < 20 && log.waits_for_answer(); ++i) log.take(answer(2.3 + 0.1 * i, {put_in(2, 2.15)}));
   REQUIRE(log.faults().back().noticed);
   CHECK_FALSE(log.faults().back().noticed->after_s);
@@ -152,11 +152,11 @@ TEST_CASE("control periods are as long as the board's crystal makes them") {
 TEST_CASE("a core that was kept from its interrupt counts too few, until it starts anew") {
   FaultLog log;
   log.take(answer(2.0, {put_in(1, 1.9, "core_stalled")}));
-  log.notice({Fault::servo_overrun, 17'000});  // by its count, before the fault came
+  log.notice({Fault::servo_overrun, 17'000});  // earlier than the injection by the board's counter
   log.take(answer(2.1, {put_in(1, 1.9, "core_stalled"), put_in(3, 2.05, "core_halted")}));
   REQUIRE(log.faults()[0].noticed);
   CHECK_FALSE(log.faults()[0].noticed->after_s);
-  CHECK_FALSE(log.faults()[1].noticed);  // it came after the fault was told
+  CHECK_FALSE(log.faults()[1].noticed);  // injected after the report
 
   log.take(answer(2.3, {put_in(2, 2.25, "core_stalled")}));
   log.notice({Fault::watchdog, 400});

@@ -1,4 +1,4 @@
-// A line that turns back is drawn in pieces, and all of it.
+// A line that reverses its direction is drawn completely, in pieces.
 #include <doctest/doctest.h>
 
 #include <span>

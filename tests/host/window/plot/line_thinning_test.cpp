@@ -19,7 +19,7 @@ Line thinned(const Line& points) {
   return thinning.take();
 }
 
-/// Distance from the nearest piece of the line.
+/// Distance from the nearest segment of the line.
 float distance(const Line& line, Point point) {
   float nearest = 1e9f;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {

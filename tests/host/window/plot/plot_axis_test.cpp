@@ -1,4 +1,3 @@
-// Ticks and ranges of a plot's axes.
 #include <cmath>
 #include <utility>
 

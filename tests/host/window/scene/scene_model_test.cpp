@@ -1,4 +1,4 @@
-// The scene against the arm's geometry: links of the right length, walls that push back, frames, dragging.
+// The scene model against the arm's geometry: link lengths, wall reactions, frames and dragging.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ device::Pose pose_at(float joint_1_rad, float joint_2_rad, float joint_3_rad, pr
   return pose;
 }
 
-// Joint angles that put the Omni's probe near the middle of its box.
+// Joint angles that place the Omni's probe near the middle of its box.
 device::Pose middle_pose(protocol::State state) { return pose_at(0.0f, 0.4f, 0.4f, state); }
 
 }  // namespace
@@ -62,7 +62,7 @@ TEST_CASE("a wall pushes back when the sphere is in it and the force is on") {
   auto parameters = protocol::default_parameters();
   const SceneModel before = window::build_scene(middle_pose(protocol::State::active), parameters);
   REQUIRE_FALSE(before.in_contact);
-  // Move the upper x wall so far in that the sphere is 3 mm inside it.
+  // Move the upper x wall inward until the sphere is 3 mm inside it.
   parameters[Parameter::box_maximum_x_m] = before.probe_m.x + parameters[Parameter::sphere_radius_m] - 0.003f;
 
   const SceneModel active = window::build_scene(middle_pose(protocol::State::active), parameters);
@@ -84,7 +84,7 @@ TEST_CASE("the stylus is square on the forearm with the gimbal at zero, and turn
   const SceneModel straight = window::build_scene(pose, parameters);
   const glm::vec3 forearm = glm::normalize(straight.probe_m - straight.elbow_m);
   CHECK(std::abs(glm::dot(straight.stylus_direction, forearm)) < 1e-5f);
-  CHECK(straight.stylus_direction.z > 0.0f);  // away from the base, to the user
+  CHECK(straight.stylus_direction.z > 0.0f);  // away from the base, toward the user
   pose.gimbal_rad[0] = 0.5f;
   const SceneModel turned = window::build_scene(pose, parameters);
   CHECK(glm::dot(turned.stylus_direction, straight.stylus_direction) == doctest::Approx(std::cos(0.5)).epsilon(1e-4));
@@ -96,7 +96,7 @@ TEST_CASE("both frames show up upwards and the user in front") {
   CHECK(omni * glm::vec3{0, 1, 0} == glm::vec3{0, 1, 0});
   CHECK(paper * glm::vec3{0, 0, 1} == glm::vec3{0, 1, 0});
   CHECK(paper * glm::vec3{1, 0, 0} == glm::vec3{0, 0, 1});
-  CHECK(glm::determinant(paper) == doctest::Approx(1.0));  // a rotation, no mirror image
+  CHECK(glm::determinant(paper) == doctest::Approx(1.0));  // a rotation without reflection
 }
 
 TEST_CASE("a dragged wall leaves room for the sphere and stays in its range") {

@@ -1,4 +1,3 @@
-// Statistics and spectrum against signals whose numbers are known.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -34,7 +33,7 @@ TEST_CASE("lost samples are left out of the statistics") {
 
 TEST_CASE("a sine stands in the spectrum at its frequency with its amplitude") {
   SignalSeries series(1 << 16);
-  // Line 128 of 16384 samples exactly, so that none of it leaks.
+  // Exactly line 128 of 16384 samples, so that no energy leaks into other lines.
   const double frequency_Hz = 128.0 * 20'000.0 / 16'384.0;
   for (int i = 0; i < 20'000; ++i)
     series.append(0.7f + 0.25f * static_cast<float>(std::sin(2.0 * std::numbers::pi * frequency_Hz * i / 20'000.0)));
@@ -65,7 +64,7 @@ TEST_CASE("noise is no motion, a step and a constant that moves by pixels are") 
     for (int i = 0; i < 3'333; ++i) series.append(noise(random));
     if (leaves_range(series.extremes(seen, series.end()), series.extremes(seen - 40'000, seen), 0.001)) ++motions;
   }
-  CHECK(motions <= 1);  // a third of a million samples may hold one that stands out
+  CHECK(motions <= 1);  // one of a third of a million samples may be an outlier
   CHECK(leaves_range({-0.01f, 0.08f}, {-0.04f, 0.04f}, 0.001));
   CHECK(leaves_range({0.5f, 0.5f}, {0.4f, 0.4f}, 0.05));
   CHECK_FALSE(leaves_range({0.42f, 0.42f}, {0.4f, 0.4f}, 0.05));

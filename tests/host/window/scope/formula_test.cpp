@@ -1,4 +1,3 @@
-// Signals by formula: what they give, what unit they have, and why some are refused.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -101,7 +100,7 @@ TEST_CASE("the history has a formula's values of what came before it, and of wha
   CHECK(history.find(twice) == nullptr);
   history.derive({twice, elsewhere});
   REQUIRE(history.find(twice) != nullptr);
-  CHECK(history.find(elsewhere) == nullptr);  // what it needs does not come
+  CHECK(history.find(elsewhere) == nullptr);  // a signal that the formula needs is not received
   CHECK((*history.find(twice))[1] == 4.0f);
   auto later = block(14, {Signal::force_N, Signal::duty_1}, {3, 0});
   later.lost_before = 2;
@@ -109,7 +108,7 @@ TEST_CASE("the history has a formula's values of what came before it, and of wha
   CHECK(history.find(twice)->end() == 5);
   CHECK(std::isnan((*history.find(twice))[3]));
   CHECK((*history.find(twice))[4] == 6.0f);
-  history.append(block(0, {Signal::supply_V}, {9}));  // another choice of signals
+  history.append(block(0, {Signal::supply_V}, {9}));  // another signal selection
   CHECK(history.find(twice) == nullptr);
   CHECK((*history.find(elsewhere))[0] == 18.0f);
 }

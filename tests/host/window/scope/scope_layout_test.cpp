@@ -1,4 +1,3 @@
-// The layouts that come with the window, and those of one's own.
 #include <doctest/doctest.h>
 
 #include <protocol/reports.hpp>
@@ -42,7 +41,7 @@ TEST_CASE("layouts of one's own are saved, replaced, renamed and removed; the bu
   CHECK(own.all().size() == 1);
   CHECK(built_in_layout("paper").plots.size() == 4);
 
-  layout.name = "paper";  // from a file that somebody edited
+  layout.name = "paper";  // from a file that a user edited
   CHECK(OwnLayouts({layout}).all().empty());
 }
 

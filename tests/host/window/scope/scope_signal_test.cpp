@@ -1,4 +1,4 @@
-// Signals in groups, found by words; which of them is drawn above the others; what an empty plot says.
+// Signals in groups, the search for signals, their drawing order, and the text of an empty plot.
 #include <doctest/doctest.h>
 
 #include <algorithm>

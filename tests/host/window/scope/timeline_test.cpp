@@ -1,4 +1,4 @@
-// What the scope shows: the newest, the past while paused, or the stretch around an event.
+// The range that the scope shows: the newest samples, the past while paused, or the time around an event.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr protocol::Signal force = protocol::Signal::force_N;
 
-/// So many samples of the force, which is 1 N from the sample `rise` on.
+/// Appends this number of force samples; the force is 1 N from the sample `rise` on.
 void receive(Timeline& timeline, std::size_t count, std::size_t rise = 1'000'000) {
   const auto first = static_cast<std::uint32_t>(timeline.history().end());
   device::ScopeSamples samples{{force}, first, count, {}, 0};

@@ -1,4 +1,4 @@
-// The trigger finds each crossing once, waits until its picture is complete, and keeps a single event.
+// The trigger finds each crossing once, waits until its picture is complete, and stores a single event.
 #include <doctest/doctest.h>
 
 #include <scope/trigger.hpp>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double span = 100.0;
 
-// A square wave: low for 50 samples, high for 50, and so on.
+// A square wave: alternately 50 samples low and 50 samples high.
 void append_square(SignalSeries& series, int count) {
   for (int i = 0; i < count; ++i) series.append(series.end() / 50 % 2 == 1 ? 1.0f : 0.0f);
 }
@@ -30,13 +30,13 @@ TEST_CASE("an event counts once its picture is complete") {
   SignalSeries series(1024);
   TriggerSettings settings{TriggerMode::normal, {}, TriggerEdge::rising, 0.5f, 0.2f};
   Trigger trigger;
-  append_square(series, 120);  // rises at 50; 80 samples belong to the picture after it
+  append_square(series, 120);  // rises at 50; 80 samples after the crossing belong to the picture
   trigger.advance(series, settings, span);
   CHECK_FALSE(trigger.event());
   append_square(series, 20);
   trigger.advance(series, settings, span);
   CHECK(trigger.event() == 50);
-  append_square(series, 120);  // rises at 150 and, too late to be complete, at 250
+  append_square(series, 120);  // rises at 150 and at 250; the picture of the latter is incomplete
   trigger.advance(series, settings, span);
   CHECK(trigger.event() == 150);
 }

@@ -1,6 +1,6 @@
-// Accesses that fault for their alignment or for the memory protection unit, and one that faults in the middle of an
-// if-then block. Each leaves a record from results[4] on: CFSR, the address register that CFSR calls valid, the stacked
-// program counter's distance from the instruction, the stacked if-then bits.
+// Accesses that fault because of alignment or the memory protection unit, and a fault inside an IT block. Each access
+// writes a record from results[4] on. A record contains CFSR, the valid fault address register, the offset of the
+// stacked program counter from the instruction, and the stacked IT bits.
 #include "support.hpp"
 
 namespace {
@@ -19,17 +19,18 @@ extern "C" void note_access(std::uint32_t* frame) {
   word(cfsr) = bits;
   if (resume_at != 0) frame[6] = resume_at, frame[7] &= ~0x0600FC00u;
 }
-// If the if-then state of what faulted were left over, the first of these would not run.
+// The first instruction would be skipped if the IT state of the faulting code were still active.
 [[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_access\n pop {r4, pc}"); }
 
-// Notes where the instruction is and where to go on, then runs it.
+// Records the address of the instruction and of the continuation, then executes the instruction.
 #define FAULTING(instruction, input)                                                                      \
   asm volatile("adr r3, 1f\n str r3, [%0]\n adr r3, 2f\n str r3, [%1]\n b 1f\n .align 2\n1: " instruction \
                "\n nop\n .align 2\n2:" ::"r"(&expected),                                                  \
                "r"(&resume_at), "r"(input)                                                                \
                : "r3", "r4", "s0", "memory")
 
-/// The block's third instruction reads where nothing is; its handler lets it read the first word of the flash instead.
+/// The third instruction of the block reads an unmapped address. The fault handler changes the address to the first
+/// word of the flash.
 [[gnu::naked, gnu::noinline]] std::uint32_t fault_in_block(std::uint32_t*) {
   asm volatile(
       "adr r3, 1f\n str r3, [r0]\n movs r1, #0\n mov r0, #0x60000000\n cmp r1, #0\n b 2f\n .balign 4\n"
@@ -50,8 +51,8 @@ void run() {
   for (unsigned exception = 3; exception <= 6; ++exception) set_handler(exception, fault);
   word(shcsr) = 7 << 16;
   const auto odd = reinterpret_cast<std::uint32_t>(words) + 2;
-  results[1] = word(odd);               // one word may lie anywhere
-  FAULTING("ldmia %2, {r3, r4}", odd);  // records 0 to 6: several may not, nor what belongs to the FPU
+  results[1] = word(odd);               // a single word may be unaligned
+  FAULTING("ldmia %2, {r3, r4}", odd);  // records 0 to 6: multiple words and FPU accesses must be aligned
   FAULTING("ldrd r3, r4, [%2]", odd);
   FAULTING("strd r3, r4, [%2]", odd);
   FAULTING("ldrex r3, [%2]", odd);
@@ -66,9 +67,9 @@ void run() {
   word(ccr) &= ~(1u << 3);
   asm volatile("dsb\n isb" ::: "memory");
   results[3] = word(odd);
-  FAULTING("ldr r3, [%2]", 0x60000000);  // 9: nothing there, found in the middle of a block of instructions
+  FAULTING("ldr r3, [%2]", 0x60000000);  // 9: unmapped address in the middle of a block of instructions
 
-  // Region 1: 32 bytes in the middle of `guarded` read only; the default map for the rest.
+  // Region 1: 32 read-only bytes in the middle of `guarded`. The default map applies elsewhere.
   alignas(64) static volatile std::uint32_t guarded[16];
   word(mpu_base) = (reinterpret_cast<std::uint32_t>(guarded) + 32) | 1 << 4 | 1;
   word(mpu_attributes) = 5u << 24 | 4 << 1 | 1;
@@ -77,7 +78,7 @@ void run() {
   guarded[7] = 7;
   results[100] = guarded[8] + guarded[7];
   FAULTING("str r3, [%2]", &guarded[8]);  // 10
-  // Region 2: instructions at the end of SRAM may not run.
+  // Region 2: no execution at the end of SRAM.
   word(mpu_base) = 0x20010000 | 1 << 4 | 2;
   word(mpu_attributes) = 1u << 28 | 3u << 24 | 14 << 1 | 1;
   half(0x20010000) = 0x4770;  // BX LR
@@ -93,7 +94,7 @@ void run() {
   set_handler(5, fault);
   constexpr std::uint32_t gpio_a_inputs = gpio::a + gpio::idr;
   word(rcc::ahb1enr) |= 1;
-  FAULTING("ldr r3, [%2]", gpio_a_inputs - 2);  // 13 to 17: registers, whatever CCR says
+  FAULTING("ldr r3, [%2]", gpio_a_inputs - 2);  // 13 to 17: registers, independent of CCR
   FAULTING("ldrh r3, [%2]", gpio_a_inputs + 1);
   FAULTING("str r3, [%2]", gpio::a + gpio::odr + 1);
   FAULTING("strh r3, [%2]", gpio::a + gpio::odr + 3);

@@ -1,4 +1,4 @@
-// TIM1's break input, A6, is low when active: its outputs go to their idle level, low, without the processor.
+// TIM1's break input, A6, is active low. The break input sets the outputs to their idle level, low, without the CPU.
 #include "support.hpp"
 
 void run() {
@@ -20,7 +20,7 @@ void run() {
   for (;;) {
     results[1] = word(tim1 + sr) >> 7 & 1;
     results[2] = word(tim1 + bdtr) >> 15 & 1;
-    if ((word(gpio::a + gpio::idr) & 1) == 0) continue;  // A0 asks to switch on again
+    if ((word(gpio::a + gpio::idr) & 1) == 0) continue;  // a high level at A0 enables the outputs again
     word(tim1 + sr) = ~(1u << 7);
     word(tim1 + bdtr) |= 1u << 15;
   }

@@ -1,4 +1,4 @@
-// CAN1 in silent loop-back: what it sends comes back through its filters into its FIFOs.
+// CAN1 in silent loop-back mode: sent frames pass its filters into its receive FIFOs.
 #include "support.hpp"
 
 namespace {
@@ -16,7 +16,7 @@ void send(std::uint32_t identifier_register, std::uint32_t length, std::uint32_t
   word(mailbox) = identifier_register | 1;
   while ((word(tsr) & 1) == 0) {
   }
-  results[1] = results[1] + (word(tsr) >> 1 & 1) + (word(tsr) >> 26 & 1);  // without an error, and free again
+  results[1] = results[1] + (word(tsr) >> 1 & 1) + (word(tsr) >> 26 & 1);  // without an error, and empty again
   word(tsr) = 1;
 }
 
@@ -29,11 +29,11 @@ void run() {
   while ((word(msr) & 3) != 1) {
   }
   word(btr) = 1u << 31 | 1u << 30 | 1 << 20 | 4 << 16 | 3;
-  word(banks) = 0x120u << 21;  // bank 0: a mask of words for 0x120 to 0x127
+  word(banks) = 0x120u << 21;  // bank 0: 32-bit mask for 0x120 to 0x127
   word(banks + 4) = 0x7F8u << 21 | 1u << 2;
-  word(banks + 8) = 0x200u << 5 | 0x300u << 21;  // bank 1: four identifiers in halves, for the second FIFO
+  word(banks + 8) = 0x200u << 5 | 0x300u << 21;  // bank 1: four 16-bit identifiers for the second FIFO
   word(banks + 12) = 0x400u << 5 | 0x500u << 21;
-  word(banks + 16) = 0x150u << 5 | 0x7FFu << 21;  // bank 2: a mask of halves for what bank 3 lists
+  word(banks + 16) = 0x150u << 5 | 0x7FFu << 21;  // bank 2: 16-bit mask for the list in bank 3
   word(banks + 20) = word(banks + 16);
   word(banks + 24) = 0x150u << 21;
   word(fs1r) = 1 | 8;
@@ -50,7 +50,7 @@ void run() {
   });
   enable_interrupt(20, 0);
 
-  send(0x128u << 21, 1, 0x11);  // beside the mask
+  send(0x128u << 21, 1, 0x11);  // outside the mask
   results[2] = word(rf0r) | word(rf1r) << 8;
   word(ier) = 1 << 1;
   send(0x123u << 21, 5, 0x44332211, 0x55);
@@ -67,7 +67,7 @@ void run() {
   send(0x150u << 21, 0, 0);
   results[14] = word(fifo_1 + 4);
   for (std::uint32_t i = 1; i <= 3; ++i) send((0x123u + i) << 21, 1, i);
-  results[11] = word(rf0r);  // three frames, full, and the last one was overwritten
+  results[11] = word(rf0r);  // three frames, full, and the last frame was overwritten
   word(rf0r) = 1 << 5 | 1 << 4 | 1 << 3;
   results[12] = word(rf0r);
   word(rf0r) = 1 << 5;

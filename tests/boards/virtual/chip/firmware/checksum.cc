@@ -1,4 +1,4 @@
-// The CRC unit: its clock, its results, and its two ways back to the start.
+// The CRC unit: clock enable, results, and both methods of reset.
 #include "support.hpp"
 
 namespace {

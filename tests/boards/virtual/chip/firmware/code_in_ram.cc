@@ -1,5 +1,5 @@
-// Functions in RAM that are written, run, and written anew: in one page, across the end of a page, and to another
-// price.
+// Functions in RAM that are written, executed and overwritten: within one page, across a page boundary, and with other
+// instruction timing.
 #include "support.hpp"
 
 namespace {
@@ -11,14 +11,14 @@ std::uint32_t call(const std::uint16_t* function) {
   return reinterpret_cast<std::uint32_t (*)()>(reinterpret_cast<std::uintptr_t>(function) | 1)();
 }
 
-/// Writes "return value" and calls it.
+/// Writes a function that returns `value`, and calls it.
 std::uint32_t write_and_call(volatile std::uint16_t* place, std::uint32_t value) {
   place[0] = static_cast<std::uint16_t>(0x2000 | value);  // movs r0, #value
   place[1] = 0x4770;                                      // bx lr
   return call(const_cast<const std::uint16_t*>(place));
 }
 
-/// Writes a wide and a narrow instruction; the cycles of their second run.
+/// Writes a 32-bit and a 16-bit instruction, and returns the cycles of their second execution.
 std::uint32_t write_and_time(std::uint32_t wide, std::uint16_t narrow) {
   volatile std::uint16_t* const place = code + 64;
   place[0] = static_cast<std::uint16_t>(wide >> 16);
@@ -37,10 +37,10 @@ void run() {
   std::uint32_t wrong = 0;
   for (std::uint32_t value = 0; value < 100; ++value) {
     wrong += write_and_call(code + 16, value) != value;
-    wrong += write_and_call(code + 2047, 200 - value) != 200 - value;  // the return is in the next page
+    wrong += write_and_call(code + 2047, 200 - value) != 200 - value;  // the return instruction is in the next page
   }
   results[1] = wrong;
-  // Only the second page changes under the function that crosses into it.
+  // Changes only the second page of a function that crosses the page boundary.
   volatile std::uint16_t* const across = code + 2046;
   across[0] = 0x2007;
   across[1] = 0x3001;  // adds r0, #1
@@ -49,7 +49,7 @@ void run() {
   results[2] = call(code + 2046);
   across[2] = 0x3020;
   results[3] = call(code + 2046);
-  // The same place and length, at another price.
+  // The second function has the same address and length but other timing.
   start_cycle_counter();
   constexpr std::uint32_t add_r3 = 0xF1030301, push_r1_to_r12 = 0xE92D1FFE;
   constexpr std::uint16_t keep_stack = 0xB000, drop_12_words = 0xB00C;

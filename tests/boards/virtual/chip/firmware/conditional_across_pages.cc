@@ -1,15 +1,16 @@
-// An if-then block that a page of memory divides, while an interrupt comes as often as it can. The handler's first
-// instruction is one that the block's condition would skip.
+// An IT block across a page boundary, interrupted as often as possible. The condition of the block would skip the first
+// instruction of the handler.
 #include "support.hpp"
 
 namespace {
 
 constexpr std::uint32_t rounds = 20'000;
 
-/// Counts in R4, by what its first instruction puts into R2. The flags that it spoils are given back by the return.
+/// Adds to R4 the value that its first instruction writes to R2. The exception return restores the changed flags.
 [[gnu::naked]] void systick() { asm volatile("movs r2, #1\n adds r4, r2\n bx lr"); }
 
-/// R2 is 0 all the time. Every other round adds 3 + 256. The timer runs in here only: its handler changes R4.
+/// R2 is always 0. Every second iteration adds 3 + 256. The timer runs only inside this function, because its handler
+/// changes R4.
 [[gnu::naked, gnu::noinline]] std::uint32_t added_across_pages() {
   asm volatile(
       "push {r4}\n movs r0, #0\n movs r4, #0\n"
@@ -27,7 +28,7 @@ constexpr std::uint32_t rounds = 20'000;
 
 void run() {
   set_handler(15, systick);
-  word(0xE000E014) = 46;  // a period that shares no factor with the loop's length
+  word(0xE000E014) = 46;  // a period without a common factor with the loop length
   word(0xE000E018) = 0;
   results[1] = added_across_pages();
   results[0] = finished;

@@ -1,5 +1,5 @@
-// TIM2's trigger output starts an injected conversion of ADC1 to ADC3 every 20 us; meanwhile ADC1 scans two
-// channels for ever into memory by DMA, with half and complete flags.
+// TIM2's trigger output starts an injected conversion of ADC1 to ADC3 every 20 us. Meanwhile ADC1 converts two channels
+// continuously and stores them by DMA, with half-transfer and transfer-complete interrupts.
 #include "support.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ void run() {
   word(rcc::ahb1enr) |= 7 | 1 << 22;
   word(rcc::apb1enr) |= 1;
   word(rcc::apb2enr) |= 7 << 8;
-  word(gpio::c + gpio::moder) = 0x3FF;    // C0 to C4 analogue
+  word(gpio::c + gpio::moder) = 0x3FF;    // C0 to C4 analog
   word(gpio::b + gpio::moder) |= 1 << 4;  // B2 an output
   word(adc::ccr) = 1 << 16 | 0x15;        // PCLK2 / 4, injected simultaneous, three converters
   for (unsigned i = 0; i < 3; ++i) {
@@ -33,9 +33,9 @@ void run() {
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
   }
   start_cycle_counter();
-  while (cycles() < 3 * 168) {  // the converters become stable
+  while (cycles() < 3 * 168) {  // stabilization time of the converters
   }
-  // Stream 4, channel 0: 16 bits, memory increments, circular, interrupts for half and complete.
+  // Stream 4, channel 0: 16 bits, memory increment, circular, half-transfer and transfer-complete interrupts.
   word(0x40026410 + 0x18 * 4 + 0x8) = adc::adc1 + adc::dr;
   word(0x40026410 + 0x18 * 4 + 0xC) = reinterpret_cast<std::uint32_t>(ring);
   word(0x40026410 + 0x18 * 4 + 0x4) = 8;

@@ -1,5 +1,5 @@
-// Micro-programs whose count follows from the manuals, measured by the core's own cycle counter. Each is measured
-// with 16 and with 48 repetitions, so that what surrounds it cancels.
+// Micro-programs whose cycle counts follow from the manuals, measured by the core's cycle counter. Each is measured
+// with 16 and with 48 repetitions, so that the overhead cancels.
 #include "support.hpp"
 
 namespace {
@@ -7,7 +7,7 @@ namespace {
 constexpr std::uint32_t flash_acr = 0x40023C00;
 constexpr std::uint32_t apb1_divided_by_4 = 5 << 10, gpio_clock = 1, tim2_clock = 1;
 std::uint32_t data[8];
-/// Two lines of the flash.
+/// Two flash lines.
 alignas(16) constexpr std::uint32_t table[8] = {1, 2, 3, 4, 5, 6, 7, 8};
 
 #define REPEATED(name, count, text)                                                                        \
@@ -31,7 +31,7 @@ PROGRAM(reads_of_two_lines, "ldr r1, [r0]\n ldr r2, [r0, #16]\n adds r3, r3, #1"
 PROGRAM(reads, "ldr r1, [r0]\n adds r3, r3, #1")
 
 std::uint32_t time(void (*program)(std::uint32_t*), std::uint32_t* at = data) {
-  program(at);  // what a cache may keep is there now
+  program(at);  // fills the caches
   const std::uint32_t before = cycles();
   program(at);
   return cycles() - before;
@@ -40,7 +40,7 @@ std::uint32_t time(void (*program)(std::uint32_t*), std::uint32_t* at = data) {
 #define DIFFERENCE_AT(name, at) (time(name##_48, at) - time(name##_16, at))
 #define DIFFERENCE(name) DIFFERENCE_AT(name, data)
 
-/// Loops over 1024 wide additions (256 lines of flash), which no cache holds, and over 32.
+/// Loops over 1024 32-bit additions (256 flash lines), which exceed the cache, and over 32.
 [[gnu::naked, gnu::noinline, gnu::aligned(16)]] void long_loop(std::uint32_t*) {
   asm volatile("movs r1, #3\n 1: .rept 1024\n add.w r2, r2, #1\n .endr\n subs r1, #1\n bne.w 1b\n bx lr\n" ::
                    : "memory");
@@ -73,14 +73,14 @@ void run() {
   word(rcc::cfgr) |= apb1_divided_by_4;
   results[20] = DIFFERENCE_AT(reads, tim2);
   word(rcc::cfgr) &= ~apb1_divided_by_4;
-  // Five wait states with the cache of instructions, then with that of data too.
+  // Five wait states with the instruction cache, then also with the data cache.
   auto* const constants = const_cast<std::uint32_t*>(table);
   results[21] = DIFFERENCE_AT(reads_of_two_lines, constants);
   word(flash_acr) = 0x205;
   results[22] = DIFFERENCE_AT(reads_of_two_lines, constants);
   word(flash_acr) = 0x605;
   results[23] = DIFFERENCE_AT(reads_of_two_lines, constants);
-  // No wait states; five of them with nothing on, with prefetch, with all of the accelerator.
+  // No wait states; then five wait states without acceleration, with prefetch, and with prefetch and both caches.
   const std::uint32_t access[] = {0, 5, 0x105, 0x705};
   for (unsigned i = 0; i < 4; ++i) {
     word(flash_acr) = access[i];

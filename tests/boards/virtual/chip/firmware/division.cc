@@ -1,4 +1,4 @@
-// Division by zero: 0 without CCR.DIV_0_TRP, a UsageFault with it.
+// Division by zero: result 0 without CCR.DIV_0_TRP, a UsageFault with it.
 #include "support.hpp"
 
 namespace {
@@ -17,7 +17,7 @@ extern "C" void note_division(std::uint32_t* frame) {
 
 [[gnu::noinline]] std::uint32_t divide(std::uint32_t dividend, std::uint32_t divisor) {
   std::uint32_t quotient = 77;
-  // The divisor is made in the block, so that nobody knows it when the block begins.
+  // The block computes the divisor, so that its value is not known at the start of the block.
   asm volatile("add r3, %2, #0\n udiv %0, %1, r3" : "+r"(quotient) : "r"(dividend), "r"(divisor) : "r3");
   return quotient;
 }

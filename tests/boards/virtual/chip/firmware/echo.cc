@@ -1,4 +1,4 @@
-// Sends back what it receives on USART1, letters as capitals, at 115200 baud.
+// Sends bytes received on USART1 back, with letters in upper case, at 115200 baud.
 #include "support.hpp"
 
 void run() {

@@ -1,9 +1,9 @@
-// Priorities, tail-chaining, masks, system calls on the process stack, and the floating-point context.
+// Priorities, tail-chaining, masks, supervisor calls on the process stack, and the floating-point context.
 #include "support.hpp"
 
 namespace {
 
-std::uint32_t order;  // one digit for each thing that happened, in order
+std::uint32_t order;  // one digit per event, in order
 void mark(std::uint32_t digit) { order = order * 16 + digit; }
 void pend(unsigned position) {
   word(0xE000E200 + position / 32 * 4) = 1u << position % 32;
@@ -15,15 +15,15 @@ void systick() { ticks = ticks + 1; }
 
 void low() {
   mark(1);
-  pend(7);  // more urgent: preempts here
-  pend(8);  // as urgent: waits for the return and is chained
+  pend(7);  // higher priority: preempts here
+  pend(8);  // equal priority: waits for the return and is tail-chained
   mark(2);
 }
 void high() { mark(3); }
 void equal() { mark(4); }
 
 [[gnu::naked]] void supervisor_call() {
-  // R0 of the caller's frame comes back doubled; the frame is where EXC_RETURN's bit 2 says.
+  // Doubles R0 of the caller's frame. Bit 2 of EXC_RETURN selects the stack of the frame.
   asm volatile(
       "tst lr, #4\n ite eq\n mrseq r0, msp\n mrsne r0, psp\n ldr r1, [r0]\n add r1, r1\n str r1, [r0]\n bx lr");
 }
@@ -64,7 +64,7 @@ void run() {
   pend(6);
   results[1] = order;
 
-  // BASEPRI holds back 5 and lets 3 through; PRIMASK holds back all.
+  // BASEPRI masks interrupt 5 and passes 3; PRIMASK masks all.
   order = 0;
   asm volatile("msr basepri, %0" ::"r"(4 << 4));
   pend(8);
@@ -86,7 +86,7 @@ void run() {
   results[4] = pendsv_return;
   asm volatile("mrs r3, control\n bic r3, #2\n msr control, r3\n isb" ::: "r3");
 
-  // S0 to S15 and FPSCR survive an interrupt that uses them.
+  // An interrupt that uses S0 to S15 and FPSCR preserves them.
   order = 0;
   float a = 1.5f, b = 2.25f;
   std::uint32_t status = 0;
@@ -100,7 +100,7 @@ void run() {
   results[6] = status & 0x00C00000;
   results[7] = order;
 
-  // SysTick: ten periods of 1000 cycles at 16 MHz, the rest of the time asleep.
+  // SysTick: ten periods of 1000 cycles at 16 MHz, with sleep in between.
   word(0xE000E014) = 999;
   word(0xE000E018) = 0;
   word(0xE000E010) = 7;

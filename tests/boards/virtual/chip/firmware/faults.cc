@@ -1,5 +1,5 @@
-// A fault of each kind, one after the other: results[0] of each record is CFSR, then HFSR, BFAR, and whether the
-// stacked program counter is the faulting instruction's.
+// One fault of each kind in sequence. Each record contains CFSR, HFSR, BFAR, and whether the stacked program counter is
+// that of the faulting instruction.
 #include "support.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ extern "C" void note_fault(std::uint32_t* frame) {
 }
 [[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_fault\n pop {r4, pc}"); }
 
-// Notes where the instruction is and where to go on, then runs it.
+// Records the address of the instruction and of the continuation, then executes the instruction.
 #define FAULTING(instruction, input)                                                                      \
   asm volatile("adr r3, 1f\n str r3, [%0]\n adr r3, 2f\n str r3, [%1]\n b 1f\n .align 2\n1: " instruction \
                "\n nop\n .align 2\n2:" ::"r"(&expected),                                                  \
@@ -32,12 +32,12 @@ void run() {
   set_handler(3, fault);
   set_handler(5, fault);
   set_handler(6, fault);
-  FAULTING("ldr r3, [%2]", 0x60000000);  // nothing there, escalates
-  word(0xE000ED24) = 7 << 16;            // MemManage, BusFault, UsageFault on
+  FAULTING("ldr r3, [%2]", 0x60000000);  // unmapped address, escalates
+  word(0xE000ED24) = 7 << 16;            // enables MemManage, BusFault and UsageFault
   FAULTING("str r3, [%2]", 0x2F000000);
   FAULTING("udf #0", 0);
   results[0] = finished;
-  // Without any handler left that may run: a fault inside HardFault locks the processor up.
+  // Without an executable handler, a fault inside HardFault locks up the core.
   set_handler(3, [] { word(0x60000000) = 0; });
   word(0xE000ED24) = 0;
   word(0x60000000) = 0;

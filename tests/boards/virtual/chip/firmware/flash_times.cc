@@ -1,5 +1,5 @@
-// Erases and programs sector 2 from the flash itself, while a timer interrupts from RAM and counts; then programs one
-// word behind another for ever.
+// Erases and programs sector 2 with code in flash, while a timer interrupt runs from RAM and counts. Then programs
+// words in an endless sequence.
 #include "support.hpp"
 
 namespace {
@@ -9,7 +9,7 @@ constexpr std::uint32_t sector = 0x08008000, by_words = 2 << 8;
 
 alignas(512) volatile std::uint32_t vectors[128];
 
-/// In RAM: counts, and once reads the flash in the middle of an erase.
+/// In RAM: counts, and reads the flash once during an erase.
 [[gnu::section(".data.ram"), gnu::noinline]] void tick() {
   word(timer::tim2 + timer::sr) = 0;
   results[1] = results[1] + 1;
@@ -20,7 +20,7 @@ alignas(512) volatile std::uint32_t vectors[128];
   }
 }
 
-/// Functions of their own: the fast mode looks at the flash between blocks of instructions.
+/// These are separate functions, because the fast mode checks the flash between blocks of instructions.
 [[gnu::noinline]] void erase() {
   word(cr) = by_words | 2 << 3 | 1 << 1;
   word(cr) = by_words | 2 << 3 | 1 << 1 | 1 << 16;
@@ -42,7 +42,7 @@ void run() {
   word(0xE000ED08) = reinterpret_cast<std::uint32_t>(vectors);
   word(rcc::apb1enr) = word(rcc::apb1enr) | 1;
   asm volatile("dsb" ::: "memory");
-  word(timer::tim2 + timer::arr) = 84'000 - 1;  // a millisecond
+  word(timer::tim2 + timer::arr) = 84'000 - 1;  // one millisecond
   word(timer::tim2 + timer::dier) = 1;
   word(timer::tim2 + timer::cr1) = 1;
   enable_interrupt(28, 0);
@@ -53,7 +53,7 @@ void run() {
   std::uint32_t before = cycles();
   const std::uint32_t ticks_before = results[1];
   erase();
-  results[2] = cycles() - before;  // the next instruction of the flash has waited for all of it
+  results[2] = cycles() - before;  // the next instruction fetch from flash has waited for the whole operation
   results[3] = results[1] - ticks_before;
   results[4] = word(sr) & busy;
   word(cr) = by_words | 1;
@@ -62,7 +62,7 @@ void run() {
   program(4, 0xFFFF0000);
   results[5] = cycles() - before;
   program(4, 0x0F0F0F0F);
-  results[6] = word(sector + 4);  // bits are only cleared
+  results[6] = word(sector + 4);  // programming only clears bits
   results[7] = word(sector);
   results[1] = 0;
   results[8] = 1;

@@ -1,5 +1,4 @@
-// What the firmware's own protection of its memory allows, access by access. A probe leaves the bits of CFSR, 0 if it
-// passed.
+// Access checks with the firmware's memory protection. Each probe records the CFSR bits, or 0 if it passed.
 #include <memory_protection.cpp>
 
 #include "support.hpp"
@@ -14,7 +13,7 @@ extern "C" void note_refusal(std::uint32_t* frame) {
   status = word(cfsr);
   word(cfsr) = 0xFFFFFFFF;
   word(hfsr) = 0xFFFFFFFF;
-  frame[6] = frame[5] & ~1u;  // a probe that faults ends there, for its caller
+  frame[6] = frame[5] & ~1u;  // a probe that faults returns to its caller
 }
 [[gnu::naked]] void refusal() { asm volatile("mrs r0, msp\n b note_refusal"); }
 
@@ -38,7 +37,7 @@ void note(void (*probe)(std::uint32_t), std::uint32_t address) {
   set_handler(3, refusal);
   inkwell::drivers::protect_memory();
 
-  // results[1] to [7]: what the firmware does all the time.
+  // results[1] to [7]: accesses that the firmware needs.
   note(load_word, 0x0800'0000);
   note(load_word, 0x080F'FFFC);
   note(load_word, data_in_sram + 4);
@@ -46,7 +45,7 @@ void note(void (*probe)(std::uint32_t), std::uint32_t address) {
   note(run_at, code_in_sram);
   note(store_word, core_coupled);
   note(load_word, gpio::a);
-  // results[8] to [17]: what it never does.
+  // results[8] to [17]: accesses that the firmware never makes.
   note(load_word, 0);
   note(store_word, 8);
   note(run_at, 0);
@@ -58,7 +57,7 @@ void note(void (*probe)(std::uint32_t), std::uint32_t address) {
   note(load_word, 0x2200'0000);
   note(store_word, 0x2200'0004);
 
-  word(0xE000'ED94) = 0;  // the results lie where nothing may be written
+  word(0xE000'ED94) = 0;  // the results are in a write-protected area
   asm volatile("dsb\n isb" ::: "memory");
   for (std::uint32_t i = 0; i < verdict_count; ++i) results[1 + i] = verdicts[i];
   results[0] = finished;
@@ -67,7 +66,7 @@ void note(void (*probe)(std::uint32_t), std::uint32_t address) {
 }  // namespace
 
 void run() {
-  asm volatile("msr msp, %0" ::"r"(0x2001'8000));  // not where the firmware has code
+  asm volatile("msr msp, %0" ::"r"(0x2001'8000));  // outside the firmware's code area
   probe_all();
   for (;;) wait_for_interrupt();
 }

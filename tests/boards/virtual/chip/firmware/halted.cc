@@ -1,5 +1,5 @@
-// SysTick, RTC and CAN1 run, and what they have come to is written down all the time. DBGMCU_APB1_FZ is what the test
-// puts into results[20].
+// SysTick, RTC and CAN1 run, and their progress is recorded continuously. The test sets DBGMCU_APB1_FZ through
+// results[20].
 #include "support.hpp"
 
 namespace {
@@ -11,7 +11,7 @@ constexpr std::uint32_t rtc_cr = 0x40002808, rtc_isr = 0x4000280C, rtc_prer = 0x
 constexpr std::uint32_t can_mcr = 0x40006400, can_msr = 0x40006404, can_tsr = 0x40006408, can_btr = 0x4000641C,
                         can_mailbox = 0x40006580;
 
-/// At the 32 kHz of LSI, whose cycles SSR counts down; the wake-up timer comes every 15 ms.
+/// LSI runs at 32 kHz and SSR counts its cycles down. The wake-up timer has a period of 15 ms.
 void start_clock() {
   word(pwr_cr) = 1 << 8;
   word(rcc::csr) |= 1;
@@ -29,7 +29,7 @@ void start_clock() {
   word(rtc_cr) = 1 << 10;
 }
 
-/// Silent loop-back, 5000 bits a second: a frame takes 9 ms.
+/// Silent loop-back at 5000 bit/s: a frame takes 9 ms.
 void start_bus() {
   word(can_mcr) = 1 << 16 | 1;
   while ((word(can_msr) & 3) != 1) {

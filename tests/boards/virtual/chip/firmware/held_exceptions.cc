@@ -1,4 +1,4 @@
-// A thread that holds SysTick back half of the time, first by PRIMASK, then by BASEPRI, and writes down how far it is.
+// A thread that masks SysTick half of the time, first with PRIMASK, then with BASEPRI, and records its progress.
 #include "support.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-// Pins, external interrupts, bit-banding, unique id, USART and flash programming at 168 MHz.
+// Pins, external interrupts, bit-banding, unique ID, USART and flash programming at 168 MHz.
 #include "support.hpp"
 
 namespace {
@@ -15,7 +15,7 @@ void run() {
   word(rcc::apb1enr) |= 1 << 17;
   word(rcc::apb2enr) |= 1 << 14;
 
-  // B13 falls: EXTI line 13.
+  // A falling edge on B13 triggers EXTI line 13.
   word(gpio::b + gpio::pupdr) = 1 << 26;
   word(0x40013800 + 0x14) = 1 << 4;
   word(0x40013C0C) = 1 << 13;
@@ -23,7 +23,7 @@ void run() {
   set_handler(interrupt(40), edge);
   enable_interrupt(40, 2);
 
-  // C10 goes high through the bit-band alias of GPIOC_ODR; a bit of SRAM through its alias.
+  // Sets C10 through the bit-band alias of GPIOC_ODR, and an SRAM bit through its alias.
   word(gpio::c + gpio::moder) = 1 << 20;
   word(0x42000000 + (gpio::c + gpio::odr - 0x40000000) * 32 + 10 * 4) = 1;
   results[20] = 0;
@@ -56,7 +56,7 @@ void run() {
   }
   word(flash + 0x10) = 1u << 31;
   results[5] = word(0x08008000);
-  word(0x08008004) = 0;  // locked again: an error flag, nothing programmed
+  word(0x08008004) = 0;  // locked: an error flag, and no programming
   asm volatile("isb" ::: "memory");
   results[6] = word(0x08008004);
   results[7] = word(flash + 0x0C);

@@ -1,4 +1,4 @@
-// Three converters take turns at one pin, their results by one DMA stream until it is full.
+// Three interleaved converters sample one pin. One DMA stream stores the results until the transfer is complete.
 #include "support.hpp"
 
 namespace {
@@ -29,7 +29,7 @@ void run() {
   while ((word(adc::adc1 + adc::sr) & 1 << 5) == 0) {
   }
   results[7] = adc::items_left();
-  results[8] = 1;  // the second run begins
+  results[8] = 1;  // start of the second run
   convert(1, 3, results + 9);
   results[0] = finished;
   for (;;) wait_for_interrupt();

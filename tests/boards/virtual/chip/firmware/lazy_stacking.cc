@@ -1,4 +1,5 @@
-// What FPCCR and FPCAR say of the room that an exception has left for floats. Each handler notes both.
+// FPCCR and FPCAR for the stack space that an exception reserves for floating-point registers. Each handler records
+// both registers.
 #include "protection.hpp"
 
 namespace {
@@ -12,17 +13,17 @@ extern "C" void note(std::uint32_t stack) {
   *next++ = word(control);
   *next++ = word(place) - stack;
 }
-/// Notes, and gives a user all rights.
+/// Records the registers and makes the thread privileged.
 [[gnu::naked]] void handler() {
   asm volatile(
       "tst lr, #4\n ite eq\n mrseq r0, msp\n mrsne r0, psp\n push {r4, lr}\n bl note\n"
       "mrs r0, control\n bic r0, #1\n msr control, r0\n isb\n pop {r4, pc}");
 }
-/// Makes floats active, calls the supervisor and ends them.
+/// Activates the floating-point context, makes a supervisor call and deactivates the context.
 [[gnu::naked, gnu::noinline]] void call_with_floats() {
   asm volatile("push {r4, lr}\n vmov.f32 s0, #1.0\n svc #0\n mov r0, #0\n msr control, r0\n isb\n pop {r4, pc}");
 }
-/// The same without rights and on another stack.
+/// The same in unprivileged mode on the process stack.
 [[gnu::naked, gnu::noinline]] void call_as_user(std::uint32_t) {
   asm volatile(
       "push {r4, lr}\n msr psp, r0\n mov r0, #3\n msr control, r0\n isb\n vmov.f32 s0, #1.0\n svc #0\n"
@@ -33,13 +34,13 @@ extern "C" void note(std::uint32_t stack) {
 
 void run() {
   set_handler(11, handler);
-  // results[1], [2]: nothing but HardFault could be pended.
+  // results[1], [2]: only HardFault is ready to pend.
   call_with_floats();
-  // [3], [4]: all could, the call being less urgent than they.
+  // [3], [4]: all are ready, because the supervisor call has a lower priority.
   word(shcsr) = 1u << 16 | 1u << 17;
   word(monitor_control) = 1u << 16;
   call_with_floats();
-  // [5], [6]: BASEPRI keeps two of them back.
+  // [5], [6]: BASEPRI masks two of them.
   byte(memory_priority) = 0x20;
   byte(bus_priority) = 0x40;
   byte(monitor_priority) = 0x60;
@@ -47,14 +48,14 @@ void run() {
   asm volatile("msr basepri, %0\n isb" ::"r"(0x40));
   call_with_floats();
   asm volatile("msr basepri, %0\n isb" ::"r"(0));
-  // [7], [8]: what is interrupted is a handler of little urgency.
+  // [7], [8]: the interrupted code is a handler of low priority.
   set_handler(14, call_with_floats);
   byte(0xE000'ED22) = 0xF0;
   word(0xE000'ED04) = 1u << 28;
   barrier();
-  // [9], [10]: a user, with bits in the stack pointer that are always 0.
+  // [9], [10]: unprivileged, with stack pointer bits that are always 0.
   call_as_user(0x2001'1003);
-  // [11]: stacked at once, so that FPCCR stays as it was written.
+  // [11]: immediate stacking, so that FPCCR keeps the written value.
   word(control) = 1u << 31 | 1u << 3;
   call_with_floats();
   results[0] = finished;

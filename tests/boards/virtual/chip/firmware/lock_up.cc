@@ -1,5 +1,5 @@
-// What most firmware does at its end: two calls deep it reads where nothing is, and the handler of HardFault holds a
-// breakpoint, which locks the processor up without a debugger.
+// A typical crash: two calls deep the firmware reads an unmapped address. The HardFault handler executes a breakpoint,
+// which locks up the core without a debugger.
 #include "support.hpp"
 
 extern "C" [[gnu::noinline]] std::uint32_t read_too_far(std::uint32_t address) { return word(address) + 1; }

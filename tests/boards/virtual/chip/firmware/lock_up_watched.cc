@@ -1,4 +1,4 @@
-// Locks the processor up once, under a watchdog of 62.5 ms.
+// Locks up the core once, with a watchdog of 62.5 ms.
 #include "support.hpp"
 
 void run() {

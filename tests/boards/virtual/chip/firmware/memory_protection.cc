@@ -1,4 +1,4 @@
-// The registers of the memory protection unit, as an operating system finds and sets them.
+// The registers of the memory protection unit, read and written as an operating system would.
 #include "support.hpp"
 
 void run() {
@@ -8,7 +8,7 @@ void run() {
   word(number) = 3;
   word(base) = 0x20000000;
   word(attributes) = 0x03060021;
-  word(second_base) = 0x08000000 | 1 << 4 | 5;  // VALID: chooses region 5
+  word(second_base) = 0x08000000 | 1 << 4 | 5;  // VALID: selects region 5
   word(second_attributes) = 0x06020027;
   results[2] = word(number);
   results[3] = word(base);

@@ -1,4 +1,4 @@
-// The vector table has nothing where HardFault's handler belongs.
+// The vector table has no entry for HardFault.
 #include "support.hpp"
 
 void run() {

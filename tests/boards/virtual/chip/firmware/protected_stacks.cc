@@ -1,5 +1,5 @@
-// Frames of exceptions of which the memory protection unit refuses a part: when they are written, read back, and when
-// their floats are written later. The handler of the fault mends it.
+// Exception frames that the memory protection unit partly refuses: during stacking, unstacking and lazy stacking. The
+// fault handler removes the cause.
 #include "protection.hpp"
 
 namespace {
@@ -15,21 +15,21 @@ extern "C" void mend_stack() {
 }
 [[gnu::naked]] void refusal() { asm volatile("push {r4, lr}\n bl mend_stack\n pop {r4, pc}"); }
 
-/// Calls the supervisor with the process stack at an address.
+/// Makes a supervisor call with the process stack at this address.
 [[gnu::naked, gnu::noinline]] void call_on(std::uint32_t) {
   asm volatile(
       "push {r4, lr}\n msr psp, r0\n mov r0, #2\n msr control, r0\n isb\n"
       "svc #0\n"
       "mov r0, #0\n msr control, r0\n isb\n pop {r4, pc}");
 }
-/// The same with a float in use; returns what has become of it.
+/// The same with an active floating-point register; returns its value afterwards.
 [[gnu::naked, gnu::noinline]] std::uint32_t call_with_float_on(std::uint32_t) {
   asm volatile(
       "push {r4, lr}\n msr psp, r0\n mov r0, #2\n msr control, r0\n isb\n"
       "vmov.f32 s0, #2.0\n svc #0\n vmov r1, s0\n"
       "mov r0, #0\n msr control, r0\n isb\n mov r0, r1\n pop {r4, pc}");
 }
-/// The same where the frame is lost: goes on behind it, with nothing but what was put away on the main stack.
+/// The same for a lost frame: continues after the call with only the registers saved on the main stack.
 [[gnu::naked, gnu::noinline]] void call_and_lose(std::uint32_t, std::uint32_t*) {
   asm volatile(
       "push {r4-r11, lr}\n msr psp, r0\n adr r0, 1f\n str r0, [r1]\n mov r0, #2\n msr control, r0\n isb\n"
@@ -38,8 +38,8 @@ extern "C" void mend_stack() {
 }
 std::uint32_t resume_at;
 
-// results[1], [2]: only the second half of the frame, in another 32 bytes, is refused. SVC comes behind the fault, on
-// the frame that was never written.
+// results[1], [2]: only the second half of the frame, in other 32 bytes, is refused. SVC follows the fault, on the
+// frame that was never written.
 void lose_frame() {
   constexpr std::uint32_t top = stack - 48;
   set_handler(11, [] {
@@ -52,7 +52,7 @@ void lose_frame() {
   call_and_lose(top, &resume_at);
 }
 
-// results[3], [4]: what was written can not be read back.
+// results[3], [4]: the written frame cannot be read back.
 void lose_way_back() {
   set_handler(11, [] {
     set_rights(0, stack - 32, 5, none);
@@ -70,7 +70,7 @@ void take_float() {
   note(word(context_control) & lazily_active);
 }
 
-// results[5] to [9]: the first instruction on a float asks for lazy stacking, which is refused, and then again.
+// results[5] to [9]: the first floating-point instruction starts lazy stacking, which is refused and then repeated.
 void stack_floats_late() {
   set_handler(11, take_float);
   set_rights(0, stack - 64, 5, read_only);
@@ -79,7 +79,7 @@ void stack_floats_late() {
   note(word(stacked_float));
 }
 
-// results[10] to [13]: a handler that MemManage may not interrupt goes on, and what was to be stacked is lost.
+// results[10] to [13]: a handler that MemManage cannot preempt continues, and the registers to be stacked are lost.
 void lose_floats() {
   word(stacked_float) = 7;
   set_rights(0, stack - 64, 5, read_only);
@@ -87,7 +87,7 @@ void lose_floats() {
   note(call_with_float_on(float_stack));
 }
 
-// results[14], [15]: the same, but what is in the handler's way is taken away first.
+// results[14], [15]: the same, but the handler cancels the lazy stacking first.
 void drop_floats() {
   word(stacked_float) = 8;
   set_handler(11, [] {
@@ -101,7 +101,7 @@ void drop_floats() {
   note(0x5C);
 }
 
-// results[16]: a handler without floats asks for none of it.
+// results[16]: a handler without floating-point instructions starts no lazy stacking.
 void leave_floats() {
   set_handler(11, [] {});
   set_rights(0, stack - 64, 5, read_only);
@@ -116,7 +116,7 @@ void run() {
   constexpr std::uint32_t call_priority = 0xE000'ED1F;
   set_handler(4, refusal);
   word(shcsr) = 1 << 16;
-  byte(call_priority) = 0x40;  // less urgent than MemManage
+  byte(call_priority) = 0x40;  // lower priority than MemManage
   lose_frame();
   lose_way_back();
   stack_floats_late();

@@ -1,5 +1,5 @@
-// What the memory protection unit allows, access by access. A probe leaves one word: the bits of CFSR, 0 if it passed;
-// bit 30 if it came as HardFault, bit 31 if MMFAR is valid and not within what was accessed.
+// Access checks of the memory protection unit. Each probe records one word: the CFSR bits, or 0 if it passed. Bit 30:
+// the fault was a HardFault. Bit 31: MMFAR is valid and outside the accessed range.
 #include "protection.hpp"
 
 namespace {
@@ -7,10 +7,10 @@ namespace {
 constexpr std::uint32_t came_as_hard_fault = 1u << 30, other_address = 1u << 31;
 
 volatile std::uint32_t status = 0, place = 0, program_counter = 0;
-/// What a handler of a fault does before it returns.
+/// Action of a fault handler before it returns.
 Handler volatile mend = nullptr;
 
-/// A probe that faults ends there, for its caller.
+/// A probe that faults returns to its caller.
 extern "C" void note_refusal(std::uint32_t* frame, std::uint32_t exception) {
   status = word(cfsr) | (exception == 3 ? came_as_hard_fault : 0);
   const std::uint32_t fault_place = word(mmfar);
@@ -46,12 +46,12 @@ void supervisor_call() { asm volatile("mrs r0, control\n bic r0, #1\n msr contro
 std::uint32_t verdict_of_user(Probe probe, std::uint32_t address) {
   asm volatile("mrs r0, control\n orr r0, #1\n msr control, r0\n isb" ::: "r0", "memory");
   verdict(probe, address);
-  const std::uint32_t found = verdict(probe, address);  // still a user behind the fault
+  const std::uint32_t found = verdict(probe, address);  // still unprivileged after the fault
   become_privileged();
   return found;
 }
 
-/// Flash and SRAM for everybody, as background of the regions from 2 on.
+/// Gives all code access to flash and SRAM, as a background for regions from 2 on.
 void let_everybody_run() {
   set_rights(0, 0x0800'0000, 20, read_only);
   set_rights(1, 0x2000'0000, 17, all);
@@ -60,7 +60,8 @@ void let_everybody_run() {
 volatile std::uint32_t* next = results + 1;
 void note(std::uint32_t value) { *next++ = value; }
 
-// results[1] to [11]: a page that regions divide, of which the higher number decides, and one without its third eighth.
+// results[1] to [11]: a page that is divided by regions, and a region without its third eighth. The region with the
+// higher number has priority.
 void probe_regions() {
   set_rights(0, 0x2001'0000, 12, read_only);
   set_region(1, 0x2001'0100, all << 24 | 1u << (8 + 2) | size(8) | normal);
@@ -69,24 +70,24 @@ void probe_regions() {
   note(verdict(load_word, 0x2001'0000));
   note(verdict(store_word, 0x2001'0000));
   note(verdict(store_word, 0x2001'0100));
-  note(verdict(store_word, 0x2001'0140));  // the eighth that is left out
+  note(verdict(store_word, 0x2001'0140));  // the disabled subregion
   note(verdict(store_word, 0x2001'0160));
-  note(verdict(store_word, 0x2001'00FE));  // each end of an access counts
+  note(verdict(store_word, 0x2001'00FE));  // each end of an access is checked
   note(verdict(store_word, 0x2001'01FE));
-  note(verdict(load_word, 0x2001'1FFE));  // over the end of a page
+  note(verdict(load_word, 0x2001'1FFE));  // across a page boundary
   note(verdict(store_word, 0x2001'1FFE));
   note(verdict(store_word, 0x2001'1FFC));
   note(verdict(store_word, 0x2001'2020));
   take_regions_away();
 }
 
-// results[12] to [21]: instructions.
+// results[12] to [21]: instruction fetches.
 void probe_fetches() {
   constexpr std::uint16_t no_operation = 0xBF00, return_to_caller = 0x4770;
   constexpr std::uint32_t code = 0x2001'4000;
   for (std::uint32_t at = code; at < code + 0x60; at += 2) half(at) = no_operation;
   half(code + 0x60) = return_to_caller;
-  half(code + 0x3E) = 0xF3AF;  // NOP of 32 bits
+  half(code + 0x3E) = 0xF3AF;  // 32-bit NOP
   half(code + 0x40) = 0x8000;
   set_rights(0, code + 0x40, 5, all, normal | execute_never);
   protect(enable | default_map);
@@ -94,7 +95,7 @@ void probe_fetches() {
   half(code + 0x44) = no_operation;
   half(code + 0x46) = no_operation;
   note(verdict(run_at, code + 0x60));
-  note(verdict(run_at, code));  // runs into it
+  note(verdict(run_at, code));  // execution continues into the next region
   note(program_counter - code);
   half(code + 0x3E) = no_operation;
   half(code + 0x40) = no_operation;
@@ -102,14 +103,14 @@ void probe_fetches() {
   note(program_counter - code);
   protect(0);
   note(verdict(run_at, code));
-  protect(enable | default_map);  // which instructions were known before it
+  protect(enable | default_map);  // the instructions were executed before the change
   note(verdict(run_at, code));
   note(program_counter - code);
-  note(verdict(run_at, 0x4002'0000));  // the default map's
+  note(verdict(run_at, 0x4002'0000));  // rule of the default map
   take_regions_away();
 }
 
-// results[22] to [29]: for each code of AP whether privileged loads and stores, then a user's, pass.
+// results[22] to [29]: for each AP code, whether privileged and unprivileged loads and stores pass.
 void probe_rights() {
   let_everybody_run();
   protect(enable | default_map);
@@ -125,7 +126,7 @@ void probe_rights() {
   take_regions_away();
 }
 
-// results[30] to [35]: where no region is, and the core's own registers, which none covers.
+// results[30] to [35]: addresses without a region, and the core's registers, which no region covers.
 void probe_background() {
   constexpr std::uint32_t clocks = 0x4002'3800;
   let_everybody_run();
@@ -142,7 +143,7 @@ void probe_background() {
   take_regions_away();
 }
 
-// results[36] to [41]: handlers of faults, and FAULTMASK, are above it unless HFNMIENA says so.
+// results[36] to [41]: fault handlers and FAULTMASK bypass the protection unless HFNMIENA is set.
 void probe_masks() {
   set_rights(0, 0x2001'0000, 12, read_only);
   protect(enable | default_map);
@@ -151,14 +152,14 @@ void probe_masks() {
   note(verdict(store_word, 0x2001'0000));
   asm volatile("cpsie f" ::: "memory");
   note(verdict(store_word, 0x2001'0000));
-  // In HardFault: without a handler of its own, and with one that may not interrupt.
+  // In HardFault: without a MemManage handler, and with one that cannot preempt.
   word(shcsr) = 6 << 16;
   mend = [] {
     word(0x2001'0000) = 0x600D;
     take_regions_away();
   };
   note(verdict(store_word, 0x2001'0000));
-  note(word(0x2001'0000) == 0x2001'0000);  // the handler's store passed, then the probe's again
+  note(word(0x2001'0000) == 0x2001'0000);  // the handler's store passed, then the repeated store of the probe
   word(shcsr) = 7 << 16;
   mend = nullptr;
   set_rights(0, 0x2001'0000, 12, read_only);
@@ -169,7 +170,8 @@ void probe_masks() {
   take_regions_away();
 }
 
-// results[42] to [44]: memory that a region makes a device wants accesses aligned, registers that one makes memory not.
+// results[42] to [44]: device memory requires aligned accesses. Peripheral registers in a region of normal memory do
+// not.
 void probe_kinds() {
   set_rights(0, 0x2001'0000, 12, all, device);
   set_rights(1, 0x4002'0000, 12, all);
@@ -181,8 +183,8 @@ void probe_kinds() {
   take_regions_away();
 }
 
-// results[45] to [49]: the unit is switched on where it does not count; a user on the process stack is interrupted, and
-// goes on as one.
+// results[45] to [49]: the unit is enabled while FAULTMASK bypasses it. An unprivileged thread on the process stack is
+// interrupted and continues unprivileged.
 void probe_late_start_and_user() {
   set_rights(0, 0x2001'0000, 12, read_only);
   asm volatile("cpsid f" ::: "memory");
@@ -226,7 +228,7 @@ void run() {
   probe_kinds();
   probe_late_start_and_user();
   results[0] = finished;
-  // HFNMIENA: FAULTMASK is no way around any more, and nothing is left that could handle the fault.
+  // With HFNMIENA, FAULTMASK no longer bypasses the protection, and no handler can handle the fault.
   set_rights(0, 0x2001'0000, 12, read_only);
   protect(enable | default_map | above_faults_too);
   asm volatile("cpsid f" ::: "memory");

@@ -1,4 +1,4 @@
-// For test firmwares: regions of the memory protection unit.
+// Memory protection unit regions for the test firmwares.
 #pragma once
 
 #include "support.hpp"
@@ -9,7 +9,7 @@ inline constexpr std::uint32_t shcsr = 0xE000ED24, cfsr = 0xE000ED28, hfsr = 0xE
 inline constexpr std::uint32_t enable = 1, above_faults_too = 2, default_map = 4;
 inline constexpr std::uint32_t normal = 3u << 16, device = 1u << 16, execute_never = 1u << 28;
 enum Rights : std::uint32_t { none = 0, all_privileged = 1, all = 3, read_only = 6 };
-/// SIZE for a region of 2^bits bytes.
+/// SIZE field of a region of 2^bits bytes.
 constexpr std::uint32_t size(unsigned bits) { return (bits - 1) << 1; }
 
 inline void barrier() { asm volatile("dsb\n isb" ::: "memory"); }

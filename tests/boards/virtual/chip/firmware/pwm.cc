@@ -1,4 +1,5 @@
-// TIM1 starts TIM8; both centre-aligned, with known compare values; the update comes every sixth half period.
+// TIM1 starts TIM8. Both timers are center-aligned with known compare values; the update occurs every sixth half
+// period.
 #include "support.hpp"
 
 namespace {
@@ -18,11 +19,11 @@ void update() {
   word(tim1 + sr) = ~1u;
   const std::uint32_t n = results[1];
   if (n < 4) {
-    results[4 + 2 * n] = word(tim1 + cr1) >> 4 & 1;  // direction after the update
+    results[4 + 2 * n] = word(tim1 + cr1) >> 4 & 1;  // counting direction after the update
     results[5 + 2 * n] = word(tim1 + cnt);
   }
   results[1] = n + 1;
-  if (n == 9) word(tim1 + ccr1) = 250;  // preloaded: takes effect at the next update
+  if (n == 9) word(tim1 + ccr1) = 250;  // preloaded: becomes active at the next update
 }
 }  // namespace
 

@@ -1,4 +1,4 @@
-// A region of the memory protection unit that the manual leaves open, each by one thing; which, says port D.
+// Sets up a memory protection region with one setting that the manual leaves undefined. Port D selects the region.
 #include "protection.hpp"
 
 namespace {
@@ -8,7 +8,7 @@ struct Region {
 };
 constexpr std::uint32_t place = 0x2001'0000, one_eighth = 1 << 8, written_back = 0x0B << 16;
 constexpr Region regions[] = {
-    {place + 256, size(8) | one_eighth | all << 24 | written_back},  // as it should be
+    {place + 256, size(8) | one_eighth | all << 24 | written_back},  // valid settings
     {place + 32, size(6) | all << 24 | normal},
     {place, size(4) | all << 24 | normal},
     {place, size(7) | one_eighth | all << 24 | normal},

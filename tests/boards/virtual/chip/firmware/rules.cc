@@ -1,10 +1,10 @@
-// Starts clocks, converter, watchdog, a locked timer and the USB core as the manual wants it, but for the one rule that
-// the test names on port D. That port is read before anything else.
+// Starts clocks, converter, watchdog, a locked timer and the USB core according to the manual. Port D, which is read
+// first, selects the one rule that is violated.
 #include "support.hpp"
 
 namespace {
 
-// The same numbers as in violations_test.cpp.
+// The numbers match violations_test.cpp.
 enum Fault : std::uint32_t {
   none,
   float_unit_off,
@@ -80,7 +80,7 @@ void convert() {
   if (fault != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
   word(adc::ccr) = fault == converter_too_fast ? 0 : 1 << 16;
   for (unsigned i = 0; i < 3; ++i) {
-    word(adc::adc1 + 0x100 * i + adc::smpr1) = 1 << 3 * i;  // 15 cycles, for the first of all conversions
+    word(adc::adc1 + 0x100 * i + adc::smpr1) = 1 << 3 * i;  // 15 cycles, used for the first conversion
     word(adc::adc1 + 0x100 * i + adc::sqr3) = 10 + i;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
   }
@@ -90,7 +90,7 @@ void convert() {
   for (unsigned i = 0; i < 3; ++i) results[1 + i] = word(adc::adc1 + 0x100 * i + adc::dr);
 }
 
-/// The internal reference, by the first converter.
+/// Converts the internal reference with the first converter.
 void convert_reference() {
   if (fault != reference_off) word(adc::ccr) |= 1 << 23;
   if (fault != reference_hurried_on) wait_us(12);
@@ -101,7 +101,7 @@ void convert_reference() {
   results[8] = word(adc::adc1 + adc::dr);
 }
 
-/// Moves a word from memory to memory, twice.
+/// Copies a word from memory to memory twice.
 void copy() {
   constexpr std::uint32_t dma2 = 0x40026400, lifcr = dma2 + 0x08, s0cr = dma2 + 0x10, s0ndtr = dma2 + 0x14;
   word(rcc::ahb1enr) |= 1 << 22;
@@ -186,7 +186,7 @@ void start_usb() {
   if (fault != usb_mode_wait) wait_us(25'100);
   word(core + 0x800) |= fault == usb_speed ? 0 : 3;
   word(core + 0x804) &= ~2u;
-  // What comes next needs no host: an endpoint is loaded as if one had configured the device.
+  // The following steps need no host: an endpoint is loaded as if the device had been configured.
   word(core + 0x024) = 56;
   word(core + 0x028) = 16u << 16 | 56;
   word(core + 0x108) = 200u << 16 | 72;
@@ -197,7 +197,7 @@ void start_usb() {
   for (unsigned i = 0; i < packets * 16; ++i) word(core + 0x3000) = i;
 }
 
-// Priorities, CFSR and the trace's ports may be written so (ARMv7-M, B3.2.1, C1.7.3).
+// Priorities, CFSR and the trace ports allow narrow writes (ARMv7-M, B3.2.1, C1.7.3).
 void use_narrow_writes() {
   byte(0xE000ED1F) = 0x40;
   half(0xE000ED20) = 0x40;
@@ -228,7 +228,7 @@ void run() {
   word(0xE000EDA0) = 3 << 24 | 3 << 16 | 9 << 1 | 1;
   word(0xE000ED98) = fault == region_number ? 8 : 7;
   if (fault == region_number_of_base) word(0xE000ED9C) = 1 << 4 | 8;
-  word(0xE000ED9C) = 8;  // without VALID no number
+  word(0xE000ED9C) = 8;  // the region number is ignored without VALID
   use_narrow_writes();
   results[0] = finished;
   for (;;) wait_for_interrupt();

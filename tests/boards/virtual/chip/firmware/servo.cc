@@ -1,5 +1,5 @@
-// The load of a servo: six channels of 60 kHz, three converters at 20 kHz, an interrupt of some 2500 instructions
-// with 120 register accesses, and a main loop that sleeps. Measures the speed of the virtual chip.
+// Typical control load: six PWM channels at 60 kHz, three converters at 20 kHz, and a sleeping main loop. The interrupt
+// has about 2500 instructions with 120 register accesses. Measures the speed of the virtual chip.
 #include "support.hpp"
 
 namespace {
@@ -50,7 +50,7 @@ void run() {
   word(rcc::apb2enr) |= 3 | 7 << 8;
   for (unsigned pin = 8; pin < 11; ++pin) gpio::alternate(gpio::a, pin, 1);
   for (unsigned pin = 6; pin < 9; ++pin) gpio::alternate(gpio::c, pin, 3);
-  word(gpio::c + gpio::moder) |= 0x3F;  // C0 to C2 analogue
+  word(gpio::c + gpio::moder) |= 0x3F;  // C0 to C2 analog
   set_up_bridge_timer(tim1);
   set_up_bridge_timer(tim8);
   word(tim1 + cr2) = 2 << 4;

@@ -1,5 +1,5 @@
-// The firmware's own way to sleep, with an interrupt put between the question whether there is something to do and the
-// sleep. Once a millisecond SysTick ends a sleep that slept over it.
+// The sleep routine of the firmware, with an interrupt between its check for pending work and the sleep instruction.
+// SysTick ends an erroneous sleep after at most one millisecond.
 #include <drivers/system.hpp>
 
 #include "support.hpp"

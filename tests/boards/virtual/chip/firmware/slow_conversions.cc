@@ -1,5 +1,5 @@
-// The firmware's own drivers of bridges and converters, with a fault put into the slow conversions in chosen periods:
-// the stream stopped in the middle of a sequence, and its destination moved to where the DMA controller cannot write.
+// The firmware's drivers of bridges and converters, with faults of the slow conversions in selected periods. One fault
+// stops the stream during a sequence; the other sets a destination that the DMA controller cannot write.
 #include <analog_inputs.cpp>
 #include <bridges.cpp>
 

@@ -1,5 +1,5 @@
-// Exceptions on a stack that cannot take them: one beyond the end of RAM, one that the memory protection unit refuses.
-// The handlers find a stack of their own first.
+// Exceptions on unusable stacks: one beyond the end of RAM, one that the memory protection unit refuses. The handlers
+// first switch to a valid stack.
 #include "support.hpp"
 
 namespace {
@@ -9,7 +9,7 @@ constexpr std::uint32_t shcsr = 0xE000ED24, cfsr = 0xE000ED28, hfsr = 0xE000ED2C
 
 [[noreturn]] void second();
 
-// Thread mode goes on behind the handler on a frame that the handler makes.
+// Thread mode continues after the handler with a frame that the handler creates.
 [[gnu::naked]] void go_on(void (*)(), std::uint32_t) {
   asm volatile(
       "mov sp, r1\n sub sp, #32\n str r0, [sp, #24]\n mov r0, #0x01000000\n str r0, [sp, #28]\n"
@@ -42,7 +42,7 @@ extern "C" void note_hard_fault() {
 [[gnu::naked]] void hard_fault() { asm volatile("ldr r1, =0x20018000\n mov sp, r1\n b note_hard_fault"); }
 
 void second() {
-  // 1 kB that only handlers of faults may write: HFNMIENA is 0.
+  // 1 kB that only fault handlers may write, because HFNMIENA is 0.
   word(mpu_base) = 0x20010000 | 1 << 4;
   word(mpu_attributes) = 6u << 24 | 9 << 1 | 1;
   word(mpu_control) = 1 | 1 << 2;

@@ -14,7 +14,7 @@ alignas(512) Handler vectors[16 + 82];
 }  // namespace
 
 extern "C" [[noreturn]] void reset_handler() {
-  word(0xE000ED88) = 0xF << 20;  // the FPU, before anything uses it
+  word(0xE000ED88) = 0xF << 20;  // enables the FPU before its first use
   for (std::uint32_t *from = &data_source, *to = &data_begin; to < &data_end;) *to++ = *from++;
   for (std::uint32_t* to = &bss_begin; to < &bss_end;) *to++ = 0;
   for (auto& vector : vectors) vector = unexpected;
@@ -71,7 +71,7 @@ constexpr std::uint32_t dma2 = 0x40026400, common_data = 0x40012308;
 
 void collect_common_data(std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to) {
   word(dma2 + 0x10) = 0;
-  word(dma2 + 0x08) = 0x3D;  // the flags of the last run
+  word(dma2 + 0x08) = 0x3D;  // flags of the previous run
   word(dma2 + 0x18) = common_data;
   word(dma2 + 0x1C) = reinterpret_cast<std::uint32_t>(to);
   word(dma2 + 0x14) = items;

@@ -1,4 +1,4 @@
-// For the test firmwares: registers by address, handlers by exception number, results for the test to read.
+// Support for the test firmwares: registers by address, handlers by exception number, and results for the test.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ inline volatile std::uint8_t& byte(std::uint32_t address) { return *reinterpret_
 
 /// Words that the test reads at 0x2001F000.
 inline volatile std::uint32_t* const results = reinterpret_cast<volatile std::uint32_t*>(0x2001F000);
-/// Set by the test firmware when it has done its work.
+/// Value of results[0] after the test firmware has finished.
 inline constexpr std::uint32_t finished = 0x600D600D;
 
 using Handler = void (*)();
 void set_handler(unsigned exception, Handler handler);
 inline constexpr unsigned interrupt(unsigned position) { return 16 + position; }
 void enable_interrupt(unsigned position, unsigned priority);
-/// 168 MHz from the crystal of 8 MHz; HCLK, PCLK1 and PCLK2 are 168, 42 and 84 MHz.
+/// 168 MHz from the 8 MHz crystal; HCLK, PCLK1 and PCLK2 are 168, 42 and 84 MHz.
 void run_at_168_MHz();
 
 inline void wait_for_interrupt() { asm volatile("wfi" ::: "memory"); }
@@ -47,16 +47,16 @@ namespace adc {
 inline constexpr std::uint32_t adc1 = 0x40012000, adc2 = 0x40012100, adc3 = 0x40012200, ccr = 0x40012304;
 inline constexpr std::uint32_t sr = 0x00, cr1 = 0x04, cr2 = 0x08, smpr1 = 0x0C, sqr1 = 0x2C, sqr2 = 0x30, sqr3 = 0x34,
                                jsqr = 0x38, jdr1 = 0x3C, dr = 0x4C;
-/// Lets stream 0 of DMA2 collect `items` of the common data register at `to`. Size: 1 halfword, 2 word.
+/// Sets up stream 0 of DMA2 to copy `items` of the common data register to `to`. `size`: 1 halfword, 2 word.
 void collect_common_data(std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to);
 std::uint32_t items_left();
-/// Waits for the last of them, but not for ever.
+/// Waits for the last item, with a time limit.
 void wait_for_items();
 }  // namespace adc
 namespace watchdog {
-/// 500 counts of 4 cycles of 32 kHz: it bites after 62.5 ms.
+/// 500 counts of 4 cycles at 32 kHz: the watchdog expires after 62.5 ms.
 void start();
 }  // namespace watchdog
 
-/// What each firmware does.
+/// Entry point that each test firmware defines.
 void run();

@@ -1,9 +1,9 @@
-// Three converters together, their results by one DMA stream through the common data register, in its three modes.
+// Three simultaneous converters and one DMA stream that reads the common data register, in its three DMA modes.
 #include "support.hpp"
 
 namespace {
 
-/// Two conversions of each converter by one command, as the DMA stream leaves them at `to`.
+/// Starts two conversions of each converter with one command; the DMA stream writes them to `to`.
 void convert(std::uint32_t mode, std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to) {
   adc::collect_common_data(size, items, to);
   word(adc::ccr) = 1 << 16 | mode << 14 | 0x16;  // regular simultaneous, all three

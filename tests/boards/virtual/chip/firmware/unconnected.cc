@@ -1,4 +1,4 @@
-// Peripherals with nothing connected to them: what drivers wait for comes, or their errors do.
+// Peripherals without external circuits: the events or errors that drivers wait for occur.
 #include "support.hpp"
 
 namespace {
@@ -7,7 +7,7 @@ constexpr std::uint32_t spi1 = 0x40013000, i2c1 = 0x40005400, can1 = 0x40006400,
                         pwr = 0x40007000, exti = 0x40013C00, dma2 = 0x40026400, bdcr = 0x40023870;
 volatile std::uint32_t interrupts = 0;
 
-/// False after a while.
+/// Returns false after a time limit.
 bool wait_for(std::uint32_t address, std::uint32_t mask, std::uint32_t value) {
   for (unsigned i = 0; i < 100'000; ++i)
     if ((word(address) & mask) == value) return true;
@@ -20,7 +20,7 @@ void use_spi() {
   const bool busy = (word(spi1 + 8) & 1 << 7) != 0;
   results[1] = busy && wait_for(spi1 + 8, 1, 1);
   results[2] = word(spi1 + 0xC);
-  // Five frames by DMA, both ways.
+  // Five frames by DMA in both directions.
   static std::uint8_t received[8];
   static const std::uint8_t sent[5] = {1, 2, 3, 4, 5};
   word(dma2 + 0x10 + 0x18 * 2 + 8) = spi1 + 0xC;
@@ -80,12 +80,12 @@ void use_clock() {
   word(rtc + 0x24) = 0x53;
   word(rtc + 0xC) = 1 << 7;
   results[20] = wait_for(rtc + 0xC, 1 << 6, 1 << 6);
-  word(rtc + 0x10) = 31 << 16 | 9;  // 32 kHz / 32 / 10: a second lasts 10 ms
+  word(rtc + 0x10) = 31 << 16 | 9;  // 32 kHz / 32 / 10: an RTC second lasts 10 ms
   word(rtc + 0x00) = 0x235958;
   word(rtc + 0x04) = 0x240228;  // 28 February 2024
   word(rtc + 0xC) = 0;
   results[21] = wait_for(rtc + 0xC, 1 << 5, 1 << 5);
-  word(rtc + 0x1C) = 1u << 31 | 1 << 23 | 1 << 15;  // alarm A in each minute's second 0
+  word(rtc + 0x1C) = 1u << 31 | 1 << 23 | 1 << 15;  // alarm A at second 0 of each minute
   word(exti) = 1 << 17 | 1 << 22;
   word(exti + 8) = 1 << 17 | 1 << 22;
   set_handler(interrupt(41), [] {
@@ -104,7 +104,7 @@ void use_clock() {
   results[24] = 0;
   enable_interrupt(41, 1);
   enable_interrupt(3, 1);
-  word(rtc + 0x14) = 31;  // 32 of 2 kHz: every 16 ms
+  word(rtc + 0x14) = 31;  // 32 counts at 2 kHz: every 16 ms
   word(rtc + 8) = 1 << 8 | 1 << 12 | 1 << 10 | 1 << 14;
   word(rtc + 0x50) = 0xB0;
   while (interrupts == 0 || results[24] < 2) wait_for_interrupt();

@@ -1,4 +1,4 @@
-// Lets the independent watchdog bite once.
+// Lets the independent watchdog expire once.
 #include "support.hpp"
 
 void run() {
