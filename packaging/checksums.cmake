@@ -1,5 +1,5 @@
-# Runs when the packages are made (CPACK_POST_BUILD_SCRIPTS): puts the firmware images next to them, and the checksums
-# of both into one file, which `sha256sum --check SHA256SUMS` reads.
+# Runs after the packages were created (CPACK_POST_BUILD_SCRIPTS). It copies the firmware images next to the packages
+# and writes the checksums of all files to SHA256SUMS.
 set(sums "")
 set(images "")
 foreach(image ${CPACK_INKWELL_IMAGES})

@@ -7,7 +7,7 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_S
 execute_process(COMMAND ${INKWELL_GZIP} -9nc ${CMAKE_CURRENT_SOURCE_DIR}/debian/changelog OUTPUT_FILE ${changelog} COMMAND_ERROR_IS_FATAL ANY)
 foreach(component programs development)
   set(package ${name_of_${component}})
-  # These are for packages only, not for who installs a build.
+  # These files belong to the packages only, not to an installed build.
   install(FILES debian/copyright ${changelog} DESTINATION ${documents}/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
 endforeach()
 install(FILES debian/inkwell.lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME inkwell
@@ -33,13 +33,13 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/dropins)
-# Of the libraries only libinkwell is for programs of others.
+# libinkwell is the only library for other programs.
 get_target_property(interface inkwell_library SOVERSION)
 file(CONFIGURE OUTPUT shlibs CONTENT "libinkwell @interface@ inkwell (>= @PROJECT_VERSION@)\n" @ONLY)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA
     ${CMAKE_CURRENT_BINARY_DIR}/shlibs ${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers
     ${CMAKE_CURRENT_SOURCE_DIR}/debian/postinst ${CMAKE_CURRENT_SOURCE_DIR}/debian/postrm)
-# Found at run time: OpenGL by the window; gnuplot draws figures, and the window reads fonts.
+# Run-time dependencies: OpenGL for the window; gnuplot draws figures, and the window reads fonts.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "libgl1")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-inter | fonts-dejavu-core")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "inkwell-dev, dfu-util, openocd")

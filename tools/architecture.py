@@ -1,19 +1,19 @@
-"""The tree's folders and what they use: as docs/architecture.md says it, as CMake links it, as the sources include it.
+"""The folders of the tree and their dependencies: documented in docs/architecture.md, linked by CMake, and included.
 
-CMake writes target-graph.txt into every build directory (tools/cmake/target_graph.cmake). The PC's build knows no
-drivers and the board's no window, so both are read.
+CMake writes target-graph.txt into every build directory (tools/cmake/target_graph.cmake). The PC build does not contain
+the drivers, and the board build does not contain the window, so both are read.
 """
 
 import dataclasses
 import pathlib
 import re
 
-ROOTS = ("protocol", "boards", "firmware", "host")  # what the table has to name, each folder of it
+ROOTS = ("protocol", "boards", "firmware", "host")  # the table must list every folder of these
 SOURCES = {".cpp", ".hpp"}
 
 
 class Unreadable(Exception):
-    """The table or a graph is not of the form that is read here; the message says where and what to do."""
+    """The table or a graph has another format than expected; the message states the location and the remedy."""
 
 
 @dataclasses.dataclass
@@ -35,7 +35,7 @@ class Target:
 
 
 def read_table(document: str) -> dict[str, Row]:
-    """The rows of the table of folders, by folder. What a row uses is named by the end of its path."""
+    """The rows of the folder table, by folder. The last part of a path names a used folder."""
     rows = re.findall(r"^\| `([^`]+)/` \| ([^|]*) \| ([^|]*) \| ([^|]*) \|$", document, re.MULTILINE)
     folders = [folder for folder, *_ in rows]
     if not folders:
@@ -57,7 +57,7 @@ def read_table(document: str) -> dict[str, Row]:
 
 
 def read_paths(document: str) -> list[list[str]]:
-    """The folders of each path of the data: in the first code block, one path a paragraph, one folder a line."""
+    """The folders of each data path in the first code block: one path per paragraph, one folder per line."""
     block = document.split("## Data path")[1].split("\n## ")[0]
     return [re.findall(r"  ((?:firmware|host)/\w+)(?:, [^\n]*)?$", paragraph, re.MULTILINE)
             for paragraph in block.strip("\n").split("\n\n") if paragraph.startswith("    ")]
@@ -80,21 +80,21 @@ def library_name(link: str) -> str:
     return (package if part.lower() in {"headers", "module"} else part).lower()
 
 
-# The operating system's own, and the flags that every target has.
+# Libraries of the operating system, and the flags that every target uses.
 NO_LIBRARY = {"threads", "dl", "inkwell_warnings", "inkwell_embedded"}
 
 
 @dataclasses.dataclass
 class Tree:
-    """What is there: folders with sources, what their targets link to and what their files include."""
+    """The actual tree: folders with sources, their linked targets and their included files."""
 
     folders: set[str]
-    links: dict[str, set[str]]  # folder of a target -> folders that its targets link to
-    libraries: dict[str, set[str]]  # folder of a target -> libraries from outside
-    includes: dict[str, dict[str, str]]  # folder -> folder that it includes from -> one line that does
+    links: dict[str, set[str]]  # folder of a target -> folders of the targets that it links to
+    libraries: dict[str, set[str]]  # folder of a target -> external libraries
+    includes: dict[str, dict[str, str]]  # folder -> included folder -> one of the including lines
 
     def uses(self, folder: str) -> set[str]:
-        """A folder without a target of its own uses what it includes."""
+        """A folder without a target uses the folders that it includes."""
         return self.links[folder] if folder in self.links else set(self.includes.get(folder, {}))
 
 
@@ -139,7 +139,7 @@ def read_tree(repository: pathlib.Path, graphs: list[pathlib.Path]) -> Tree:
 
 
 def differences(table: dict[str, Row], tree: Tree) -> list[str]:
-    """One line for each thing in which the table and the tree do not agree."""
+    """One line for each difference between the table and the tree."""
     problems = [f"{folder}/ has no row in docs/architecture.md" for folder in sorted(tree.folders - table.keys())]
     problems += [f"docs/architecture.md has a row for {folder}/, which holds neither a target nor a .cpp file"
                  for folder in sorted(table.keys() - tree.folders) if folder.split("/")[0] in ROOTS]

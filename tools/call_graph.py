@@ -1,6 +1,6 @@
-"""Functions of an ARM Thumb image, their stack and who calls whom, read from its disassembly.
+"""Functions of an ARM Thumb image with their stack use and calls, from its disassembly.
 
-The linked image itself is read, so that what the compiler inlined, split or took from a library is seen as it is.
+The analysis reads the linked image, so it sees inlined and split functions and library code.
 """
 
 import dataclasses
@@ -10,7 +10,7 @@ import subprocess
 
 
 class Unreadable(Exception):
-    """The image holds something that the analysis does not understand; the message says what and where."""
+    """The image contains something that the analysis does not support; the message states what and where."""
 
 
 @dataclasses.dataclass
@@ -18,26 +18,26 @@ class Function:
     name: str
     address: int
     stack_bytes: int = 0
-    calls: set[str] = dataclasses.field(default_factory=set)  # direct ones, jumps into other functions included
-    virtual_slots: set[int] = dataclasses.field(default_factory=set)  # byte offsets into a table of virtual functions
+    calls: set[str] = dataclasses.field(default_factory=set)  # direct calls, including jumps into other functions
+    virtual_slots: set[int] = dataclasses.field(default_factory=set)  # byte offsets into a virtual table
     calls_any_pointer: bool = False  # through a pointer of unknown origin
     moves_stack: bool = False  # by an amount that is not a constant
     divides: list[str] = dataclasses.field(default_factory=list)  # addresses of divisions and square roots
-    instructions: list[tuple[int, str]] = dataclasses.field(default_factory=list)  # address and text, in order
-    words: list[int] = dataclasses.field(default_factory=list)  # constants that stand between its instructions
+    instructions: list[tuple[int, str]] = dataclasses.field(default_factory=list)  # (address, text)
+    words: list[int] = dataclasses.field(default_factory=list)  # constants between the instructions
 
 
 @dataclasses.dataclass
 class Image:
     functions: dict[str, Function]
-    virtual_tables: list[list[str]]  # functions of each class's table, in the order of its slots
-    constructors: list[str]  # run by the start-up code
-    interrupts: list[str]  # handlers in the vector table, without those of reset and of faults
-    pended: str  # the one of them that is PendSV's and no other's, or nothing
+    virtual_tables: list[list[str]]  # functions of each class's virtual table, in slot order
+    constructors: list[str]  # called by the startup code
+    interrupts: list[str]  # handlers of the vector table, except reset and fault handlers
+    pended: str  # handler that only PendSV uses, or an empty string
     symbols: dict[str, int]
 
     def targets(self, function: Function) -> tuple[set[str], set[str]]:
-        """What a function may call: certainly, and through pointers."""
+        """The functions that a function calls directly, and those that it may call through pointers."""
         indirect = {table[slot // 4] for slot in function.virtual_slots for table in self.virtual_tables
                     if slot // 4 < len(table)}
         if function.calls_any_pointer:
@@ -96,7 +96,7 @@ BRANCH = re.compile(r"(?:bl?|b[a-z]{2})(?:\.[nw])?\t[0-9a-f]+ <([^>+]+)(\+0x[0-9
 INDIRECT = re.compile(r"(?:blx|bx)\t(r\d+|ip|fp|sl|sb)|mov\tpc, (\w+)")
 LOAD = re.compile(r"ldr(?:\.w)?\t(\w+), \[(\w+)(?:, #(\d+))?\]")
 WORD = re.compile(r"\.word\t0x([0-9a-f]{8})")
-# What the linker puts where a call goes too far for the instruction: a function of its own that loads its target.
+# Veneer that the linker inserts for a call beyond the range of the instruction: a function that loads its target.
 VENEER = re.compile(r"__.+_veneer")
 DIVIDE = re.compile(r"(?:v?sqrt|vdiv|vsqrt|[su]div)\b")
 
@@ -141,7 +141,7 @@ def read_functions(elf: str) -> dict[str, Function]:
 
 
 def without_veneers(functions: dict[str, Function], by_address: dict[int, Function]) -> dict[str, Function]:
-    """The same with every call through a veneer as a call of the veneer's target."""
+    """Replaces each call through a veneer by a call of the veneer's target."""
     targets = {name: by_address[function.words[0] & ~1].name
                for name, function in functions.items() if VENEER.fullmatch(name)}
     for function in functions.values():
@@ -150,7 +150,7 @@ def without_veneers(functions: dict[str, Function], by_address: dict[int, Functi
 
 
 def read_words(elf: str, address: int, count: int) -> list[int]:
-    """Words of the image at an address in the flash."""
+    """Reads words of the image at a flash address."""
     with open(elf, "rb") as file:
         data = file.read()
     header_offset, = struct.unpack_from("<I", data, 28)
@@ -162,7 +162,7 @@ def read_words(elf: str, address: int, count: int) -> list[int]:
     raise Unreadable(f"0x{address:08x} is not in the image")
 
 
-PENDSV = 14  # its word of the vector table
+PENDSV = 14  # index in the vector table
 
 
 def read_interrupts(elf: str, by_address: dict[int, str]) -> tuple[list[str], str]:
@@ -183,7 +183,7 @@ def read_image(elf: str) -> Image:
         parts = line.split()
         symbols[parts[-1]] = int(parts[0], 16)
         if parts[-1].startswith("_ZTV") and len(parts) == 4:
-            # Two words before the first slot: offset to the top, type information.
+            # Two words precede the first slot: offset to top, and type information.
             words = read_words(elf, int(parts[0], 16), int(parts[1], 16) // 4)[2:]
             tables.append([by_address.get(word & ~1, "") for word in words])
     begin, end = symbols["constructors_begin"], symbols["constructors_end"]

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks what the firmware's image must not hold: heap, double precision; and the interrupts' rules.
+"""Checks the firmware image for forbidden code (heap, double precision) and for violations of the interrupt rules.
 
     tools/check_image.py build/board/inkwell.elf
 
-Prints the size of the image. Exit code 1 with one line for each thing that is wrong.
+Prints the size of the image. Prints one line per error and returns exit code 1 if there are errors.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import sys
 from call_graph import Image, Unreadable, read_image, run
 from interrupt_rules import broken_interrupt_rules
 
-# What an embedded image of ours never needs, and what brings it in. Patterns of whole symbol names.
+# Functions that the firmware image must not contain, and their cause. Patterns of whole symbol names.
 FORBIDDEN = {
     r"_?(malloc|calloc|realloc|free)(_r)?|_sbrk(_r)?": "the heap",
     r"_Zn[wa].*|_Zd[la].*": "operator new or delete",
@@ -28,7 +28,7 @@ FORBIDDEN = {
 
 
 def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
-    """Size and address of each section that takes memory."""
+    """Size and address of each section that occupies memory."""
     rows = re.findall(r"^(\.\S+)\s+(\d+)\s+(\d+)$", run("arm-none-eabi-size", "-A", elf), re.MULTILINE)
     return {name: (int(size), int(address)) for name, size, address in rows if int(address) != 0}
 

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Checks both descriptions of the chip's registers against an SVD file: the firmware's map and the emulator's.
+"""Checks both descriptions of the chip's registers, the firmware's and the emulator's, against an SVD file.
 
     tools/check_registers.py STM32F405.svd --firmware OBJECT --chip JSON
 
-OBJECT is a file that was compiled with the firmware's register map and debug information, in which the compiler has
-written down every register and field as it understood them (tests/firmware/registers/CMakeLists.txt makes it). JSON is
-what the program print-chip-registers prints of the emulator's declarations. Either may be left out.
+OBJECT is an object file with the firmware's register map and debug information, which describes every register and
+field (tests/firmware/registers/CMakeLists.txt builds it). JSON is the output of the program print-chip-registers, with
+the emulator's declarations. Each of the two is optional.
 
-Every register's address, every field's position and width is looked up in the SVD. SVD files have errors and gaps of
-their own; what is known of them stands below, each with its reason, and is printed as such. A known difference that
-does not occur any more is an error too.
+The script compares every register address and every field position and width with the SVD. SVD files contain errors and
+gaps. The known ones are listed below with reasons and are printed as such. A known difference that no longer occurs is
+also an error.
 
-Exit code 0: all agree, or differ as known. 1: differences, one line each. 2: the input cannot be read.
+Exit code 0: no differences, or only known ones. 1: differences, one line each. 2: the input cannot be read.
 """
 
 import argparse
@@ -22,14 +22,14 @@ import sys
 
 from register_maps import DebugInformation, Field, Peripheral, Register, SvdRegister, Unreadable, read_chip, read_svd
 
-# ---- what is known of the SVD of the STM32F405 ---------------------------------------------------------------
+# ---- known deviations of the SVD of the STM32F405 --------------------------------------------------------------
 
 
 @dataclasses.dataclass
 class Known:
-    """A difference that is the SVD's, or that has a reason. Patterns match whole names of our maps, fields may be None
-    for a whole register and registers for a whole peripheral. `svd_name` is what the SVD has instead, `|` between
-    several views of one register; None: nothing that could be compared."""
+    """A known difference with its reason. Patterns match whole names of our maps. `field` is None for a whole register,
+    and `register` is None for a whole peripheral. `svd_name` is the name in the SVD, with `|` between several views of
+    a register. It is None if nothing is comparable."""
 
     peripheral: str
     register: str | None
@@ -43,7 +43,7 @@ class Known:
         return len(patterns) == len(names) and all(map(re.fullmatch, patterns, names))
 
     def concerns(self, peripheral) -> bool:
-        """The peripheral has what this is about."""
+        """True if the peripheral contains the register and field of this difference."""
         return bool(re.fullmatch(self.peripheral, peripheral.name)) and (
             self.register is None or any(re.fullmatch(self.register, r.name) and (
                 self.field is None or any(re.fullmatch(self.field, f.name) for f in r.fields))
@@ -51,7 +51,7 @@ class Known:
         )
 
     def rename(self, name: str) -> str:
-        """The SVD's name; `{}` in it stands for ours."""
+        """Returns the name in the SVD; `{}` in it is replaced by our name."""
         return self.svd_name.format(name)
 
 
@@ -120,7 +120,7 @@ def known_differences() -> list[Known]:
     ]
 
 
-# ---- comparing -------------------------------------------------------------------------------------------------
+# ---- comparison ------------------------------------------------------------------------------------------------
 
 
 class Comparison:
@@ -132,7 +132,7 @@ class Comparison:
         self.fields = 0
 
     def svd_name(self, *names: str) -> str | None:
-        """Name in the SVD of the peripheral, register or field that `names` lead to; None: not comparable."""
+        """Returns the SVD name of the peripheral, register or field `names`; None if it is not comparable."""
         for known in self.known:
             if known.applies(*names):
                 known.uses += 1
@@ -145,7 +145,7 @@ class Comparison:
             self.compare_peripheral(whose, peripheral, kin)
 
     def svd_views(self, peripheral: Peripheral, register: str) -> list[SvdRegister] | None:
-        """The SVD's views of a register; None: not comparable."""
+        """Returns the SVD's views of a register; None if it is not comparable."""
         name, wanted = self.svd_name(peripheral.name), self.svd_name(peripheral.name, register)
         if name is None or wanted is None:
             return None
@@ -173,7 +173,7 @@ class Comparison:
         if views is None:
             return
         if not views:
-            # One form for all peripherals of a kind: this one may lack what another one has.
+            # All peripherals of a kind share one description, so this peripheral may lack a register of another.
             if not any(self.svd_views(other, register.name) for other in kin):
                 self.differences.append(f"{label}: the SVD has no such register in {peripheral.name}")
             return
@@ -211,7 +211,7 @@ class Comparison:
 
 
 def gathered(fields: dict[str, tuple[int, int]], name: str) -> tuple[int, int] | None:
-    """Place of a field that the SVD has as single bits, as PLLN0 to PLLN8, if they lie side by side."""
+    """Returns the position of a field that the SVD describes as adjacent single bits, such as PLLN0 to PLLN8."""
     bits = {int(match[1]): place for key, place in fields.items() if (match := re.fullmatch(rf"{name}(\d)", key))}
     if not bits or sorted(bits) != list(range(len(bits))):
         return None
@@ -221,7 +221,7 @@ def gathered(fields: dict[str, tuple[int, int]], name: str) -> tuple[int, int] |
 
 
 def unused(comparison: Comparison, peripherals: list[Peripheral]) -> list[str]:
-    """Known differences of peripherals in our maps that did not occur: the SVD or a map has changed."""
+    """Known differences of existing peripherals that did not occur, because the SVD or a map has changed."""
     return [
         f"the known difference of {known.peripheral} {known.register or ''} {known.field or ''} does not occur; "
         f"remove it from {pathlib.Path(__file__).name}"

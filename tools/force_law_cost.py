@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Bounds the cycles that the force law of an image can take in one control period, and refuses what does not fit.
+"""Bounds the cycles of an image's force law per control period, and refuses a law that exceeds the limit.
 
     tools/force_law_cost.py build/board/inkwell.elf
 
-The bound is the dearest path through the law and all that it calls, in the image as it is linked. Each instruction costs
-what it may cost at worst by the conservative figures of docs/cycles.md, whatever stands beside it, so that the law never
-takes longer and mostly much less. A loop is refused: the compiler writes out those that run a constant number of times, up
-to 64, and of another one nobody can tell its end.
+The bound is the most expensive path through the law and all functions that it calls, in the linked image. Each
+instruction costs its worst case in the conservative figures of docs/cycles.md, independent of its neighbors. The law
+therefore never takes longer, and usually takes much less. Loops are refused, because their number of iterations is
+unknown. The compiler unrolls loops with a constant number of up to 64 iterations.
 """
 
 import argparse
@@ -19,8 +19,8 @@ import tomllib
 from call_graph import Function, read_functions, run
 from interrupt_rules import LEAVES, outer_loops, paths_of
 
-# Eight planes and a sphere, three of them touched with friction, leave more than 3500 of the 8400 cycles of a period. A
-# law may take 1500 of them, and 2000 are left for what the model does not know.
+# With eight planes, a sphere and three contacts with friction, more than 3500 of the 8400 cycles of a period remain. A
+# force law may use 1500 cycles; 2000 cycles are reserved for the inaccuracy of the model.
 BUDGET_CYCLES = 1500
 
 COSTS = pathlib.Path(__file__).parent.parent / "boards/virtual/timing/costs.toml"
@@ -28,7 +28,7 @@ STEP = "step_force_law"
 
 
 def read_costs() -> dict[str, int]:
-    """The conservative figures of the cycle model."""
+    """Reads the conservative figures of the cycle model."""
     return {name: row["conservative"] for name, row in tomllib.loads(COSTS.read_text()).items()}
 
 
@@ -58,8 +58,8 @@ def words_of(registers: str) -> int:
 
 
 def price(text: str, costs: dict[str, int]) -> int:
-    """Cycles of an instruction at worst. An access takes a fetch's place on the bus, so each of its words costs one more;
-    a jump begins with a fetch."""
+    """Worst-case cycles of an instruction. Each word of an access delays an instruction fetch by one cycle. A jump
+    starts with a fetch."""
     cycles = 0
     if PROGRAM_COUNTER.search(text):
         cycles += costs["refill_load"] + costs["sram_refill"] + 1
@@ -98,11 +98,11 @@ CONDITIONAL_LEAVE = re.compile(r"(?:pop|bx|ldm\w*?)(?:eq|ne|cs|cc|mi|pl|vs|vc|hi
 
 
 class Refused(Exception):
-    """The law has no bound; the message says why and what to do."""
+    """The law has no bound; the message states the reason and the remedy."""
 
 
 class Bound:
-    """Cycles of functions at worst, of each function once."""
+    """Worst-case cycles of functions, computed once per function."""
 
     def __init__(self, functions: dict[str, Function], elf: str):
         self.functions, self.elf = functions, elf
@@ -131,7 +131,7 @@ class Bound:
         calls = self.calls(function)
         dearest: dict[int, int] = {}
         for address, text in reversed(function.instructions):
-            # Without loops a path may still lead back, to code that was laid out before; that is visited first then.
+            # Even without loops a path may lead to code at a lower address, which is then visited first.
             self.visit(address, dict(function.instructions), paths, calls, callers, dearest)
         return dearest[addresses[0]]
 
@@ -148,7 +148,7 @@ class Bound:
             waiting.pop()
 
     def calls(self, function: Function) -> dict[int, str]:
-        """Functions that are called or jumped to, by the instruction's address."""
+        """Called functions, including jump targets, by the address of the instruction."""
         found = {}
         for address, text in function.instructions:
             target = re.search(r"\t[0-9a-f]+ <([^>+]+)>", text)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints <arm/defaults.hpp> from an arm description: its rows of the parameter table and its motor as constants.
+"""Prints <arm/defaults.hpp> from an arm description: its parameter values and its motor as constants.
 
 usage: generate_arm_defaults.py ARM.toml
 """

@@ -1,4 +1,4 @@
-"""Writes a Markdown page with every command and its options, from the --help of the programs.
+"""Writes a Markdown page with all commands and options, from the --help output of the programs.
 
     tools/generate_command_page.py VERSION FILE PROGRAM...
 """
@@ -12,7 +12,7 @@ from help_text import Command
 
 
 def cell(text: str) -> str:
-    """Text of one line for a table."""
+    """Formats a text as a single-line table cell."""
     return " ".join(text.split()).replace("|", "\\|")
 
 
@@ -21,7 +21,7 @@ def code(text: str) -> str:
 
 
 def rows(command: Command) -> list[str]:
-    """The positionals and options of a command as one table."""
+    """Formats the positionals and options of a command as one table."""
     table = []
     for heading, block in command.blocks.items():
         if heading != "Subcommands":

@@ -1,8 +1,8 @@
-"""Writes what a shell completes of a program's commands, options, their choices and files, from its --help.
+"""Writes a shell completion script from the --help output of a program: commands, options, choices and files.
 
     tools/generate_completion.py bash|zsh|fish PROGRAM FILE
 
-Names of parameters and signals are those of the program's own tables.
+The program's tables provide the names of parameters and signals.
 """
 
 import pathlib
@@ -22,7 +22,7 @@ def output_of(program: str, *arguments: str) -> str:
 
 
 class Words:
-    """What may stand for an option's value or a positional."""
+    """Possible values of options and positionals."""
 
     def __init__(self, program: str, root: Command):
         self.parameters: list[str] = []
@@ -47,7 +47,7 @@ class Words:
 
 
 def tables(program: str, root: Command):
-    """For each command, by its words: what may follow it, its options, and the words that follow one of them."""
+    """For each command: its words, the possible next words, its options, and the possible values of each option."""
     words = Words(program, root)
     for command in root.all():
         own = command.options() if command is root else [*command.options(), *shared(root)]
@@ -56,18 +56,19 @@ def tables(program: str, root: Command):
         for row in command.positionals():
             follow += words.for_positional(row)
         if command.words[1:] == ["run"]:
-            follow.append(FILES)  # the program that is run
+            follow.append(FILES)  # the program to be run
         yield command, follow, options, {name: words.for_value(row) for name, row in options.items() if row.takes_value()}
 
 
 def shared(root: Command) -> list[Row]:
-    """The options that may stand behind any command: the device's."""
+    """The options of the device, which every command accepts."""
     return [row for heading, rows in root.blocks.items() if not heading.startswith("Window") for row in rows
             if row.names[0].startswith("--") and row.names != ["--version"]]
 
 
 def cases(program: str, root: Command) -> str:
-    """The body of a `case` of sh on "COMMAND|OPTION" that sets `choices`, `options`, and `files` if files may stand there."""
+    """The body of an sh `case` on "COMMAND|OPTION". It sets `choices` and `options`, and `files` if files are
+    possible."""
     lines = []
     for command, follow, options, values in tables(program, root):
         place = " ".join(command.words[1:])
@@ -132,7 +133,7 @@ def zsh(program: str, root: Command) -> str:
 
 
 def fish(program: str, root: Command) -> str:
-    """A condition for each command, of the words before the cursor, and a line for each that may follow."""
+    """Returns one condition per command, from the preceding words, and one line per possible next word."""
     name = root.words[0]
     out = [f"# fish completion of {name}. Made of what it says to --help.", f"complete -c {name} -f"]
     for command, follow, options, values in tables(program, root):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Prints a C++ header with what the protocol's headers say of their structures, enumerations and constants, doc comments
-included, for `inkwell reference`. Places and sizes are the compiler's.
+"""Prints a C++ header with the structures, enumerations and constants of the protocol headers and their doc comments,
+for `inkwell reference`. The compiler provides offsets and sizes.
 
 usage: generate_layouts.py HEADER...
 """
@@ -24,7 +24,7 @@ def text(words: str | None) -> str:
 
 
 def doc_before(lines: list[str], index: int) -> str:
-    """What stands in /// lines just above."""
+    """Returns the text of the /// lines directly above."""
     first = index
     while lines[first - 1].startswith("/// "):
         first -= 1
@@ -32,14 +32,14 @@ def doc_before(lines: list[str], index: int) -> str:
 
 
 def body_from(lines: list[str], index: int) -> list[str]:
-    """The lines of what line `index` opens, until its closing brace at the margin."""
+    """Returns the lines after line `index` up to the closing brace in the first column."""
     end = lines.index("};", index)
     return [line.strip() for line in lines[index + 1:end]]
 
 
 def fields(struct: str, body: list[str]) -> list[str]:
     rows, doc = [], []
-    before, bits_before = None, 0  # a field of bits has no address: it lies behind the last one that has
+    before, bits_before = None, 0  # offsetof does not accept a bit field: it follows the last normal field
     for line in body:
         if line.startswith("/// "):
             doc.append(line[4:])
@@ -76,21 +76,21 @@ def enumerators(name: str, body: list[str]) -> list[str]:
 
 
 def read(header: pathlib.Path, structs: list[str], enums: list[str], constants: list[str]) -> list[str]:
-    """Adds the header's rows to the three lists, and gives the arrays that they point to."""
+    """Appends the header's rows to the three lists, and returns the arrays that the rows refer to."""
     arrays = []
     lines = header.read_text().splitlines()
     for i, line in enumerate(lines):
         if struct := re.fullmatch(r"struct (\w+) \{", line):
             name, body = struct[1], body_from(lines, i)
             if any(re.match(r"(const )?std::(?!u?int\d+_t)", each) for each in body):
-                continue  # with a text or an array of C++: it does not go over the wire
+                continue  # contains a C++ text or array and is not transmitted
             arrays += [f"inline constexpr Field fields_of_{name}[] = {{", *fields(name, body), "};"]
             structs.append(f"{{{text(name)}, sizeof({name}), {text(doc_before(lines, i))}, fields_of_{name}}},")
         elif enum := re.match(r"enum class (\w+) : std::uint\d+_t \{(.*)", line):
             name, rest = enum[1], enum[2]
             body = [each.strip() for each in rest.removesuffix("};").split(",")] if rest else body_from(lines, i)
             if "#undef X" in body:
-                continue  # made of a table, which is printed as such
+                continue  # generated from a table, which is printed separately
             arrays += [f"inline constexpr Enumerator enumerators_of_{name}[] = {{", *enumerators(name, body), "};"]
             enums.append(f"{{{text(name)}, sizeof({name}), {text(doc_before(lines, i))}, enumerators_of_{name}}},")
         elif constant := CONSTANT.fullmatch(line):

@@ -1,8 +1,8 @@
-"""Writes manual pages of what programs say to --help: one for each program and each command of it, compressed.
+"""Writes compressed manual pages from the --help output of programs: one page per program and per command.
 
     tools/generate_manual.py VERSION FOLDER PROGRAM...
 
-inkwell.1.gz is the page of `inkwell`, inkwell-record.1.gz that of `inkwell record`, with the commands below it.
+inkwell.1.gz is the page of `inkwell`. inkwell-record.1.gz is the page of `inkwell record` and its subcommands.
 """
 
 import gzip
@@ -15,25 +15,25 @@ from help_text import Command, Row
 
 
 def roff(text: str) -> str:
-    """Text as it stands: no character of it means anything to the formatter."""
+    """Escapes all characters that are special in roff."""
     escaped = text.replace("\\", "\\e").replace("-", "\\-").replace("'", "\\(aq").replace("`", "\\(ga")
     return re.sub(r"^\.", r"\\&.", escaped, flags=re.MULTILINE)
 
 
 def quoted_as_bold(text: str) -> str:
-    """`inkwell info` in bold, the rest as it stands."""
+    """Formats `inkwell info` in bold and escapes the rest."""
     parts = text.split("`")
     return "".join(f"\\fB{roff(part)}\\fR" if index % 2 else roff(part) for index, part in enumerate(parts))
 
 
 def summary(command: Command) -> str:
-    """The first thing that the description says, to the end of its clause."""
+    """Returns the first clause of the description."""
     first = re.split(r"[.:;](?:\s|$)", command.description.split("\n\n")[0].replace("\n", " "))[0]
     return first[0].lower() + first[1:] if first[1:2].islower() else first
 
 
 def paragraphs(text: str) -> str:
-    """Lines that are indented keep their form, others flow."""
+    """Indented lines are not filled, all other lines are."""
     out = []
     for paragraph in text.split("\n\n"):
         for lines in re.findall(r"(?:^ .*\n?)+|(?:^\S.*\n?)+", paragraph, re.MULTILINE):
@@ -59,7 +59,7 @@ def blocks(command: Command, heading: str) -> list[str]:
 
 
 def below(command: Command) -> list[str]:
-    """A command of a command: a section of that one's page."""
+    """Formats a subcommand as a section of the page of its command."""
     out = [f".SS {roff(' '.join(command.words))}", f".B {roff(command.usage)}", ".PP", paragraphs(command.description)]
     for rows in command.blocks.values():
         out += [row_text(row) for row in rows if "--help" not in row.names]
@@ -105,7 +105,7 @@ def main() -> int:
         old.unlink()
     for program in programs:
         for command in [program, *program.commands]:
-            # No time in it, so that the same help gives the same file.
+            # No time stamp, so that equal help texts give equal files.
             content = gzip.compress(page(command, version).encode(), 9, mtime=0)
             (folder / f"{'-'.join(command.words)}.1.gz").write_bytes(content)
     return 0

@@ -1,7 +1,7 @@
-"""What a program's --help says, as commands, options and positionals: manual pages and shell completion are made of it.
+"""Parses the --help output of a program into commands, options and positionals, for manual pages and shell completion.
 
-The form is that of CLI11: a description, "Usage: ...", then blocks of a heading and rows that are indented by two, each
-with a name and, from a column on, what it is; behind the last of them comes what the program adds.
+The format is that of CLI11: a description, "Usage: ...", then blocks with a heading and rows. Each row is indented by
+two and contains a name and, from a fixed column on, a description. Further text of the program follows the last block.
 """
 
 import dataclasses
@@ -10,7 +10,7 @@ import subprocess
 
 
 class Unreadable(Exception):
-    """A help that is not of this form; the message says which."""
+    """The help text has another format; the message states the problem."""
 
 
 @dataclasses.dataclass
@@ -18,7 +18,7 @@ class Row:
     """An option, a positional or a subcommand."""
 
     names: list[str]
-    value: str  # what follows the names: a type such as FILE, choices as {a,b}, a default in brackets
+    value: str  # text after the names: a type such as FILE, choices such as {a,b}, a default in brackets
     text: str
 
     def choices(self) -> list[str]:
@@ -34,10 +34,10 @@ class Row:
 
 @dataclasses.dataclass
 class Command:
-    words: list[str]  # the program's name, then those of the commands
+    words: list[str]  # name of the program, then of the subcommands
     description: str
     usage: str
-    blocks: dict[str, list[Row]]  # by heading, in the help's order
+    blocks: dict[str, list[Row]]  # rows per heading, in the order of the help text
     footer: str
     commands: list["Command"] = dataclasses.field(default_factory=list)
 
@@ -70,7 +70,7 @@ def parse(words: list[str], text: str) -> Command:
     usage, _, rest = rest.partition("\n")
     blocks: dict[str, list[Row]] = {}
     footer: list[str] = []
-    # A heading stands alone on its line and ends in a colon; below it come rows.
+    # A heading is a separate line that ends with a colon; its rows follow.
     paragraphs = [lines for lines in re.split(r"\n{2,}", rest.strip("\n")) if lines]
     for index, paragraph in enumerate(paragraphs):
         heading, *lines = paragraph.split("\n")
@@ -84,7 +84,7 @@ def parse(words: list[str], text: str) -> Command:
 
 
 def read(program: str, words: list[str]) -> Command:
-    """The help of `program`, called by the first of the words, with that of all its commands."""
+    """Reads the help of `program`, whose name is the first of the words, and of all its commands."""
     result = subprocess.run([program, *words[1:], "--help"], capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise Unreadable(f"{program} {' '.join([*words[1:], '--help'])} ended with {result.returncode}: {result.stderr}")

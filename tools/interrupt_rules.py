@@ -1,10 +1,10 @@
-"""What holds for code that runs in an interrupt, checked in the linked image.
+"""Rules for code that runs in interrupts, checked in the linked image.
 
-Everything that a handler can reach lies in the section .interrupt_text, and nothing else does, so that the image itself
-tells what runs in interrupts. Nothing of it waits, divides, calls through a pointer, or reads the flash: the section is
-copied to RAM, so that an erase of the flash, for which every access to it waits, holds no interrupt up. The user's force
-law alone may divide, since tools/force_law_cost.py counts what that costs. PendSV's handler, which every interrupt
-interrupts, counts as a part of the main loop. No handler returns with a store under way (erratum 838869 of the core).
+The section .interrupt_text contains exactly the functions that a handler can reach. Its code does not wait, divide,
+call through a pointer, or read the flash. The section is copied to RAM, because an erase blocks every access to the
+flash and would delay interrupts. Only the user's force law may divide, because tools/force_law_cost.py limits its
+cycles. PendSV's handler has the lowest priority and counts as part of the main loop. No handler returns with a pending
+store (core erratum 838869).
 """
 
 import re
@@ -13,16 +13,16 @@ from call_graph import INDIRECT, Function, Image
 
 FLASH = range(0x08000000, 0x08100000)
 
-# What the compiler calls behind one's back, by whole symbol names.
+# Library functions that the compiler calls implicitly, as whole symbol names.
 LIBRARY = {
     r"__aeabi_u?ldivmod|__u?(div|mod|divmod)di[34]": "a 64-bit division",
     r"__aeabi_u?idiv(mod)?|__aeabi_(ul|l)2f|__aeabi_f2u?lz": "arithmetic in software",
 }
 
-# ---- what counts -----------------------------------------------------------------------------------------------
+# ---- counters --------------------------------------------------------------------------------------------------
 
 CALL = re.compile(r"blx?\t")
-# A register that goes on by a step: r3 in "adds r3, #1", "sub.w r3, r3, r5", "lsls r3, r3, #1" or behind an access.
+# A register that changes by a step: r3 in "adds r3, #1", "sub.w r3, r3, r5", "lsls r3, r3, #1" or after an access.
 STEP = re.compile(r"(?:add|sub|lsl|lsr|asr)[sw]?(?:\.[nw])?\t(\w+), (?:\1, )?(?:#\d+|r\d+)$")
 STEP_OF_ACCESS = re.compile(r"\w+(?:\.\w+)?\t.*\[(\w+)(?:\], #-?\d+|, #-?\d+\]!)$|v?(?:ld|st)m\w+(?:\.w)?\t(\w+)!")
 READS_ONLY = re.compile(r"(?:v?st|cm[pn]|tst|teq|v?push|vcmp|it|nop|b|cb|dmb|dsb|isb|pld|vmsr|msr)")
@@ -39,7 +39,7 @@ def steps_of(text: str) -> set[str]:
 
 
 def written_otherwise(text: str) -> set[str]:
-    """Registers that an instruction gives a value other than their last one and a step."""
+    """Registers that an instruction changes by anything other than a step."""
     if CALL.match(text):
         return CALL_SPOILS
     if loaded := LIST.match(text):
@@ -51,8 +51,8 @@ def written_otherwise(text: str) -> set[str]:
 
 
 def counts(loop: list[str], own: list[str]) -> bool:
-    """Whether something goes on by itself in a loop: a register in `own`, which is the loop without those inside it, or
-    a word in memory, which is loaded and stored."""
+    """True if a loop contains a counter: a register in `own` (the loop without inner loops) that changes only by steps,
+    or a word in memory that is loaded and stored."""
     steps = set().union(*map(steps_of, own)) - set().union(*map(written_otherwise, loop))
     places = {kind: {place[2] for place in map(PLACE.match, loop) if place and place[1] == kind} for kind in ("ldr", "str")}
     return bool(steps or places["ldr"] & places["str"])
@@ -66,7 +66,7 @@ CONDITION = "eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 LEAVES = re.compile(rf"bx(?:{CONDITION})?\t|(?:pop|ldm\w*(?:\.w)?\t\w+!,).*pc\}}|(?:ldr|mov)(?:\.w)?\tpc,|udf")
 MAY_LEAVE = re.compile(rf"(?:bx|pop|ldm\w*|ldr|mov)(?:{CONDITION})(?:\.w)?\t")
 
-Paths = dict[int, set[int]]  # from an instruction's address to those of the instructions that may follow it
+Paths = dict[int, set[int]]  # from the address of an instruction to the addresses of its possible successors
 
 
 def paths_of(function: Function) -> Paths:
@@ -95,7 +95,7 @@ def reached_from(start: int, paths: Paths) -> set[int]:
 
 
 def outer_loops(paths: Paths) -> list[set[int]]:
-    """Sets of instructions from each of which all others of the set are reached, and itself."""
+    """Strongly connected sets of instructions."""
     reached = {address: reached_from(address, paths) for address in paths}
     loops: list[set[int]] = []
     for address in paths:
@@ -105,8 +105,7 @@ def outer_loops(paths: Paths) -> list[set[int]]:
 
 
 def endless_loops(function: Function, paths: Paths) -> list[set[int]]:
-    """Loops, inner ones too, in which nothing counts: such a loop ends only when somebody else changes what it looks
-    at."""
+    """Loops without a counter, including inner loops. Only other code or hardware can end such a loop."""
     found = []
     texts = dict(function.instructions)
     for loop in outer_loops(paths):
@@ -121,18 +120,18 @@ def endless_loops(function: Function, paths: Paths) -> list[set[int]]:
 
 
 def waits(function: Function) -> list[str]:
-    """Places where the function waits: sleeps, or begins a loop in which nothing counts."""
+    """Addresses at which the function waits: sleep instructions, and starts of loops without a counter."""
     asleep = [address for address, text in function.instructions if text.startswith(("wfi", "wfe"))]
     return [f"{address:x}" for address in asleep + [min(loop) for loop in endless_loops(function, paths_of(function))]]
 
 
-# ---- stores that are under way -----------------------------------------------------------------------------------
+# ---- pending stores ----------------------------------------------------------------------------------------------
 
-STORES = re.compile(r"v?st|v?push|blx?\t")  # or calls what may
+STORES = re.compile(r"v?st|v?push|blx?\t")  # including calls, which may store
 
 
 def returns_before_stores_end(function: Function) -> bool:
-    """Whether a way leads from a store to the function's end without DSB between them, or one into another function."""
+    """True if a path leads from a store to the function's end without a DSB, or into another function."""
     texts, paths = dict(function.instructions), paths_of(function)
     if any((jump := JUMP.match(text)) and int(jump[3], 16) not in texts for text in texts.values()):
         return True
@@ -156,7 +155,7 @@ def meaning_of(name: str) -> str:
 
 
 def leaves(image: Image, name: str, section: range) -> list[str]:
-    """Calls from a function of the section to one outside, and calls that could go anywhere."""
+    """Calls from a function of the section to a function outside, and calls with unknown targets."""
     function = image.functions[name]
     problems = [
         f"{name} runs in an interrupt and calls {target}{meaning_of(target)} which lies outside .interrupt_text: "
@@ -172,12 +171,12 @@ def leaves(image: Image, name: str, section: range) -> list[str]:
     return problems
 
 
-# MOVT gives a register the upper half of an address.
+# MOVT sets the upper half word of a register.
 UPPER_HALF = re.compile(r"movt\t\w+, #(\d+)")
 
 
 def reads_flash(function: Function) -> bool:
-    """Whether a function holds an address in the flash: as a word, or as the two halves of one."""
+    """True if a function contains a flash address, as a word or as two half words."""
     upper_halves = [int(upper[1]) for _, text in function.instructions if (upper := UPPER_HALF.match(text))]
     return any(address in FLASH for address in (*function.words, *(half << 16 for half in upper_halves)))
 

@@ -1,9 +1,9 @@
-"""Mutants of C++ sources: copies with one thing less or one thing else.
+"""Mutants of C++ sources: copies with one piece of code removed or changed.
 
-Register mutants take away a write to a register, or one field or one flag of it. Sampled mutants take away a statement,
-or turn a condition round, anywhere else. Watch mutants take away that one thing is watched. Safety mutants take away,
-one after the other, every statement, turn every condition round, and leave out every further operand of an "and" and an
-"or", and every way between two states.
+Register mutants remove a register write, or one field or flag of it. Sampled mutants remove a statement or invert a
+condition in any other code. Watch mutants remove one monitored fault. Safety mutants systematically remove every
+statement, invert every condition, remove every operand of an "and" or "or" except the first, and change every state
+transition.
 """
 
 import random
@@ -11,13 +11,13 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-# "RCC::CR::modify(", "Timer::CCR::write(", "Line::enable(", "connect<Bridges, ...>(": what reaches a register.
+# Calls that write registers: "RCC::CR::modify(", "Timer::CCR::write(", "Line::enable(", "connect<Bridges, ...>(".
 REGISTER_WRITE = re.compile(
     r"(?<![\w:.>])(?:\w+::)+(?:write|modify|enable|set_high|set_low|start)\("
     r"|(?<![\w:.>])(?:connect|connect_analog|start_clocks_of|start_clock_of_stream|set_up\w*)(?:<[^;(]*>)?\(")
-# A field's value among the arguments, and no number of an endpoint or a channel: "CR::PLLON(1)".
+# A field value among the arguments, such as "CR::PLLON(1)", but not the number of an endpoint or channel.
 FIELD = re.compile(r"(?:typename )?(?:\w+::)+\w+\(")
-# A store of the handlers that are written in assembly.
+# A store instruction in an assembly handler.
 ASSEMBLY_STORE = re.compile(r'^\s*"(?:str|cpsid|dsb)\b[^"]*"', re.MULTILINE)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\s*)?(?:noexcept\s*)?[{:]|\)\s*(?:const\s*)?override")
 NOTHING = "static_cast<void>(0)"
@@ -25,10 +25,10 @@ NOTHING = "static_cast<void>(0)"
 
 @dataclass(frozen=True)
 class Mutant:
-    path: str  # from the top of the tree
-    line: int  # of the change, from 1
-    what: str  # was taken away or turned round; with the path it names the mutant, whatever lines move
-    begin: int  # characters of the file that are replaced
+    path: str  # relative to the top of the source tree
+    line: int  # line of the change, counted from 1
+    what: str  # removed or inverted code; with the path it identifies the mutant independently of line numbers
+    begin: int  # replaced characters of the file
     end: int
     text: str
 
@@ -37,7 +37,7 @@ class Mutant:
 
 
 def matching(source: str, opening: int) -> int:
-    """Place behind the bracket that closes the one at `opening`."""
+    """Returns the position after the bracket that closes the bracket at `opening`."""
     depth = 0
     for i in range(opening, len(source)):
         depth += source[i] in "([{"
@@ -48,7 +48,7 @@ def matching(source: str, opening: int) -> int:
 
 
 def split(source: str, begin: int, end: int, separator: str) -> list[tuple[int, int]]:
-    """Parts between separators that stand outside of brackets, without white space around them."""
+    """Returns the parts between separators outside brackets, without surrounding white space."""
     parts, depth, start = [], 0, begin
     for i in range(begin, end):
         depth += source[i] in "([{"
@@ -69,7 +69,7 @@ def in_one_line(text: str) -> str:
 
 
 def register_mutants(path: str, source: str) -> list[Mutant]:
-    """Of one file, in the order of its lines."""
+    """Register mutants of one file, in the order of its lines."""
     mutants = []
 
     def add(what: str, begin: int, end: int, text: str) -> None:
@@ -128,7 +128,7 @@ WATCH = re.compile(r"^ +\{Fault::(?P<fault>\w+), (?P<states>[^{},]+), \w+, \w+(?
 
 
 def watch_mutants(path: str, source: str) -> list[Mutant]:
-    """Of the table of what is watched: each row, in no state any more."""
+    """Mutants of the table of monitored faults: each row is active in no state."""
     return [Mutant(path, source.count("\n", 0, found.start("fault")) + 1, NOT_WATCHED + found["fault"],
                    found.start("states"), found.end("states"), "States{}")
             for found in WATCH.finditer(source)]
@@ -139,7 +139,7 @@ WAY = re.compile(r"^ +\{State::(?P<from>\w+), State::(?P<to>\w+), (?P<needs>0|ev
 
 
 def way_mutants(path: str, source: str) -> list[Mutant]:
-    """Of the table of the ways between states: each way is never open, or open whatever speaks against it."""
+    """Mutants of the state transition table: each transition is removed, or its blocking events are ignored."""
     mutants = []
     for found in WAY.finditer(source):
         line = source.count("\n", 0, found.start("from")) + 1
@@ -155,7 +155,7 @@ OPERATOR = re.compile(r" (?:&&|\|\|) ")
 
 
 def operand_mutants(path: str, source: str) -> list[Mutant]:
-    """Without one operand of an "and" or an "or"; the first of each stays."""
+    """Mutants without one operand of an "and" or "or"; the first operand always remains."""
     mutants = []
     for found in OPERATOR.finditer(source):
         line_begin = source.rfind("\n", 0, found.start()) + 1

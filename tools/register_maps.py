@@ -1,4 +1,4 @@
-"""What the check of the chip's registers reads: the firmware's map, the emulator's and an SVD file."""
+"""Inputs of the register check: the firmware's map, the emulator's map and an SVD file."""
 
 import dataclasses
 import json
@@ -8,7 +8,7 @@ import xml.etree.ElementTree
 
 
 class Unreadable(Exception):
-    """The input is not what it should be; the message says where and why."""
+    """The input has an unexpected format; the message states the location and the reason."""
 
 
 @dataclasses.dataclass
@@ -32,7 +32,7 @@ class Peripheral:
     registers: list[Register]
 
     def form(self) -> list:
-        """What it has in common with other peripherals of its kind."""
+        """The common description of all peripherals of this kind."""
         return [(register.name, register.address - self.base, register.fields) for register in self.registers]
 
 
@@ -41,7 +41,7 @@ def number(text: str) -> int:
 
 
 class DebugInformation:
-    """The firmware's map as the compiler has understood it."""
+    """The firmware's register map from the compiler's debug information."""
 
     def __init__(self, path: pathlib.Path):
         try:
@@ -65,7 +65,7 @@ class DebugInformation:
         return [child for child in entry.iter_children() if child.tag == f"DW_TAG_{tag}"]
 
     def type_of(self, entry):
-        """The type itself, behind all its other names."""
+        """Resolves all aliases of a type."""
         target = entry.get_DIE_from_attribute("DW_AT_type")
         return self.type_of(target) if target.tag == "DW_TAG_typedef" else target
 
@@ -80,7 +80,7 @@ class DebugInformation:
                     yield from (n for n in self.children(outer, "namespace") if self.name(n) == "registers")
 
     def peripherals(self) -> list[Peripheral]:
-        """The aliases in inkwell::registers::Peripherals; GCC writes none down that is outside of a class."""
+        """Returns the aliases in inkwell::registers::Peripherals. GCC records no unused alias outside a class."""
         structures = [s for namespace in self.namespaces() for s in self.children(namespace, "structure_type")]
         listing = [structure for structure in structures if self.name(structure) == "Peripherals"]
         aliases = [alias for structure in listing for alias in self.children(structure, "typedef")]
@@ -105,8 +105,8 @@ class DebugInformation:
         fields = [self.field(alias, name) for alias in self.children(entry, "typedef")]
         if len(bases) == 1 and self.name(bases[0]).startswith("RegisterArray<"):
             address, stride, count = (value & 0xFFFFFFFF for value in self.template_values(bases[0]))
-            # CCR[0] is CCR1 in the timers; elsewhere, as ISER[0] is ISER0, the count begins with 0. An array of bytes
-            # is four to a register of the SVD, which has only the whole one.
+            # CCR[0] is CCR1 in the timers. Other arrays start at 0, such as ISER[0] for ISER0. Four elements of a byte
+            # array are one register of the SVD.
             first = 1 if name == "CCR" else 0
             step = max(1, 4 // stride)
             return [
@@ -119,7 +119,7 @@ class DebugInformation:
         raise Unreadable(f"{name} in the peripheral at 0x{base:08X} is neither a Register nor a RegisterArray")
 
     def field(self, alias, register: str) -> Field:
-        # No field is an object here, so the compiler says no more of its type than the full name.
+        # No object has a field type, so the debug information contains only its full name.
         form = re.fullmatch(r"Field<.*::(\w+), (\d+)U?, (\d+)U?>", self.name(self.type_of(alias)))
         if not form:
             raise Unreadable(f"{register}.{self.name(alias)} is not a Field")
@@ -129,7 +129,7 @@ class DebugInformation:
 
 
 def read_chip(path: pathlib.Path) -> list[Peripheral]:
-    """What print-chip-registers has printed."""
+    """Reads the output of print-chip-registers."""
     try:
         peripherals = json.loads(path.read_text())
         return [
@@ -160,7 +160,7 @@ class SvdRegister:
 
 
 def read_svd_field(element) -> tuple[int, int]:
-    """Position and width, in any of the three notations of the CMSIS-SVD format."""
+    """Position and width of a field, in any of the three notations of the CMSIS-SVD format."""
     if (offset := element.findtext("bitOffset")) is not None:
         return number(offset), number(element.findtext("bitWidth", "1"))
     if (low := element.findtext("lsb")) is not None:
@@ -171,7 +171,7 @@ def read_svd_field(element) -> tuple[int, int]:
 
 
 def read_svd(path: pathlib.Path) -> dict[str, tuple[int, list[SvdRegister]]]:
-    """Name of each peripheral -> its base and its registers."""
+    """Maps the name of each peripheral to its base address and registers."""
     try:
         root = xml.etree.ElementTree.parse(path).getroot()
     except (OSError, xml.etree.ElementTree.ParseError) as error:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Puts the checksum of the firmware's image behind it, where the firmware looks for it.
+"""Appends the checksum of the firmware image at the location where the firmware reads it.
 
     tools/seal_image.py build/board/inkwell.elf
 
-The checksum is the CRC-32 that the STM32F405 counts (RM0090, chapter CRC), of all words of the image up to the section
-.image_check. One gap is left between the sections, that of the parameter store, which is no part of the image; there must
-be no other, because each programmer fills it in its own way.
+The checksum is the CRC-32 of the STM32F405 (RM0090, chapter CRC) over all words of the image before the section
+.image_check. The only gap between the sections is the parameter store, which is not part of the image. Further gaps are
+not allowed, because their content depends on the programmer.
 """
 
 import argparse
@@ -29,7 +29,7 @@ def table_of_bytes() -> list[int]:
 
 
 def checksum(image: bytes) -> int:
-    """Of whole little-endian words, each from its highest bit on."""
+    """CRC-32 of whole little-endian words, from the most significant bit on."""
     if len(image) % 4 != 0:
         raise ValueError("the image does not end at a word's end")
     table = table_of_bytes()
@@ -45,7 +45,7 @@ def objcopy(*arguments: str) -> None:
 
 
 def flash_of(elf: str, folder: Path) -> bytes:
-    """The image without the store: the sections in the order of where they lie in the flash."""
+    """The image without the parameter store: the sections in the order of their flash addresses."""
     headers = subprocess.run(["arm-none-eabi-objdump", "-h", elf], check=True, capture_output=True, text=True).stdout
     rows = re.findall(r"^ *\d+ (\S+) +([0-9a-f]{8}) +[0-9a-f]{8} +([0-9a-f]{8}) .*\n +CONTENTS, ALLOC, LOAD", headers,
                       re.MULTILINE)

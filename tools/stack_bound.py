@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Bounds the stack of the firmware and compares it with the room that the linker script gives.
+"""Bounds the stack of the firmware and compares it with the stack size of the linker script.
 
     tools/stack_bound.py build/board/inkwell.elf
 
-The bound is the deepest path from the reset handler, plus every interrupt on top of it, one in another, plus the frame
-of a fault on top of that (whose handler then uses a place of its own). It holds as long as nothing recurses, which is
-checked for direct calls; without recursion every real chain of calls is a path that visits a function once, and the
-deepest such path is looked for. A virtual call may go to any function in that slot of any class.
+The bound is the deepest path from the reset handler, plus all nested interrupts, plus the frame of a fault. The fault
+handler then uses a separate stack. The bound requires that no function recurses; direct calls are checked for
+recursion. Without recursion every call chain visits each function at most once, so the deepest such path is searched. A
+virtual call may reach any function in this slot of any class.
 """
 
 import argparse
@@ -15,15 +15,16 @@ import sys
 
 from call_graph import Image, Unreadable, read_image
 
-# Pushed by the processor on entry to an exception: 26 words with the floating-point registers, and one to align.
+# Stacked by the processor on exception entry: 26 words including the floating-point registers, and one for alignment.
 EXCEPTION_FRAME_BYTES = 27 * 4
 
-# Set the stack pointer on purpose: the interrupted stack may be what is broken, and the boot loader has its own.
+# These functions set the stack pointer on purpose: the interrupted stack may be invalid, or the boot loader has a
+# separate one.
 MAY_SET_STACK = {"fault_handler", "enter_boot_loader"}
 
 
 def find_direct_cycle(image: Image, start: str) -> list[str]:
-    """A chain of direct calls that returns to its beginning, or nothing."""
+    """Returns a chain of direct calls that returns to its start, or an empty list."""
     done, path = set(), []
 
     def visit(name: str) -> list[str]:
@@ -47,7 +48,7 @@ def find_direct_cycle(image: Image, start: str) -> list[str]:
 
 def deepest_path(image: Image, start: str) -> tuple[int, list[str]]:
     """Bytes and functions of the deepest path from `start` that visits each function once."""
-    loops = {}  # function -> whether a path from it can come back to a function in a loop of indirect calls
+    loops = {}  # function -> whether a path from it can return to a function in a loop of indirect calls
 
     def can_loop(name: str) -> bool:
         if name not in loops:
@@ -70,7 +71,7 @@ def deepest_path(image: Image, start: str) -> tuple[int, list[str]]:
         on_path.pop()
         result = (image.functions[name].stack_bytes + deepest[0], [name, *deepest[1]])
         if not can_loop(name):
-            known[name] = result  # does not depend on how it was reached
+            known[name] = result  # independent of the path to the function
         return result
 
     return visit(start)
@@ -93,7 +94,7 @@ def main() -> int:
         return 2
 
     problems = []
-    bound = EXCEPTION_FRAME_BYTES  # of a fault
+    bound = EXCEPTION_FRAME_BYTES  # frame of a fault
     print("stack, in bytes:")
     for start in ("reset_handler", *image.interrupts):
         if cycle := find_direct_cycle(image, start):

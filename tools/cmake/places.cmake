@@ -1,5 +1,5 @@
-# Where an installation has what programs look for at run time, relative to its prefix. host/installation finds it there,
-# packaging/ puts it there.
+# Locations of the files that programs need at run time, relative to the installation prefix. host/installation searches
+# these locations, and packaging/ installs the files there.
 include(GNUInstallDirs)
 foreach(kind BIN LIB DATA)
   if(IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
@@ -9,12 +9,12 @@ foreach(kind BIN LIB DATA)
 endforeach()
 set(INKWELL_PROGRAMS_PLACE ${CMAKE_INSTALL_BINDIR})
 set(INKWELL_ARMS_PLACE ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
-# Programs and images depend on a processor, and Debian has such files in lib/.
+# Programs and images depend on the processor architecture; Debian places such files in lib/.
 set(INKWELL_FIRMWARE_PLACE lib/inkwell/firmware)
 set(INKWELL_DROPINS_PLACE lib/inkwell/dropins)
 
-# The build's folder has links in the same places, so that programs of a build find its parts as installed ones do. What
-# a link leads to may be built later.
+# Creates links at the same locations in the build directory, so that built programs find their files like installed
+# programs. The target of a link may be built later.
 function(inkwell_link_places)
   foreach(link ${INKWELL_PROGRAMS_PLACE}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
                ${INKWELL_ARMS_PLACE}=${PROJECT_SOURCE_DIR}/boards/arms

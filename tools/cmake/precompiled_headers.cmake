@@ -1,9 +1,10 @@
-# Headers of others that take longer to parse than our own code to compile, parsed once for many targets. (With ccache,
-# set its sloppiness to "pch_defines,time_macros".)
-# CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether every file includes what it uses; the clang preset has it.
+# Third-party headers with a long parsing time, precompiled once for many targets. With ccache, set its sloppiness to
+# "pch_defines,time_macros". CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether each file includes the headers that it
+# uses; the clang preset sets it.
 
-# Lets every compiled target of a directory and of those below it use the precompiled headers of `name`, if it links to
-# `library` and has none yet: without fmt's definitions the compiler refuses headers that have fmt's.
+# Applies the precompiled headers of `name` to all compiled targets of a directory and its subdirectories. A target must
+# link to `library` and have no precompiled headers yet. Without fmt's definitions the compiler refuses headers that
+# were precompiled with fmt.
 function(inkwell_use_precompiled_headers name directory library)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
@@ -30,10 +31,11 @@ set(headers <algorithm> <chrono> <filesystem> <functional> <map> <memory> <mutex
             <fmt/format.h> <nlohmann/json.hpp>)
 inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
-# CLI11's leave code in every file that includes them, so only the commands get those.
+# CLI11 generates code in every file that includes its headers, so only the commands use them.
 inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
-# They are also what takes longest to optimise, in code that waits for people; both sides have to agree on it.
+# The optimization of these headers takes longest, and their code is not time-critical. All targets that share them must
+# use the same option.
 foreach(target inkwell_command_headers inkwell_command_line inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()

@@ -1,10 +1,11 @@
-# PkgConfig::hdf5, the serial HDF5. A parallel one would load MPI into every program that reads a recording, also into
-# those that only link to libinkwell. Where both are installed, the serial one has a name of its own for pkg-config.
+# PkgConfig::hdf5, the serial HDF5 library. The parallel library would load MPI into every program that reads a
+# recording, and into all programs that link to libinkwell. Where both are installed, the serial library has a separate
+# pkg-config name.
 find_package(PkgConfig REQUIRED)
-# From 1.10.7 on, HDF5's own lock on a file can be left off.
+# File locking can be disabled since HDF5 1.10.7.
 pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial>=1.10.7 hdf5>=1.10.7)
 pkg_get_variable(hdf5_includedir ${hdf5_MODULE_NAME} includedir)
-# A distribution for two word sizes has a file for each, such as H5pubconf-64.h.
+# A distribution for two word sizes has one file per word size, such as H5pubconf-64.h.
 set(hdf5_configuration ${hdf5_INCLUDE_DIRS} ${hdf5_includedir})
 list(TRANSFORM hdf5_configuration APPEND "/H5pubconf*.h")
 file(GLOB hdf5_configuration ${hdf5_configuration})

@@ -1,6 +1,5 @@
-# Writes every target of the tree into target-graph.txt in the build directory: one a line, with its folder and the
-# libraries that it links to, as the CMakeLists say it. The test of docs/architecture.md and tools/draw-architecture
-# read it.
+# Writes all targets with their folders and libraries to target-graph.txt in the build directory, one target per line.
+# The test of docs/architecture.md and tools/draw-architecture read this file. Format:
 #
 #     name|folder|library;library;...|folder of public headers;...
 function(inkwell_target_lines directory result)
@@ -20,7 +19,7 @@ function(inkwell_target_lines directory result)
       endif()
     endforeach()
     string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>" "\\1" INTERFACE_INCLUDE_DIRECTORIES "${INTERFACE_INCLUDE_DIRECTORIES}")
-    # A library's own private ones stand in its interface once more, for the linker only.
+    # The interface repeats the private libraries of a static library, only for the linker.
     list(APPEND LINK_LIBRARIES ${INTERFACE_LINK_LIBRARIES})
     list(FILTER LINK_LIBRARIES EXCLUDE REGEX "LINK_ONLY")
     list(REMOVE_DUPLICATES LINK_LIBRARIES)
