@@ -1,5 +1,5 @@
-// Every report of the HID interface with its size. The device makes its report descriptor from this table and judges
-// GET_REPORT and SET_REPORT by it; the reference prints it.
+// Table of all HID reports and their sizes. The device generates its report descriptor from this table and checks
+// GET_REPORT and SET_REPORT against it. `inkwell reference` prints the table.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,13 @@
 
 namespace inkwell::protocol {
 
-/// As in the high byte of wValue (HID 1.11, section 7.2.1).
+/// Values of the high byte of wValue (HID 1.11, section 7.2.1).
 enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
 
 // clang-format off
-/// X(id, usage, kind, get, set, bytes, set_bytes, meaning): the structures that are read and written, or `none`; the
-/// declared size, which both fit into; and the smallest used size of one that is written, or 0.
+/// X(id, usage, kind, get, set, bytes, set_bytes, meaning). `get` and `set` are the structures that are read and
+/// written, or `none`. `bytes` is the declared size, which fits both structures. `set_bytes` is the smallest used size
+/// of a written report, or 0.
 #define INKWELL_REPORTS(X)                                                                                             \
   X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The pose. It also comes over the interrupt endpoint, each millisecond.") \
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command, which is a sign of life.") \
@@ -41,20 +42,20 @@ enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
   X(request_results, 17, feature, RequestResultsReport, none, sizeof(RequestResultsReport), 0, "The results of the newest commands and shapes.")
 // clang-format on
 
+namespace detail {
+constexpr bool names_structure(std::string_view name) { return name != "none"; }
+}  // namespace detail
+
 struct ReportInfo {
   ReportId id;
   std::uint8_t usage;  ///< in the report descriptor
   ReportKind kind;
   bool can_be_read;
-  std::size_t bytes;              ///< declared in the report descriptor, with the id
+  std::size_t bytes;              ///< declared in the report descriptor, including the id
   std::size_t set_bytes_minimum;  ///< 0 for a report that cannot be written
 
   constexpr bool can_be_set() const { return set_bytes_minimum != 0; }
 };
-
-namespace detail {
-constexpr bool names_structure(std::string_view name) { return name != "none"; }
-}  // namespace detail
 
 inline constexpr auto report_table = std::to_array<ReportInfo>({
 #define X(id, usage, kind, get, set, bytes, set_bytes, ...) \
@@ -63,9 +64,9 @@ inline constexpr auto report_table = std::to_array<ReportInfo>({
 #undef X
 });
 
-/// For people: apart from the table, because the device needs none of it.
+/// Texts of a report. They are separate from report_table, because the device does not need them.
 struct ReportText {
-  std::string_view get, set;  ///< names of the structures; `none`
+  std::string_view get, set;  ///< names of the structures, or `none`
   std::string_view meaning;
 };
 
@@ -75,14 +76,14 @@ inline constexpr auto report_texts = std::to_array<ReportText>({
 #undef X
 });
 
-/// Null for a report that is not in the table.
+/// Returns null for a report that is not in the table.
 constexpr const ReportInfo* find_report(ReportKind kind, ReportId id) {
   for (const auto& row : report_table)
     if (row.kind == kind && row.id == id) return &row;
   return nullptr;
 }
 
-/// The longest report of a kind. hidapi on Windows pads every report to this length, whatever its own declared size.
+/// Returns the size of the longest report of a kind. hidapi on Windows pads every report to this size.
 constexpr std::size_t longest_report(ReportKind kind) {
   std::size_t longest = 0;
   for (const auto& row : report_table)
@@ -90,15 +91,18 @@ constexpr std::size_t longest_report(ReportKind kind) {
   return longest;
 }
 
-/// Whether the device accepts a written report of this length: its used part and anything after it.
+/// True if the device accepts a written report of this size. A report must contain its used part and may be padded.
 constexpr bool is_accepted_length(const ReportInfo& row, std::size_t bytes) {
   return row.can_be_set() && bytes >= row.set_bytes_minimum && bytes <= longest_report(row.kind);
 }
 
-#define X(label, number, sort, get, set, size, set_size, ...)                                                         \
-  static_assert((set_size) <= (size), #label ": its used part is longer than it declares");                           \
-  static_assert(((set_size) != 0) == detail::names_structure(#set), #label ": a report that is set has a used part"); \
-  static_assert(find_report(ReportKind::sort, ReportId::label)->usage == (number), #label ": in the table twice");
+#define X(label, number, sort, get, set, ...)                                                                      \
+  static_assert(find_report(ReportKind::sort, ReportId::label)->usage == (number), #label ": in the table twice"); \
+  static_assert(find_report(ReportKind::sort, ReportId::label)->set_bytes_minimum <=                               \
+                    find_report(ReportKind::sort, ReportId::label)->bytes,                                         \
+                #label ": its used part is longer than it declares");                                              \
+  static_assert(find_report(ReportKind::sort, ReportId::label)->can_be_set() == detail::names_structure(#set),     \
+                #label ": a report that is set has a used part");
 INKWELL_REPORTS(X)
 #undef X
 
