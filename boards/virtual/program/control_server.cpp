@@ -21,8 +21,8 @@ bool refuse(int socket, std::string_view reason) {
   return false;
 }
 
-/// A line that begins in another way is of another protocol, such as a browser's request, and its later lines are not
-/// to be carried out.
+/// Whether the line can belong to this protocol. The lines of other protocols, such as a browser's request, must not be
+/// executed.
 bool may_be_command(std::string_view line) {
   const auto first = line.find_first_not_of(" \t\r");
   return first == std::string_view::npos || line[first] == '{';
@@ -38,7 +38,7 @@ ControlServer::~ControlServer() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
-    requests_.clear();  // breaks their promises, which their clients are told
+    requests_.clear();  // destroys their promises, which notifies their clients
     for (Client& client : clients_)
       if (client.socket.is_open()) ::shutdown(client.socket.number(), SHUT_RD);
   }
@@ -63,7 +63,7 @@ void ControlServer::accept_clients() {
 void ControlServer::accept(local::Descriptor socket) {
   const int on = 1;
   ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  const timeval patience{2, 0};  // a client that does not read must not keep the program from ending
+  const timeval patience{2, 0};  // a client that does not read must not block the program's exit
   ::setsockopt(socket.number(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   const std::lock_guard lock(mutex_);
   if (closing_) return;
@@ -72,8 +72,10 @@ void ControlServer::accept(local::Descriptor socket) {
     return client.gone;
   });
   if (clients_.size() >= clients_maximum) {
-    refuse(socket.number(), "the control socket serves " + std::to_string(clients_maximum) +
-                                " clients, which is its limit; close one of them");
+    std::string reason = "the control socket serves ";
+    reason += std::to_string(clients_maximum);
+    reason += " clients, which is its limit; close one of them";
+    refuse(socket.number(), reason);
     return;
   }
   Client& client = clients_.emplace_back(Client{std::move(socket), {}});
@@ -92,7 +94,8 @@ void ControlServer::serve(Client& client) {
   }
   ::shutdown(client.socket.number(), SHUT_RDWR);
   const std::lock_guard lock(mutex_);
-  client.socket = local::Descriptor();  // now, and not when another client comes: it counts for the system's limit
+  client.socket = local::Descriptor();  // closed now and not at the next connection, because the system limits the
+                                        // number of descriptors
   client.gone = true;
 }
 
@@ -102,7 +105,7 @@ bool ControlServer::serve_lines(int socket, std::string& received) {
     const std::string line = received.substr(begin, end - begin);
     if (!may_be_command(line)) break;
     const auto reply = ask(line);
-    // An error may quote bytes of the client that are not UTF-8.
+    // An error may quote bytes that are not UTF-8.
     constexpr auto replace = nlohmann::json::error_handler_t::replace;
     if (!reply || !local::send_all(socket, reply->dump(-1, ' ', false, replace) + '\n')) return false;
   }
