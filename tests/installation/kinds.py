@@ -3,7 +3,7 @@
 import re
 
 LIBRARY = r"lib/(?:[\w-]+-linux-gnu/)?"
-# By package, below the prefix.
+# Files of each package, relative to the prefix.
 KINDS = {
     "inkwell": [
         r"bin/inkwell", r"bin/virtual-board",
@@ -18,7 +18,7 @@ KINDS = {
         r"share/fish/vendor_completions\.d/inkwell\.fish", r"share/fish/vendor_completions\.d/virtual-board\.fish",
         r"share/zsh/vendor-completions/_inkwell", r"share/zsh/vendor-completions/_virtual-board",
         r"share/doc/inkwell/[\w-]+\.md", r"share/doc/inkwell/tutorial\.md", r"share/doc/inkwell/[\w-]+\.svg",
-        r"share/doc/inkwell/pictures/[\w-]+\.png",
+        r"share/doc/inkwell/pictures/[\w-]+\.(?:png|svg)",
         r"share/inkwell/arms/omni\.toml", r"share/inkwell/arms/(?!omni)\w+\.toml",
         r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-[\w-]+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
     ],
@@ -30,7 +30,7 @@ KINDS = {
         r"share/doc/inkwell-dev/examples/\w+\.(?:c|cpp)",
     ],
 }
-# Besides, what Debian asks of packages.
+# Additional files that Debian requires in packages.
 DEBIAN = {
     "inkwell": [r"share/doc/inkwell/changelog\.gz", r"share/doc/inkwell/copyright", r"share/lintian/overrides/inkwell"],
     "inkwell-dev": [r"share/doc/inkwell-dev/changelog\.gz", r"share/doc/inkwell-dev/copyright"],

@@ -1,4 +1,3 @@
-// A program that still uses the library while it ends.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -10,12 +9,12 @@ namespace inkwell::tests {
 namespace {
 
 TEST_CASE("an arm is asked and closed by an object that lives as long as the program") {
-  // Memory that was given back is overwritten, so that who still reads it is found out.
+  // Freed memory is overwritten, so that a later read returns wrong values.
   RunningProgram program({build_directory() + "/library-closes-late"}, {"MALLOC_PERTURB_=85"});
   std::array<std::string, 4> in_main;
   for (auto& line : in_main) line = program.read_line();
   CHECK(in_main[0] == "pose 0");
-  CHECK(in_main[3] == "error The arm is NULL. Give one.");
+  CHECK(in_main[3] == "error The arm is NULL. Pass a valid pointer.");
   for (const auto& line : in_main) CHECK(program.read_line() == line);
   CHECK(program.read_line() == "closed 0");
   CHECK(program.wait() == 0);

@@ -1,5 +1,4 @@
-// Bad input, as a user would give it: a sentence that says what is wrong and what to do, and an exit code
-// that is not 0.
+// Invalid user input: each error message states the problem and the remedy, and the exit code is not 0.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -54,7 +53,7 @@ void check_refused(const ProgramResult& result, std::initializer_list<const char
   }
 }
 
-/// A port of this machine that is in use while this object lives.
+/// Occupies a port of this machine during the lifetime of the object.
 class BusyPort {
  public:
   BusyPort() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -149,7 +148,7 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(unlike, {"no `inkwell dance`", "`inkwell --help`"});
     CHECK(unlike.err.find("Did you mean") == std::string::npos);
     check_refused(run_program("inkwell", {"--virtual", "paramters"}), {"no `inkwell paramters`", "mean parameters?"});
-    // What is no command where none is expected has no list to be compared with.
+    // The error for the third word proposes no command, because `plot` expects no command there.
     check_refused(run_program("inkwell", {"plot", "push.h5", "parameters"}), {"parameters"});
     check_refused(run_program("inkwell", {"--sead", "info"}), {"--sead"});
   }
@@ -163,7 +162,7 @@ TEST_CASE("the companion refuses what it does not know") {
   SUBCASE("negative time") {
     const auto result = run_program("inkwell", {"--virtual", "watch", "--seconds", "-1"});
     check_refused(result, {"--seconds", "-1", "more than 0"});
-    CHECK(result.err.size() < 200);  // a range to the largest number there is helps nobody
+    CHECK(result.err.size() < 200);  // a range up to the largest representable number is not helpful
   }
   SUBCASE("what is no number, of an option or an argument of any command") {
     const auto says = [](const std::vector<std::string>& words, const std::string& sentence) {
@@ -196,7 +195,7 @@ TEST_CASE("the companion refuses what it does not know") {
                   {"--layout", "`inkwell plot` opens no window"});
     check_refused(run_program("inkwell", {"--parameters", "soft.toml", "record", "push.h5"}),
                   {"--parameters", "`inkwell record` opens no window"});
-    // Replaying opens one, so there it is the recording that is missed.
+    // `replay` opens a window, so only the missing recording is an error.
     const auto replayed = run_program("inkwell", {"replay", "nowhere.h5", "--info", "--layout", "paper"});
     check_refused(replayed, {"nowhere.h5"});
     CHECK(replayed.err.find("--layout") == std::string::npos);
@@ -260,15 +259,15 @@ TEST_CASE("parameters that were saved are not overwritten unless that is asked f
   const TemporaryDirectory directory;
   const auto file = directory.file("calibration.toml");
   write_file(file, "a calibration");
-  // Before a device is asked: none is at this port.
+  // The check precedes the connection: no device is at this port.
   check_refused(run_program("inkwell", {"--usbip", "1", "parameters", "save", file}),
-                {"calibration.toml exists", "--overwrite"});
+                {"calibration.toml already exists", "--overwrite"});
   CHECK(read_file(file) == "a calibration");
   CHECK(run_program("inkwell", {"--virtual", "parameters", "save", file, "--overwrite"}).exit_code == 0);
   CHECK(read_file(file).find("[parameters]") != std::string::npos);
 }
 
-// /dev/full refuses every write as a full disk does.
+// /dev/full rejects every write, like a full disk.
 TEST_CASE("a full disk is told in our words, and nothing half written is left") {
   const TemporaryDirectory directory;
   const auto file = directory.file("push.csv");
@@ -326,7 +325,7 @@ TEST_CASE("every command explains itself") {
   const auto main_help = help_of("");
   CHECK(main_help.find("--virtual") != std::string::npos);
   CHECK(main_help.find("Exit code") != std::string::npos);
-  // None is missing here that the program has.
+  // The list contains all commands of the program.
   std::set<std::string> listed;
   for (const auto& name : list_of(main_help)) {
     listed.insert(name);

@@ -1,4 +1,4 @@
-// What the board keeps of the time around a fault: its cause is to be seen in it, also after a crash.
+// The black box of the board shows the cause of a fault, also after a crash.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 
 #include <crash/crash_text.hpp>
 #include <device/error.hpp>
+#include <known/boards.hpp>
 #include <omni_driver/facts.hpp>
 #include <stepped_board.hpp>
 
@@ -23,7 +24,7 @@ namespace {
 
 float value(const protocol::BlackBoxRow& row, Signal signal) { return row.values[static_cast<std::size_t>(signal)]; }
 
-/// Rows a millisecond apart, on both sides of the fault.
+/// Checks that the rows are one millisecond apart on both sides of the fault.
 void check_times(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
   REQUIRE(rows.size() == box.row_count);
   int wrong = 0;
@@ -33,7 +34,7 @@ void check_times(const protocol::BlackBoxReport& box, const std::vector<protocol
   CHECK(wrong == 0);
 }
 
-/// After a crash of the sphere pressed into a wall.
+/// Checks the rows before a crash with the sphere pressed into a wall.
 void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
   CHECK(box.is_complete == 1);
   CHECK(box.is_restart == 1);
@@ -71,11 +72,11 @@ TEST_CASE("the black box of a supply that fails shows how it fell, when the brid
     CHECK((value(rows[i], Signal::duty_1) != 0 || value(rows[i], Signal::duty_2) != 0) == is_before);
   }
   CHECK(value(rows.front(), Signal::supply_V) > value(rows[box.rows_before - 1], Signal::supply_V) + 0.5f);
-  // Each signal in its place: the arm rests against the hand.
+  // Checks the column of each signal while the arm rests against the hand.
   const double joint_1_rad = static_cast<double>(rig.pose().joint_rad[0]);
   CHECK(value(rows.back(), Signal::joint_1_rad) == doctest::Approx(joint_1_rad).epsilon(0.02));
 
-  // It stays over a fault that is cleared, another one, and a reset, until the force is on again.
+  // The record survives a cleared fault, another fault and a reset, until the force is on again.
   rig.control.supply(static_cast<double>(board::supply_nominal_V));
   rig.run(0.3);
   rig.command(protocol::Command::clear_fault);
@@ -105,7 +106,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   rig.run(0.3);
   const auto box = rig.device->black_box();
   CHECK(box.fault == Fault::processor_fault);
-  // A BusFault; where the main loop goes to sleep with interrupts held back, the HardFault that it becomes.
+  // A BusFault. A BusFault becomes a HardFault where the main loop masks interrupts before it sleeps.
   CHECK((box.crash.exception == 5 || box.crash.exception == 3));
   CHECK(box.crash.program_counter == nothing_there);
   CHECK(box.crash.configurable_fault_status == 1u << 8);
@@ -209,7 +210,12 @@ TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   BoardRig rig;
   press_into_wall(rig);
   const std::uint32_t loop = endless_loop_address();
-  rig.control.run(0.00004);  // into the main loop: the control interrupt takes the first half of a period
+  // The main loop works directly after the control interrupt. Later it may sleep, and then it holds the interrupts.
+  const board::Pin heartbeat = board::find_board("omni_driver")->bridge_heartbeat;
+  const std::string pin = std::string(1, 'P') + heartbeat.port + std::to_string(heartbeat.number);
+  for (const std::string level : {"high", "low"})
+    for (int step = 0; step < 60 && rig.control.pin(pin).level != level; ++step) rig.control.run(1e-6);
+  rig.control.run(2e-6);
   rig.control.inject({"program_astray", std::to_string(loop)});
   rig.control.run(0.04);
   CHECK(watchdog_bites(rig.control) == 1);
@@ -248,12 +254,12 @@ TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it 
     CHECK(box.later_crashes == 0);
     CHECK(box.crash.exception == 0);
   };
-  // The watchdog bites, but the core did not run.
+  // The watchdog expires while the core is stalled.
   rig.control.inject({"core_stalled", "", 0.04});
   rig.control.run(0.05);
   REQUIRE(watchdog_bites(rig.control) == 1);
   expect_no_place();
-  // The main loop hangs, but somebody resets the chip.
+  // The main loop hangs, but an external reset precedes the watchdog.
   rig.control.inject({"main_loop_stalled", "", 10.0});
   rig.control.run(longer_s);
   REQUIRE(watchdog_bites(rig.control) == 1);

@@ -1,4 +1,4 @@
-// Commands that look at the arm from a terminal, beside a board that runs by itself.
+// Terminal commands that observe the arm, with a board that runs in real time.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -28,7 +28,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board in real time, and the companion beside it.
+/// A board in real time, and companion commands that connect to it.
 struct BoardAndCompanion {
   device::VirtualBoard board{device::VirtualBoardOptions{}};
   device::ControlClient control = board.control();
@@ -38,12 +38,12 @@ struct BoardAndCompanion {
     return command;
   }
   ProgramResult run(const std::vector<std::string>& command) { return run_program("inkwell", words(command)); }
-  /// Until the board has started, which takes it a part of a second.
+  /// Waits for the board's start-up, a fraction of a second.
   void wait_for_device() {
     while (!board.find()) control.run(0.1);
     control.run(0.5);
     control.resume();
-    // On a busy computer the companion may be late. No case here tests that.
+    // On a busy computer the companion may be late; no test here depends on this timeout.
     REQUIRE(run({"parameters", "set", "host_timeout_s=2"}).exit_code == 0);
   }
 };
@@ -92,7 +92,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   check_none();
 
   rig.control.inject({"bridge_fault"});
-  rig.control.run(0.01);  // it is still being filled
+  rig.control.run(0.01);  // the recording is still in progress
   rig.control.resume();
   const auto saved = rig.run({"fault", "--out", table});
   INFO(saved.err);
@@ -193,9 +193,9 @@ TEST_CASE("while nobody knows where the arm is, watching it shows no place; prog
     return nlohmann::json::parse(text.substr(0, text.find('\n'))).at("referenced").get<bool>();
   };
   CHECK(is_referenced());
-  CHECK(rig.run({"info"}).out.find("place of the arm    known") != std::string::npos);
+  CHECK(rig.run({"info"}).out.find("position of the arm known") != std::string::npos);
   CHECK(first_line({}).find("unknown") == std::string::npos);
-  // The encoder slips by farther than a joint turns in a control period.
+  // The encoder slips by more than the motion of a joint in one control period.
   rig.control.dock(false);
   rig.control.inject({.fault = "encoder_slip", .of = "1"});
   rig.control.run(0.05);
@@ -271,7 +271,7 @@ TEST_CASE("a recording switches the force on if asked to, and off at its end") {
   const TemporaryDirectory directory;
   BoardAndCompanion rig;
   rig.wait_for_device();
-  // The hand aims 15 mm into the floor of the box.
+  // The target of the hand is 15 mm inside the floor of the box.
   rig.control.run(bring_stylus(rig.control,
                                {0.0, 0.0, protocol::info(protocol::Parameter::box_minimum_z_m).default_value - 0.015},
                                0.6) +

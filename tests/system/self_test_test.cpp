@@ -1,5 +1,5 @@
-// The board's self-test on the virtual board: what nobody else notices is told by its item, sound boards pass wherever
-// they are, and the hand hardly feels it.
+// The board's self-test on the virtual board. The self-test reports faults that no other check detects. Healthy boards
+// pass in every position, and the hand feels hardly any force.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void check_passed(const SelfTestReport& report) {
   }
 }
 
-/// The board is started anew with the faults that are in it.
+/// Resets the board with its injected faults.
 SelfTestReport report_after_reset(BoardRig& rig) {
   rig.device.reset();
   rig.control.reset();
@@ -61,7 +61,7 @@ SelfTestReport report_after_reset(BoardRig& rig) {
 struct FaultCase {
   const char* fault;
   const char* of;
-  double amount;  ///< 0: the table's own
+  double amount;  ///< 0: default of the table
   std::vector<std::string> items;
   bool takes_force = true;
 };
@@ -148,7 +148,7 @@ TEST_CASE(
     INFO(the_case.fault, " ", the_case.of, " ", the_case.amount);
     rig.control.inject(injection(the_case));
     rig.run(0.15);
-    CHECK(rig.pose().state == State::ready);  // nobody else
+    CHECK(rig.pose().state == State::ready);  // not detected by any other check
     const auto on_command = rig.device->self_test();
     CHECK(fmt::format("{}", fmt::join(failed(on_command), " ")) == fmt::format("{}", fmt::join(the_case.items, " ")));
     rig.run(0.02);
@@ -285,7 +285,7 @@ TEST_CASE("the hand hardly feels it") {
   const auto felt = rig.control.meter_read();
   MESSAGE("simulation: the hand gets at most ", felt.peak_force_N, " N, ", 1e3 * felt.energy_J, " mJ, and is moved by ",
           1e3 * felt.travel_m, " mm");
-  CHECK(felt.peak_force_N > 0.1);  // it was measured
+  CHECK(felt.peak_force_N > 0.1);  // a force was measured
   CHECK(felt.peak_force_N < 1.5);
   CHECK(felt.travel_m < 0.0005);
   CHECK(felt.energy_J < 0.001);
@@ -332,18 +332,17 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(json.at("items").at(17).at("item") == "motor_2");
   const auto fault = run_program("inkwell", {"fault", "--usbip", port});
   INFO(fault.out, fault.err);
-  CHECK(fault.out.find("without which there is no force: motor_2. Too much: check the motor's wires") !=
-        std::string::npos);
+  CHECK(fault.out.find("that the force needs: motor_2. Resistance too high: check the wires") != std::string::npos);
   CHECK(json.at("items").at(17).at("result") == "failed");
   CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
   CHECK(json.at("items").at(5).at("figure").is_null());
 
-  // Clearing tests anew, and is not over before that.
+  // Clearing repeats the self-test and returns after it.
   const auto clear = [&] { return run_program("inkwell", {"fault", "clear", "--usbip", port}); };
   const auto again = clear();
   CHECK(again.exit_code == 1);
   CHECK(again.err.find("The fault is there again. self_test_failed: ") != std::string::npos);
-  CHECK(again.err.find("there is no force: motor_2.") != std::string::npos);
+  CHECK(again.err.find("that the force needs: motor_2.") != std::string::npos);
   rig.control.heal_all();
   const auto cleared = clear();
   CHECK(cleared.exit_code == 0);

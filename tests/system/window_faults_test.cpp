@@ -1,4 +1,4 @@
-// The pane that puts faults into the virtual board, played as a user does.
+// The fault injection pane, operated like by a user.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -17,12 +17,12 @@ void look_for(WindowRig& rig, const std::string& text) {
   rig.look_until("it says " + text, [&](const Sight& now) { return now.says(text); });
 }
 
-/// What is typed before a field has the keyboard is lost.
+/// Text that is typed before the field has the keyboard focus is lost.
 void wait_for_keyboard(WindowRig& rig, const std::string& field) {
   rig.look_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
-/// A list that pops up has a name of ImGui's.
+/// ImGui generates the name of a popup list.
 void click_in_list(WindowRig& rig, const std::string& name) {
   std::string item;
   rig.look_until(name + " is in the list", [&](const Sight& now) {
@@ -63,7 +63,7 @@ TEST_CASE("a fault is chosen in the table, put in, told with what the board noti
 
 TEST_CASE("without a control port there is nothing to put faults into, and the pane says why") {
   WindowRig rig({"--flat-colours"}, false);
-  rig.press_key("F7");  // no tab
+  rig.press_key("F7");  // no such tab
   CHECK(rig.look().has("tuning/wall_stiffness_N_per_m"));
   rig.press_key("F5");
   look_for(rig, "does not know the control port");
@@ -81,7 +81,7 @@ TEST_CASE("the pane is worked by the keyboard alone") {
   rig.press_key("Return");
   wait_for_keyboard(rig, "faults/place");
   rig.type("3");
-  rig.type("\t");  // in one go: a Tab that is held goes on
+  rig.type("\t");  // in one event, because a held Tab key repeats
   wait_for_keyboard(rig, "faults/amount");
   rig.type("-250");
   rig.press_key("Return");
@@ -154,7 +154,7 @@ TEST_CASE("the same fault again takes the place of the first, and outlasts a res
 TEST_CASE("a wire is chosen from the board's, two of them one after the other") {
   WindowRig rig;
   open_pane(rig);
-  rig.enter("faults/search", "shorted wires touch");
+  rig.enter("faults/search", "shorted wires averaged");
   rig.click("faults/wires_shorted");
   for (const char* wire : {"encoders[0].a", "encoders[0].b"}) {
     rig.click("faults/wires");

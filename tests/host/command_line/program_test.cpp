@@ -1,7 +1,8 @@
-// What every command says of the arms that are there.
+// Messages of every command about the connected arms.
 #include <doctest/doctest.h>
 
 #include <unistd.h>
+#include <atomic>
 
 #include <cstring>
 #include <fstream>
@@ -28,7 +29,7 @@ struct Ended {
   std::string complaint;
 };
 
-/// In this process, where the USB is not real.
+/// Runs the program in this process, where the USB is fake.
 Ended run_here(std::vector<std::string> words) {
   const TemporaryDirectory directory;
   const std::string file = directory.file("stderr");
@@ -95,13 +96,15 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
     };
     said = "were lost between board and PC";
   }
+  std::atomic<bool> has_ended = false;
   std::thread cable([&] {
-    while (usb.endpoints_under_way(arm).empty()) std::this_thread::yield();
-    end();
+    while (usb.endpoints_under_way(arm).empty() && !has_ended) std::this_thread::yield();
+    if (!has_ended) end();
   });
   const TemporaryDirectory directory;
   const auto [exit_code, complaint] =
       run_here({"inkwell", "record", directory.file("push.csv"), "--signals", "force_N", "--seconds", "0.01"});
+  has_ended = true;
   cable.join();
   CAPTURE(complaint);
   CHECK(exit_code == 1);

@@ -26,7 +26,7 @@ using inkwell::tests::Bytes;
 using inkwell::tests::FakeUsb;
 using inkwell::tests::FakeUsbDevice;
 
-// The libraries leave these to themselves.
+// The libraries' headers only declare these types.
 struct libusb_context {};
 struct libusb_device {
   FakeUsbDevice* device;
@@ -40,8 +40,8 @@ struct hid_device_ {
 
 namespace {
 
-FakeUsb* current = nullptr;  // of the test that runs
-std::mutex no_usb;           // without one there is nothing to guard
+FakeUsb* current = nullptr;
+std::mutex no_usb;  // used while no instance exists
 
 std::unique_lock<std::mutex> lock_usb() { return std::unique_lock(current != nullptr ? current->mutex : no_usb); }
 
@@ -50,10 +50,10 @@ void count(int things) {
   if (current != nullptr) current->open_things += things;
 }
 
-/// Copies as much as fits and tells how much that was.
+/// Copies as many bytes as fit and returns their number.
 int give(const Bytes& bytes, unsigned char* data, std::size_t room) {
   const std::size_t length = std::min(bytes.size(), room);
-  std::copy_n(bytes.begin(), length, reinterpret_cast<std::byte*>(data));  // memcpy may not be given nothing
+  std::copy_n(bytes.begin(), length, reinterpret_cast<std::byte*>(data));  // memcpy does not accept a null pointer
   return static_cast<int>(length);
 }
 
@@ -95,8 +95,8 @@ std::size_t longest(const std::map<std::uint8_t, std::size_t>& lengths) {
   return std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; })->second;
 }
 
-/// The report as it comes over the bus. Windows' hidapi pads an output report to the length of the longest one; a
-/// feature report comes with the length that is declared for its id.
+/// The report as the bus carries it. Windows' hidapi pads an output report to the length of the longest output
+/// report. A feature report has the length that is declared for its id.
 Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind) {
   Bytes report = to_bytes(data, length);
   if (!current->is_windows) return report;
@@ -109,7 +109,7 @@ Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind)
   return report;
 }
 
-/// A call of the board that stands behind a device, with the result that hidapi would return.
+/// Calls the board that carries out a device's requests, and returns the result that hidapi would return.
 template <class Call>
 int carry_out(Call call) {
   try {
@@ -130,7 +130,7 @@ std::span<std::byte> writable(unsigned char* data, std::size_t length) {
   return {reinterpret_cast<std::byte*>(data), length};
 }
 
-/// Ends one transfer if one can end. Its callback runs without the lock, because it submits again.
+/// Completes one transfer if possible. The callback runs without the lock, because it submits the next transfer.
 bool complete_one() {
   libusb_transfer* ended = nullptr;
   {
@@ -177,7 +177,7 @@ void LIBUSB_CALL libusb_exit(libusb_context* context) {
   count(-1);
 }
 
-// It has no source file, so it has no state that a forked child would have to drop.
+// The fake has no file descriptors that a forked child must close.
 const libusb_pollfd** LIBUSB_CALL libusb_get_pollfds(libusb_context*) { return nullptr; }
 void LIBUSB_CALL libusb_free_pollfds(const libusb_pollfd**) {}
 
@@ -372,7 +372,7 @@ int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, i
     }
     if (device.unplugged) return fail(ENODEV);
   }
-  if (timeout_ms < 0) return fail(EDEADLK);  // it would wait for ever
+  if (timeout_ms < 0) return fail(EDEADLK);  // the call would block indefinitely
   std::this_thread::sleep_for(std::chrono::milliseconds(std::min(timeout_ms, 1)));
   return 0;
 }
@@ -487,6 +487,9 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::driver)] = bytes_of(protocol::DriverReport{});
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::request_results)] =
       bytes_of(protocol::RequestResultsReport{});
+  protocol::FrameReport frame{};
+  frame.report_id = protocol::ReportId::frame;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::frame)] = bytes_of(frame);
   const protocol::StoreReport store{};
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }

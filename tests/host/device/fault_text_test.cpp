@@ -25,16 +25,18 @@ TEST_CASE("the supply's faults name the limits at which the firmware switches of
 
 TEST_CASE("the faults of ripple and of the reference name what is borne") {
   CHECK(device::fault_text(Fault::supply_ripple).cause ==
-        "The supply of the bridges swings by more than 1 V to either side, again and again.");
-  CHECK(device::fault_text(Fault::analog_supply).cause.find("is more than 5 % off its 3.3 V") != std::string::npos);
+        "The ripple of the bridge supply repeatedly exceeds 1 V in either direction.");
+  CHECK(device::fault_text(Fault::analog_supply).cause.find("differs by more than 5 % from 3.3 V") !=
+        std::string::npos);
 }
 
 TEST_CASE("the faults of the motors and of old samples name the figures that the firmware goes by") {
   CHECK(device::fault_text(Fault::over_current).cause.find("exceeded 150 % of its limit") != std::string::npos);
-  CHECK(device::fault_text(Fault::samples_stale).cause ==
-        "A motor's current was not measured in a control period, or supply and gimbal for 1 ms.");
-  CHECK(device::fault_text(Fault::motor_hot).cause.find("is 25 % hotter than it bears") != std::string::npos);
-  CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %;") != std::string::npos);
+  CHECK(
+      device::fault_text(Fault::samples_stale).cause ==
+      "A motor current was not measured in a control period, or the supply and the gimbal were not measured for 1 ms.");
+  CHECK(device::fault_text(Fault::motor_hot).cause.find("is 25 % above its thermal limit") != std::string::npos);
+  CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %.") != std::string::npos);
 }
 
 TEST_CASE("a self-test that failed names its items and their remedies, each once") {
@@ -48,7 +50,7 @@ TEST_CASE("a self-test that failed names its items and their remedies, each once
   set(SelfTestItem::motor_1, SelfTestResult::failed);
   set(SelfTestItem::motor_3, SelfTestResult::failed);
   set(SelfTestItem::encoder_2_a, SelfTestResult::moved);
-  set(SelfTestItem::gimbal_1, SelfTestResult::failed);  // which takes no force
+  set(SelfTestItem::gimbal_1, SelfTestResult::failed);  // the gimbal is not needed for forces
   const auto text = device::fault_text(Fault::self_test_failed, test);
   CHECK(text.cause == "The self-test failed for items that the force needs: motor_1, motor_3.");
   CHECK(text.remedy == std::string(info(SelfTestItem::motor_1).remedy) + " Then clear the fault, which tests again.");

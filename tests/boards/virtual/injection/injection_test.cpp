@@ -84,7 +84,7 @@ TEST_CASE("what is no fault is refused with a sentence that says what would be o
   CHECK(refuses("encoder_stuck:1x", "is no motor"));
   CHECK(refuses("encoder_stuck:1=3", "encoder_stuck has no amount"));
   CHECK(refuses("shunt_offset:1=11", "shunt_offset 11 A is outside -10 to 10"));
-  CHECK(refuses("ram_bit=9", "ram_bit 9 is outside -1 to 7"));  // without a unit, and without a blank for it
+  CHECK(refuses("ram_bit=9", "ram_bit 9 is outside -1 to 7"));  // without a unit and without a space for it
   CHECK(refuses("shunt_offset:1=much", "\"much\" is no number; it stands for the amount"));
   CHECK(refuses("shunt_offset:1=nan", "is no number"));
   CHECK(refuses("supply_cut:1", "supply_cut is not put into anything"));
@@ -123,6 +123,6 @@ TEST_CASE("the help has a line for each fault") {
     CHECK(help.find("  " + std::string(row.name)) != std::string::npos);
     CHECK(help.find(std::string(row.help.substr(0, row.help.find('{')))) != std::string::npos);
   }
-  CHECK(help.find("So many spikes of 2 us on a digital input") != std::string::npos);
+  CHECK(help.find("Number of spikes of 2 us per second on a digital input") != std::string::npos);
   CHECK(help.find('{') == std::string::npos);
 }
