@@ -126,11 +126,11 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 mouse = to_glm(io.MousePos);
   ImGui::SetCursorScreenPos({origin_.x, origin_.y});
-  ImGui::SetItemAllowOverlap();
+  allow_overlap_before_item();
   ImGui::InvisibleButton(
       "scene", {size_.x, size_.y},
       ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
-  ImGui::SetItemAllowOverlap();
+  allow_overlap_after_item();
   note_item("scene");
   const bool hovered = ImGui::IsItemHovered();
   if (drag_ == Drag::none) {

@@ -25,6 +25,10 @@ inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeypadEnter;
 /// The key's index for ImGui's functions, such as IsKeyPressed.
 inline ImGuiKey key_index(ImGuiKey key) { return key; }
 
+/// Items after an item may lie over it: call one function before and the other one after the item.
+inline void allow_overlap_before_item() { ImGui::SetNextItemAllowOverlap(); }
+inline void allow_overlap_after_item() {}
+
 inline void set_lists(ImDrawData& data, const std::vector<ImDrawList*>& lists) {
   data.CmdLists.resize(static_cast<int>(lists.size()));
   for (std::size_t i = 0; i < lists.size(); ++i) data.CmdLists[static_cast<int>(i)] = lists[i];
@@ -44,6 +48,10 @@ inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeyPadEnter;
 
 /// The key's index for ImGui's functions, such as IsKeyPressed.
 inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }
+
+/// Items after an item may lie over it: call one function before and the other one after the item.
+inline void allow_overlap_before_item() { ImGui::SetItemAllowOverlap(); }
+inline void allow_overlap_after_item() { ImGui::SetItemAllowOverlap(); }
 
 /// `lists` must outlive `data`.
 inline void set_lists(ImDrawData& data, std::vector<ImDrawList*>& lists) {
