@@ -362,7 +362,7 @@ class Programs(unittest.TestCase):
                 child = multiprocessing.get_context("fork").Process(target=use, args=(arm,))
                 child.start()
                 child.join(300)
-                print("child", child.exitcode)
+                print("child", child.exitcode, flush=True)  # a forked child would print it again
                 for _ in range(20):  # that end as programs do
                     pid = os.fork()
                     if pid == 0:
