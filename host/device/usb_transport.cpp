@@ -12,7 +12,7 @@
 
 #include <process/fork.hpp>
 #include <protocol/plain_text.hpp>
-#include <protocol/reports.hpp>
+#include <protocol/report_table.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "transfer_queue.hpp"
@@ -29,7 +29,7 @@ namespace identity = protocol::usb;
 constexpr unsigned short vendor_usage_page = 0xFF00;
 
 /// Largest feature report that the device declares.
-constexpr std::size_t feature_report_maximum = protocol::force_law_report_maximum;
+constexpr std::size_t feature_report_maximum = protocol::longest_report(protocol::ReportKind::feature);
 
 std::string narrow(const wchar_t* text) {
   std::string result;

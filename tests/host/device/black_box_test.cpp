@@ -114,7 +114,7 @@ TEST_CASE("a program that asks without end for other rows is told of, not waited
   CHECK(contains(message_of<device::InUse>([&] { device.black_box_rows(head); }), "Another program"));
 }
 
-TEST_CASE("a device that refuses to choose the rows is told of with its reason") {
+TEST_CASE("the reason of a device that refuses to select rows is reported") {
   Kept kept = full();
   kept.result = protocol::RequestResult::malformed;
   auto device = device_with(kept);
