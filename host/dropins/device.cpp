@@ -24,6 +24,9 @@ constexpr double rest_m_per_s = 0.1;
 // Faults that HDAPI treats as temporary: the force returns automatically once the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
+/// Whether the board has judged the request. Other results come from the link or from the claim of a lost link.
+bool is_judged(inkwell_result result) { return result == INKWELL_OK || result == INKWELL_REFUSED; }
+
 /// Faults that the board raises when a program with force has exited or is late.
 bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
 
@@ -254,10 +257,11 @@ void Device::wait_until_force_is_off() {
 void Device::care() {
   using Clock = std::chrono::steady_clock;
   auto heat_at = Clock::now();
-  bool switched_on = false, is_on = false, lets_fall = false;
+  bool switched_on = false, is_on = false, lets_fall = false, clears = false;
   std::unique_lock lock(care_mutex_);
   while (!ends_) {
-    const bool wanted = force_is_wanted_, clears = std::exchange(fault_is_to_be_cleared_, false);
+    const bool wanted = force_is_wanted_;
+    clears = std::exchange(fault_is_to_be_cleared_, false) || (clears && wanted);
     bool asked_for = force_is_asked_for_;
     lock.unlock();
     inkwell_pose pose;
@@ -277,10 +281,14 @@ void Device::care() {
     if (is_taken && !clears) asked_for = false;
     if (is_on && wanted) asked_for = had_force_ = true;
     if (is_over) lets_fall = false;
+    if (is_link_lost) clears = false;
     if (!is_lost) {
+      bool is_cleared = true;
       if (pose.state == INKWELL_FAULT && wanted &&
           (clears || (asked_for && passes_by && speed_m_per_s(pose) < rest_m_per_s)))
-        inkwell_clear_fault(arm());
+        is_cleared = is_judged(inkwell_clear_fault(arm()));
+      // After a failure of the link the next pass clears the fault.
+      if (is_cleared) clears = false;
       if (pose.state == INKWELL_READY && wanted && asked_for &&
           inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK)
         switched_on = is_on = had_force_ = true;

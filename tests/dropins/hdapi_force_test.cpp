@@ -343,7 +343,11 @@ TEST_CASE("a lost link is back by itself, with the force off until the program a
       100'000));
   CHECK(std::abs(held.pulled_m(0)) < 0.0015);
   hdEnable(HD_FORCE_OUTPUT);
-  CHECK(held.pulls(0, 0.0028, 0.0038, push));
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] {
+    set_force({1, 0, 0});
+    // A busy machine may interrupt the link or the force again.
+    if (hdGetError().errorCode != HD_SUCCESS) hdEnable(HD_FORCE_OUTPUT);
+  }));
 }
 
 TEST_CASE("a program hears nothing of the end of the one before, and gets its force") {
