@@ -78,6 +78,7 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
   rig.click("recording/Start recording");
+  rig.look_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.enter("recording/mark text", "here");
   rig.click("recording/Mark");
   rig.control.run(0.5);
@@ -111,6 +112,7 @@ TEST_CASE("a recording whose device is unplugged holds everything up to then") {
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
   rig.click("recording/Start recording");
+  rig.look_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.control.run(0.5);
   rig.control.resume();
   unplug(rig);

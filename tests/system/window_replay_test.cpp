@@ -96,7 +96,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   const std::string at_the_end = position(rig.look());
   REQUIRE(!at_the_end.empty());
   rig.tap_key("shift+Left");  // the replay bar was clicked last and has the keyboard focus
-  CHECK(position(rig.look()) != at_the_end);
+  rig.look_until("the position is another", [&](const Sight& now) { return position(now) != at_the_end; });
 }
 
 TEST_CASE("two recordings of the same name in the window are told apart by their folders") {
