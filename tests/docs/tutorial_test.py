@@ -83,7 +83,7 @@ class Tutorial(unittest.TestCase):
         [program] = re.findall(r"```python\n(.+?)```", text, re.DOTALL)
         run = subprocess.run([sys.executable, "-c", program], cwd=self.folder, capture_output=True, text=True,
                              timeout=PATIENCE_S)
-        self.assertEqual(run.stdout.strip(), re.search(r"It prints (\d+ N/m)", text)[1], run.stderr)
+        self.assertEqual(run.stdout.strip(), re.search(r"prints (\d+ N/m)", text)[1], run.stderr)
 
     def test_the_board_keeps_what_is_stored(self):
         port = free_port()
