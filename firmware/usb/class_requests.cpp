@@ -133,7 +133,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   switch (static_cast<ReportId>(setup.value_low())) {
     case ReportId::command: {
       const auto command = read_command(data);
-      if (command && !pass_on(*command)) link_.request_results.note_dropped(*command, protocol::RequestResult::busy);
+      if (command && !pass_on(command)) link_.request_results.note_dropped(*command, protocol::RequestResult::busy);
       break;
     }
     case ReportId::force: take_force(data); break;

@@ -91,10 +91,10 @@ def missing(path: pathlib.Path, binary: Binary) -> list[str]:
     return [f"{path} has no {name}: {flag}" for name, flag in binary.expected().items() if name not in shown]
 
 
-def host_binaries(folder: pathlib.Path) -> Iterator[pathlib.Path]:
-    """Programs and shared libraries for this computer, without object files and firmware."""
+def host_binaries(folder: pathlib.Path, left_out: pathlib.Path | None = None) -> Iterator[pathlib.Path]:
+    """Programs and shared libraries for this computer, without object files, firmware and the folder `left_out`."""
     for parent, folders, files in os.walk(folder):
-        folders[:] = [name for name in folders if name != "CMakeFiles"]
+        folders[:] = [name for name in folders if name != "CMakeFiles" and pathlib.Path(parent, name) != left_out]
         for path in (pathlib.Path(parent, name) for name in files):
             if path.is_symlink() or not path.is_file():
                 continue

@@ -42,7 +42,7 @@ class Hardening(unittest.TestCase):
 
 class LibraryFolders(unittest.TestCase):
     def test_none_depends_on_the_current_folder(self):
-        paths = list(host_binaries(BUILD))
+        paths = list(host_binaries(BUILD, left_out=BUILD / "tests"))  # other tests replace the files there
         self.assertIn(BUILD / "virtual-board", paths)
         self.assertEqual([], [problem for path in paths for problem in unsafe_folders(path)])
 
