@@ -1,7 +1,7 @@
 // Rows that a force law adds at the end of the parameter and signal tables.
 //
-// The firmware knows its force law. A PC program reads the force law from the device that it opens. From then on
-// window, files and command line use these rows like all others.
+// The firmware contains its force law. A PC program reads the rows from the device that it opens. Window, files and
+// command line use the added rows like all other rows.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace inkwell::protocol {
 
-/// Set whenever a PC program opens a device with a force law. The rows are never freed or changed, because another
-/// thread may still read them.
+/// Rows of the force law. A PC program sets this pointer when it opens a device with a force law. The rows are never
+/// freed or changed, because another thread may still read them.
 template <class Info>
 inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 
@@ -23,8 +23,8 @@ inline constexpr Info nameless_row{};
 /// Table with rows that are added at run time. `own` is the number of rows of the table itself. Constant expressions
 /// read the table directly.
 ///
-/// The constructor must not call std::is_constant_evaluated(). GCC 14 returns true wherever a reference is bound to the
-/// result, as in a range-based for loop. The added rows would then be missing.
+/// The constructor must not call std::is_constant_evaluated(): with GCC 14 the added rows would be missing in a
+/// range-based for loop. GCC 14 evaluates this function to true wherever a reference is bound to the new object.
 template <class Info, std::size_t own>
 class KnownRows {
  public:

@@ -1,6 +1,6 @@
 // The black box: record of the signals around a fault. The board retains one black box, also across a reset, until the
-// force is switched on again or the power is lost. Rows have an interval of 1 ms, and one row is the fault's control
-// period.
+// force is switched on again or the power is lost. Consecutive rows are 1 ms apart, and one row shows the control
+// period of the fault.
 //
 //   host <- device   feature report  BlackBoxReport: presence, fault and crash data
 //   host -> device   feature report  BlackBoxRequest: first row of the next BlackBoxRowsReport
@@ -25,13 +25,13 @@ inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + bl
 /// Exception numbers in a crash record for a failed crystal (NMI) and for a stalled main loop (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
-/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if neither
-/// occurred.
+/// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if there was no CPU
+/// fault and no stalled main loop.
 struct CrashFacts {
   /// Exception number: crystal_exception, hang_exception, 3 to 6 for a CPU fault, 16 or more for an unexpected
   /// interrupt.
   std::uint32_t exception;
-  /// If the stack could not be read, only r4 to r11 are valid from here to `registers`.
+  /// If the stack could not be read, only r4 to r11 are valid in the fields `program_counter` to `registers`.
   std::uint32_t program_counter;
   std::uint32_t link_register;
   std::uint32_t program_status;             ///< xPSR
@@ -40,7 +40,7 @@ struct CrashFacts {
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR
   std::uint32_t fault_address;              ///< MMFAR or BFAR, if CFSR marks it as valid
-  /// Values of link register and stack that are return addresses, the newest first. Some may be left over from earlier
+  /// Return addresses from the link register and the stack, newest first. Some addresses may be left over from earlier
   /// calls. Unused entries are 0.
   std::uint32_t callers[8];
   std::uint32_t image_check;  ///< checksum of the image that ran: the word in section .image_check of its ELF
@@ -55,7 +55,7 @@ struct BlackBoxReport {
   std::uint16_t rows_before;    ///< number of rows before the fault; these rows come first
   std::uint16_t row_count;      ///< 0..black_box_rows_maximum
   std::uint32_t fault_periods;  ///< control period of the fault, or of the last row before a restart
-  /// Restarts after a crash since the fault. The rows do not change.
+  /// Number of crashes with a restart since the fault. These restarts do not change the rows.
   std::uint32_t later_crashes;
   CrashFacts crash;  ///< crash record of the newest restart after a crash
 };

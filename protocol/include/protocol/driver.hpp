@@ -1,9 +1,8 @@
 // The driver: the program that drives the arm. Results of commands and shapes.
 //
-// Several programs may be connected to one arm, and one of them drives it. This program has claimed the arm with a
-// random number and sends the claim with its commands, forces, shapes and parameters. The board accepts these requests
-// from no other program, except for `stop`. Every report with the claim renews it. After claim_expiry_s without such a
-// report the claim expires.
+// Several programs may be connected to one arm, and one of them drives it. The driver claims the arm with a random
+// number and sends this claim with its commands, forces, shapes and parameters. From other programs the board accepts
+// only commands that need no claim (needs_claim()). A claim expires if no report contains it for claim_expiry_s.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ enum class ClaimOperation : std::uint8_t {
   take_over = 2,  ///< ends the claim of the other program; its force and its shapes fade
 };
 
-/// Feature report, set. The next DriverReport shows the result.
+/// Feature report, set. The next DriverReport shows the result of the operation.
 struct ClaimReport {
   ReportId report_id = ReportId::driver;
   ClaimOperation operation;
@@ -89,7 +88,7 @@ struct RequestResultEntry {
 
 inline constexpr std::size_t request_results_kept = 8;
 
-/// Feature report, get. Results of the newest commands and shapes with a ticket, from all programs. A bus reset or
+/// Feature report, get. Results of the newest commands and shapes that have a ticket, from all programs. A bus reset or
 /// suspend erases the results and discards the queued commands.
 struct RequestResultsReport {
   ReportId report_id = ReportId::request_results;

@@ -1,7 +1,8 @@
-// Rows that a table has three times: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
+// Groups of three table rows: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
 //
 // The names of the three rows differ only in the digit or letter, for example gear_ratio_1, gear_ratio_2, gear_ratio_3.
-// Code names the first row and an index: of_axis() counts from 0 as in arrays, of_number() from 1 as in the row names.
+// Callers pass the first row and an index: of_axis() counts from 0 as in arrays, of_number() from 1 as in the row
+// names.
 #pragma once
 
 #include <array>
@@ -12,7 +13,8 @@ namespace inkwell::protocol {
 
 namespace detail {
 
-/// Returns the position of the axis in a name: a separate digit 1 to 3 or letter x to z. Returns npos if there is none.
+/// Returns the position of the axis in a name: a separate digit 1 to 3 or letter x to z. Returns npos if the name has
+/// no axis.
 constexpr std::size_t axis_place(std::string_view name) {
   for (std::size_t i = 1; i < name.size(); ++i) {
     const bool alone = name[i - 1] == '_' && (i + 1 == name.size() || name[i + 1] == '_');
@@ -29,7 +31,7 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// True if a row for 1, 3, x or z has a row for 2 or y with which it agrees (alike()). True for all other rows.
+/// False if a row for axis 1, 3, x or z has no row for axis 2 or y, or differs from that row (alike()).
 template <class Table>
 constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   const auto& row = table[index];
@@ -41,7 +43,7 @@ constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   return false;
 }
 
-// Not constexpr: a call stops the compilation, and the compiler's message shows the function name.
+// The functions are not constexpr, so that a call stops the compilation and the compiler prints the function name.
 void the_table_has_no_three_rows_of_this_name();
 void the_three_rows_differ_in_unit_range_or_kind();
 
@@ -52,7 +54,7 @@ void the_three_rows_differ_in_unit_range_or_kind();
 template <class Row>
 class EachAxis {
  public:
-  // Implicit, so that callers can pass a row to a function with a parameter EachAxis.
+  // The constructor is implicit, so that callers can pass a row where a function expects an EachAxis.
   consteval EachAxis(Row first) : EachAxis(first, named_after(first, 1), named_after(first, 2)) {}
   /// For three rows with unrelated names.
   consteval EachAxis(Row first, Row second, Row third) : rows_{first, second, third} {

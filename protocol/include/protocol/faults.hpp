@@ -2,7 +2,7 @@
 #pragma once
 
 // To add a fault:
-// 1. Append a row with the next code to INKWELL_FAULTS. For a new figure in braces, extend with_figures() in
+// 1. Append a row with the next code to INKWELL_FAULTS. For a new placeholder in braces, extend with_figures() in
 //    host/device/fault_text.cpp.
 // 2. Add the condition to one of these files:
 //    - firmware/control/controller.cpp, if the fault must be raised in the same control period;
@@ -26,7 +26,7 @@ namespace inkwell::protocol {
 inline constexpr float over_current_ratio = 1.5f;
 /// Largest age of the supply and gimbal measurements.
 inline constexpr float samples_stale_s = 0.001f;
-/// Longest pass of the main loop. The shortest timeout of the watchdog is longer.
+/// Longest pass of the main loop. The shortest watchdog timeout exceeds this limit.
 inline constexpr float main_loop_stalled_s = 0.01f;
 /// Largest deviation of the bridge supply from its mean, in either direction (control/supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
@@ -34,7 +34,7 @@ inline constexpr float supply_ripple_V = 1.0f;
 inline constexpr float analog_supply_bearable = 0.05f;
 
 // clang-format off
-/// X(code, name, cause, remedy). device::fault_text() replaces a name in braces by its figure.
+/// X(code, name, cause, remedy). device::fault_text() replaces a name in braces with its value.
 #define INKWELL_FAULTS(X)                                                                                                         \
   X(0, none, "No fault.", "Nothing to do.")                                                                                       \
   X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \

@@ -1,4 +1,4 @@
-// Identity of a firmware image at a fixed flash address. Programs that write an image check it first.
+// Identity of a firmware image at a fixed flash address. Programs check the identity before they write an image.
 #pragma once
 
 #include <algorithm>

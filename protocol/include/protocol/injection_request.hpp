@@ -1,5 +1,5 @@
 // Request for an injected fault, from a user or a program, and the names of the possible locations. The virtual board
-// checks requests (injection/injection.hpp), because only the virtual board knows its pins and memory.
+// checks requests (injection/injection.hpp), because pins and memory depend on the simulated board.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace inkwell::protocol {
 /// Upper limit of `after_s` and of `for_s`.
 inline constexpr double latest_injection_s = 1e6;
 
-/// Request before it is checked.
+/// Unchecked request.
 struct InjectionRequest {
   std::string fault;                  ///< name in the table
   std::string of = {};                ///< location, such as "2", "1A" or "encoders[0].a"; empty if not given

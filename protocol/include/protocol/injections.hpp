@@ -1,12 +1,12 @@
 // Table of injected faults for simulations: X(name, part, place, unit, minimum, maximum, otherwise, help).
 //
-// `part` is the heading in help texts and `place` the kind of location that a request has to name. `otherwise` is the
-// default amount. A fault without a range has no amount. Persistent faults can be healed. Single events (a slip, a
-// flipped RAM bit) cannot.
+// `part` is the heading in help texts, and `place` is the kind of location that a request must name. `otherwise` is the
+// default amount. A fault without a range has no amount. Persistent faults can be healed, but single events, such as a
+// slip or a flipped RAM bit, cannot be healed.
 #pragma once
 
 // To add an injected fault:
-// 1. Add a row after the other rows of its part.
+// 1. Add a row below the last row of its part.
 // 2. Implement the fault in boards/virtual/injection/injector.cpp, with a class of the plant or a function of the
 //    chip.
 // 3. Add a row to docs/virtual-board.md, in the order of this table.
@@ -14,8 +14,8 @@
 // 5. For a new kind of place, add a value to InjectionPlace, its parser to boards/virtual/injection/injection.cpp
 //    and its names to protocol/injection_request.hpp.
 //
-// A new row changes the numbers of the campaign cases after it. Help, control socket, command line, window and
-// campaign use this table.
+// A new row changes the numbers of all later campaign cases. Help, control socket, command line, window and campaign
+// use this table.
 
 #include <array>
 #include <cstddef>
@@ -43,7 +43,7 @@ enum class InjectionPlace : std::uint8_t {
 inline constexpr double wire_spike_s = 2e-6;
 
 // clang-format off
-/// help_of() replaces a name in braces by its figure.
+/// help_of() replaces a name in braces with its value.
 #define INKWELL_INJECTIONS(X)                                                                                                      \
   X(wire_open, wires, wire, "", 0, 0, 0, "The wire is broken, and its input floats.")                                             \
   X(wire_low, wires, wire, "", 0, 0, 0, "The wire is shorted to ground.")                                                                \

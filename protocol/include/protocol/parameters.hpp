@@ -1,12 +1,12 @@
-// Table of all parameters. Firmware, companion, saved files, arm descriptions and documentation use it. A row is
+// Table of all parameters. Firmware, companion, saved files, arm descriptions and documentation use this table.
 //
 //   X(id, name, kind, unit, minimum, maximum, default, group, help)
 //
 // The protocol transmits `id`. An id never changes its meaning, and the id of a removed parameter is not reused. `name`
-// ends in its unit, in files and on the command line as well.
+// ends in the unit, and files and command line use the same name.
 //
-// A row with the default arm_defaults::NAME belongs to the arm. Every description in boards/arms/ sets this parameter.
-// The build selects one description and writes its values to the generated header <arm/defaults.hpp>.
+// A row with the default arm_defaults::NAME describes the arm. Every file in boards/arms/ sets all parameters of the
+// arm. The build selects one description and writes its values to the generated header <arm/defaults.hpp>.
 //
 // The parameters of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
@@ -20,7 +20,7 @@
 // 4. For a choice other than no and yes, add the names to choice_names() in host/window/panes/tuning_pane.cpp.
 // 5. Add a member to control::Settings (control/settings.hpp) and compute the member in
 //    firmware/control/settings.cpp. control::Controller passes the settings to the signal path.
-// 6. Choose a default that does not change the force. Existing tests then pass unchanged.
+// 6. Choose a default that does not change the force, so that existing tests pass unchanged.
 // 7. Build `board` and `pc-tests`. PC programs refuse a firmware that was built with another table.
 //
 // Sliders, command line, files and help texts use this table.
@@ -169,7 +169,7 @@ inline constexpr std::size_t parameter_count = parameter_table.size();
 inline constexpr std::size_t force_law_parameters_maximum = 12;
 inline constexpr std::uint16_t force_law_first_id = 1000;
 
-/// Returns the table and, if the force law is known, its parameters.
+/// Returns the table, followed by the parameters of a known force law.
 inline KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
 
 constexpr const ParameterInfo& info(Parameter parameter) {
@@ -177,23 +177,22 @@ constexpr const ParameterInfo& info(Parameter parameter) {
   return place < parameter_count ? parameter_table[place] : known_parameters()[place];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
-/// True if the parameter is part of the arm's geometry, so a change under force would be a jump. Such a change is
-/// allowed only while the force is off. Parameters outside the group "arm" can change at any time, even if
-/// belongs_to_arm is set.
+/// True if the parameter is part of the arm's geometry. A change would make the force jump, so it is allowed only while
+/// the force is off. Parameters outside the group "arm" can change at any time, even if belongs_to_arm is set.
 constexpr bool needs_force_off(const ParameterInfo& row) { return row.group == "arm"; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
   return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
          a.group == b.group && a.belongs_to_arm == b.belongs_to_arm;
 }
 
-/// Returns the parameter of motor, joint or axis `axis` (0, 1 or 2). `rows` is the parameter of the first one.
+/// Returns the parameter of motor, joint or axis `axis` (0, 1 or 2). `rows` is the parameter with index 0.
 constexpr Parameter of_axis(EachAxis<Parameter> rows, std::size_t axis) { return rows[axis]; }
 /// Returns the parameter of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Parameter of_number(EachAxis<Parameter> rows, int number) {
   return rows[static_cast<std::size_t>(number) - 1];
 }
 
-/// Joint stops of the arm. The third pair bounds the elbow angle, which is the angle between the links on every arm.
+/// Joint stops of the arm. On every arm, the third pair bounds the angle between the links.
 inline constexpr EachAxis<Parameter> lower_stops{Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad,
                                                  Parameter::elbow_minimum_rad};
 inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad, Parameter::joint_2_maximum_rad,
@@ -202,7 +201,7 @@ inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad,
 struct Bounds {
   Parameter lower;
   Parameter upper;
-  /// If true, `upper` must exceed `lower` by more than the sphere's diameter. Otherwise `upper` must exceed `lower`.
+  /// If true, `upper` must exceed `lower` by more than the sphere's diameter, otherwise by any amount.
   bool hold_sphere;
 };
 
@@ -235,7 +234,7 @@ constexpr ParameterSet table_defaults() {
   return set;
 }
 
-/// Returns the defaults of the table and, if the force law is known, of its parameters.
+/// Returns the defaults of the table, followed by the defaults of a known force law.
 inline ParameterSet default_parameters() {
   ParameterSet set{};
   const auto rows = known_parameters();

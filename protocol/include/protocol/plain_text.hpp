@@ -1,4 +1,4 @@
-// Makes text from a file or a device safe to print. Control characters in it could move a terminal's cursor, change
+// Makes text from a file or a device safe to print. Control characters could move the terminal's cursor, change
 // terminal settings, or join lines of a script.
 #pragma once
 

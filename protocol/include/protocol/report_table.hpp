@@ -21,8 +21,8 @@ enum class ReportKind : std::uint8_t { input = 1, output = 2, feature = 3 };
 
 // clang-format off
 /// X(id, usage, kind, get, set, bytes, set_bytes, meaning). `get` and `set` are the structures that are read and
-/// written, or `none`. `bytes` is the declared size, which fits both structures. `set_bytes` is the smallest used size
-/// of a written report, or 0.
+/// written, or `none`. `bytes` is the declared size, which is enough for both structures. `set_bytes` is the smallest
+/// size of a written report, or 0.
 #define INKWELL_REPORTS(X)                                                                                             \
   X(pose, 2, input, PoseReport, none, sizeof(PoseReport), 0, "The pose. It also comes over the interrupt endpoint, each millisecond.") \
   X(command, 3, output, none, CommandReport, sizeof(CommandReport), sizeof(CommandReport), "A command, which is a sign of life.") \
@@ -64,7 +64,7 @@ inline constexpr auto report_table = std::to_array<ReportInfo>({
 #undef X
 });
 
-/// Texts of a report. They are separate from report_table, because the device does not need them.
+/// Texts of a report. The texts are separate from report_table, because the device does not need them.
 struct ReportText {
   std::string_view get, set;  ///< names of the structures, or `none`
   std::string_view meaning;

@@ -14,10 +14,11 @@
 //   host <- device   feature report  results of commands and shapes: protocol/driver.hpp
 //
 // Sizes and directions of all reports are in protocol/report_table.hpp. A report that the host sets may be longer than
-// its used part, and the device ignores the rest. Some hosts pad every report to the longest of its kind. A report that
-// the host reads is filled with zeros up to its declared size or the requested length (HID 1.11, section 7.2.1).
+// its used part, and the device ignores the rest. Some hosts pad every report to the length of the longest report of
+// its kind. A report that the host reads is filled with zeros up to its declared size or the requested length (HID
+// 1.11, section 7.2.1).
 //
-// ControllerReport has a separate interface. Every program that supports joysticks can read it.
+// ControllerReport has a separate interface. Every program that supports joysticks can read this report.
 #pragma once
 
 #include <algorithm>
@@ -37,16 +38,16 @@ namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
-/// Number of versions by which this build is ahead of the source tree. A test firmware sets it
+/// Number of versions by which this build is ahead of the source tree. A test firmware sets this number
 /// (tests/target/next_protocol).
 #ifndef INKWELL_PROTOCOL_VERSIONS_AHEAD
 #define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
 #endif
 
-/// Increases whenever a structure below or the meaning of an id changes.
+/// Protocol version. It increases whenever a structure below or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
-/// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
+/// Rate of the control interrupt and the scope. Every `time_periods` counts at this rate.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
 /// Bus frames per second of the host's clock.
@@ -150,7 +151,7 @@ enum class ForceMode : std::uint8_t {
   instead_of_walls = 2,  ///< the hand does not feel the walls
 };
 
-/// Input report with the newest pose when the host polls. The pose belongs to the last control period that ends before
+/// Input report: the newest pose at the time of the poll. The pose belongs to the last control period that ends before
 /// the start of the bus frame. A newer pose replaces a pose that the host did not read.
 struct PoseReport {
   ReportId report_id = ReportId::pose;
@@ -177,8 +178,8 @@ inline constexpr float controller_position_step_m = 1e-5f;
 inline constexpr float controller_angle_step_rad = 1e-4f;
 inline constexpr float controller_steps_maximum = 32767.0f;
 
-/// Input report of the controller interface, a multi-axis controller of the HID usage tables. The interface has no
-/// other report, so the report has no id. The host can read it every controller_interval_ms.
+/// Input report of the controller interface: a multi-axis controller as defined in the HID usage tables. The report has
+/// no id, because the interface has no other report. The host can read the report every controller_interval_ms.
 struct ControllerReport {
   std::int16_t position[3];  ///< x, y and z in the workspace
   std::int16_t angle[3];     ///< Rx, Ry and Rz: yaw, pitch and roll of the gimbal
@@ -211,23 +212,24 @@ struct SignalSelection {
 
 struct TestPulse {
   std::uint8_t motor;  ///< 1..3
-  /// Pulse height in A or V. It is bounded by the current or voltage limit and by the current for force_limit_N in this
-  /// pose.
+  /// Pulse height in A or V. The height is bounded by the current or voltage limit, and by the current that produces
+  /// force_limit_N in this pose.
   float amplitude;
   float duration_s;  ///< 0..test_duration_maximum_s; the pulse stops early when it has delivered energy_reserve_J
 };
 
-/// Output report. PoseReport::command_token returns `token` when the command has been carried out. The device does not
-/// acknowledge a report with a wrong version or length or an invalid command. It also does not acknowledge a command on
-/// endpoint 0 while the command queue is full. While a program drives the arm, the device accepts only `stop` from
-/// other programs.
+/// Output report. PoseReport::command_token equals `token` after the command has been carried out. The device does not
+/// acknowledge an invalid command, or a report with a wrong version or length. The device also does not acknowledge a
+/// command on endpoint 0 while the command queue is full. While a program drives the arm, the device accepts only
+/// commands that need no claim (needs_claim()) from other programs.
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
   std::uint8_t version = protocol_version;
   std::uint8_t token;
   std::uint32_t claim;  ///< claim of the sender; 0 if it has none
-  /// Chosen by the program. RequestResultsReport lists the result under this number. With 0 the result is not recorded.
+  /// Chosen by the program. RequestResultsReport lists the result under this number. If the ticket is 0, the result is
+  /// not recorded.
   std::uint32_t ticket;
   union {
     SignalSelection selection;  ///< select_signals
@@ -237,14 +239,14 @@ struct CommandReport {
 
 #pragma pack(pop)
 
-/// Longest interval between two reports of a program over which the board interpolates.
+/// Longest interval between two force reports over which the board interpolates.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 
 /// Output report, at most one per millisecond: the force that a program requests at the probe. The board moves to this
-/// force along a straight line within `interval_ms`. The force is limited by the force limit, and its rate of change by
-/// program_force_change_N_per_s. It fades program_force_expiry_s after the last report. The device refuses and counts a
-/// force that is not finite, an unknown mode, and an interval out of range. It also refuses and counts an old pose and
-/// a claim other than the driver's.
+/// force along a straight line within `interval_ms`. force_limit_N limits the force, and program_force_change_N_per_s
+/// limits its rate of change. The force fades if no report arrives for program_force_expiry_s. The device refuses and
+/// counts a force that is not finite, an unknown mode, and an interval out of range. The device also refuses and counts
+/// an old pose, and a claim that is not the driver's.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
@@ -256,11 +258,11 @@ struct ForceReport {
   float force_N[3];             ///< force on the hand, workspace axes
 };
 
-/// Largest age of the pose that a force report answers. The device refuses older forces, because the program does not
-/// know the position of the hand.
+/// Largest age of the pose that a force report answers. The device refuses a force for an older pose, because the hand
+/// may have moved since then.
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
-/// Heat above which the current limit of a motor falls. It reaches the continuous current at heat 1.
+/// Heat above which the current limit of a motor falls. At heat 1 the limit equals the continuous current.
 inline constexpr float motor_heat_holds_back_from = 0.85f;
 /// Heat at which a fault switches the force off. The reduced current limit normally prevents this heat.
 inline constexpr float motor_heat_fault = 1.25f;
@@ -270,7 +272,7 @@ inline constexpr float speed_holds_back_from = 0.8f;
 /// Fraction of speed_limit_m_per_s above which the force component along the motion is zero.
 inline constexpr float speed_drives_no_more_from = 0.9f;
 
-/// Longest board name. The name is that of the board's folder in boards/.
+/// Longest board name. A board has the name of its folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;
 
 /// Returns the board name in a field of a report or an image. Returns an empty name if the field has no terminating
@@ -325,8 +327,8 @@ inline constexpr std::size_t parameter_entries_maximum = 96;
 static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
 /// Feature report. The host reads all parameters in table order, followed by the parameters of the force law. To set
-/// parameters, the host sends at least the used part of parameters_report_size(count) bytes. With ReportId::stored (get
-/// only) the report has the parameter values after the next start and the operation restore_stored.
+/// parameters, the host sends at least the used part, which has parameters_report_size(count) bytes. A report with
+/// ReportId::stored (get only) contains the operation restore_stored and the parameter values after the next start.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
   ParameterOperation operation;
@@ -349,8 +351,8 @@ struct TransactionReport {
   std::uint16_t reserved;
 };
 
-/// Feature report: start of the newest bus frame on the board's clock. The difference of two reports shows the ratio of
-/// host clock and board clock.
+/// Feature report: start of the newest bus frame on the board's clock. Two reports together show the ratio of the host
+/// clock to the board clock.
 struct FrameReport {
   ReportId report_id = ReportId::frame;
   std::uint8_t is_known;  ///< 0: there is no bus frame, or its time is not known yet; then all further fields are 0
@@ -366,8 +368,8 @@ struct SurfaceEntry {
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
   float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
-  /// 0..shape_life_maximum_s, from the moment at which the shape takes effect. Infinite: until the claim ends. 0: no
-  /// shape.
+  /// Life of the shape, 0..shape_life_maximum_s, from the moment at which it takes effect. An infinite life lasts until
+  /// the claim ends, and a life of 0 means no shape.
   float life_s;
 };
 
@@ -388,27 +390,27 @@ inline constexpr float shape_life_maximum_s = 10.0f;
 inline constexpr float shape_distance_maximum_m = 10.0f;  ///< limit of every length and coordinate
 inline constexpr float friction_maximum = 3.0f;
 
-/// Feature report, set: the new shapes, each in a separate slot. They replace all previous shapes at the start of one
-/// control period, without a jump of the force. The host has to send only the used part:
-/// shapes_report_size(plane_count) bytes. The device refuses an invalid report, or a report of another program than the
-/// driver, as a whole. RequestResultsReport has the result. All shapes end with the claim.
+/// Feature report, set: the new shapes, each in a separate slot. The new shapes replace all previous shapes at the
+/// start of one control period, without a jump of the force. The host has to send only the used part:
+/// shapes_report_size(plane_count) bytes. The device refuses the whole report if it is invalid or does not come from
+/// the driver. RequestResultsReport has the result. All shapes are removed when the claim ends.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
   std::uint32_t claim;  ///< claim of the driver
-  /// Chosen by the program. RequestResultsReport lists the result under this number. With 0 the result is not recorded.
+  /// Chosen by the program. RequestResultsReport lists the result under this number. If the ticket is 0, the result is
+  /// not recorded.
   std::uint32_t ticket;
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
 };
 
-/// Feature report: the rows that the image's force law adds to the tables. After this header follow the name and
-/// description of the force law. For each parameter follow three floats (minimum, maximum, default), then name, unit
-/// and help. For each signal follow name, unit and help. Every text is zero-terminated. The parameters are real
-/// numbers, and their ids count up from force_law_first_id. The signals are floats and follow the last row of the
-/// signal table.
+/// Feature report: the rows that the image's force law adds to the tables. The name and the description of the force
+/// law follow this header. Each parameter has three floats (minimum, maximum, default), a name, a unit and a help text.
+/// Each signal has a name, a unit and a help text. Every text is zero-terminated. The parameters are real numbers, and
+/// their ids count up from force_law_first_id. The signals are floats and follow the last row of the signal table.
 struct ForceLawReport {
   ReportId report_id = ReportId::force_law;
   std::uint8_t parameter_count;  ///< 0..force_law_parameters_maximum
@@ -417,7 +419,7 @@ struct ForceLawReport {
   std::uint16_t size;  ///< size of the whole report, up to force_law_report_maximum
 };
 
-/// Some kernels do not accept longer reports.
+/// Largest size of a ForceLawReport. Some kernels do not accept longer reports.
 inline constexpr std::size_t force_law_report_maximum = 2048;
 
 constexpr std::size_t shapes_report_size(std::size_t plane_count) {
@@ -465,7 +467,7 @@ constexpr std::uint32_t hash_signals(const Table& table) {
 }
 }  // namespace detail
 
-/// FNV-1a hashes of the tables. They are equal at both ends if ids, names and units agree.
+/// FNV-1a hashes of the tables. The hashes are equal in firmware and PC program if ids, names and units agree.
 inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters(parameter_table);
 inline constexpr std::uint32_t signal_table_hash = detail::hash_signals(signal_table);
 

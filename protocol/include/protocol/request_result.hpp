@@ -1,7 +1,7 @@
 // Results of requests that have no separate result report: commands, shapes and black-box rows.
 //
-// A busy board and a refusal are results, never a stall. Some hosts cannot distinguish a stall from an unplugged
-// device.
+// The board reports a full queue and a refusal as results, never as a USB stall. Some hosts cannot distinguish a stall
+// from an unplugged device.
 #pragma once
 
 #include <array>

@@ -1,18 +1,18 @@
 // Scope frames, sent over the vendor bulk interface.
 //
 // A frame is one bulk transfer: a header and the samples of consecutive control periods. A frame has at most
-// scope_frame_maximum bytes and scope_frame_samples_maximum samples. A short packet ends the transfer, or an empty
-// packet if the length is a multiple of 64.
+// scope_frame_maximum bytes and scope_frame_samples_maximum samples. Each transfer ends with a packet of less than 64
+// bytes, which is empty if the length is a multiple of 64.
 //
 // Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
-// floats per sample, the time of two packets remains for this gap. With only 36 samples per frame it would be the time
-// of less than half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the
-// number of lost samples.
+// floats per sample, each frame leaves an idle time of two packets. With only 36 samples, a frame would leave less than
+// half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the number of
+// lost samples.
 //
 //   full     A sample has the value of every selected signal, in the order of the selection.
-//   changes  A sample is a 32-bit mask, in which bit i is the i-th selected signal, followed by the values that
-//            differ from the previous sample, in rising order of i. The first sample of a frame has every bit set,
-//            so that a reader can decode each frame alone.
+//   changes  A sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values that differ
+//            from the previous sample follow in rising order of i. The first sample of a frame has every bit set, so
+//            that a reader can decode each frame alone.
 //
 // The encoding is `full` for samples of up to scope_full_sample_maximum bytes. 14 floats at 20 kHz are 1.12 MB/s, and
 // full-speed USB transmits 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
@@ -29,7 +29,7 @@ enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
 
 inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" in little-endian byte order
 inline constexpr std::size_t scope_frame_maximum = 6144;
-/// 5.5 ms. This bounds the latency for a selection of few signals.
+/// 109 samples take 5.5 ms, which bounds the latency for a selection of few signals.
 inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
 inline constexpr std::size_t scope_full_sample_maximum = 56;
 
@@ -49,7 +49,7 @@ struct ScopeFrameHeader {
 #pragma pack(pop)
 static_assert(sizeof(ScopeFrameHeader) == 24);
 
-/// Returns the bytes of one sample in the encoding `full`.
+/// Returns the size of one sample in the encoding `full`, in bytes.
 constexpr std::size_t full_sample_size(const SignalSelection& selection) {
   std::size_t size = 0;
   for (std::size_t i = 0; i < selection.count; ++i)

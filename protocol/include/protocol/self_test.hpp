@@ -1,7 +1,8 @@
 // Self-test of the board: its items, their results, and the report.
 //
-// The self-test runs after each start, as soon as the current sensor offsets are measured, and on command. The state is
-// then `testing`. Flash, RAM and watchdog are tested only at start-up, and their results do not change afterwards.
+// The self-test runs after each start, as soon as the current sensor offsets are measured, and on command. During the
+// self-test the state is `testing`. Flash, RAM and watchdog are tested only at start-up, and their results do not
+// change afterwards.
 #pragma once
 
 #include <array>
@@ -131,7 +132,7 @@ INKWELL_SELF_TEST_RESULTS(X)
 #undef X
 }  // namespace detail
 
-/// Returns the item of motor, bridge or gimbal angle `axis` (0, 1 or 2). `first` is the item of the first one.
+/// Returns the item of motor, bridge or gimbal angle `axis` (0, 1 or 2). `first` is the item with index 0.
 constexpr SelfTestItem of_axis(SelfTestItem first, std::size_t axis) {
   return static_cast<SelfTestItem>(static_cast<std::size_t>(first) + axis);
 }
@@ -156,7 +157,7 @@ struct SelfTestReport {
 static_assert(sizeof(SelfTestEntry) == 8);
 static_assert(sizeof(SelfTestReport) == 16 + 8 * self_test_item_count);
 
-/// True if an item failed that the force depends on.
+/// True if an item that the force requires has failed.
 constexpr bool takes_force(const SelfTestReport& report) {
   for (std::size_t i = 0; i < self_test_item_count; ++i)
     if (self_test_item_table[i].takes_force && report.entries[i].result == SelfTestResult::failed) return true;

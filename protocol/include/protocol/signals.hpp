@@ -1,7 +1,7 @@
 // Table of the signals that the scope can stream in every control period: X(id, name, unit, wire, help).
 //
-// Recordings use the names as column names. A signal is transmitted as a float. A signal that changes in every period
-// and whose source has few bits is transmitted as a scaled 16-bit integer.
+// Recordings use the names as column names. Most signals are transmitted as floats. Signals that change in every period
+// and have a source with few bits are transmitted as scaled 16-bit integers.
 //
 // The signals of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
@@ -120,7 +120,7 @@ inline constexpr std::size_t signal_count = signal_table.size();
 inline constexpr std::size_t force_law_signals_maximum = 8;
 static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id has eight bits");
 
-/// Returns the table and, if the force law is known, its signals.
+/// Returns the table, followed by the signals of a known force law.
 inline KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
 
 constexpr const SignalInfo& info(Signal signal) {
@@ -130,7 +130,7 @@ constexpr const SignalInfo& info(Signal signal) {
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
 
-/// Returns the signal of motor, joint or axis `axis` (0, 1 or 2). `rows` is the signal of the first one.
+/// Returns the signal of motor, joint or axis `axis` (0, 1 or 2). `rows` is the signal with index 0.
 constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[axis]; }
 /// Returns the signal of motor, joint or axis `number` (1, 2 or 3, as in the row names).
 constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }

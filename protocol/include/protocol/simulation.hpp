@@ -1,4 +1,4 @@
-// Table of quantities that only a simulation knows, in addition to the signals of the firmware: X(name, unit, help).
+// Table of quantities that exist only in a simulation: X(name, unit, help).
 //
 // A virtual board records these quantities in every control period, in table order. Recordings use the names as column
 // names.

@@ -1,7 +1,8 @@
-// The parameter store: stored parameters in the flash of the board, and the report about them.
+// The parameter store: stored parameters in the flash of the board, and the report about the store.
 //
 // The board loads the last stored set at start-up. One command stores the current set, and another command erases the
-// stored set. Both are allowed only while the force is off and no queued command switches it on (may_store()).
+// stored set. Both commands are allowed only while the force is off and no queued command switches the force on
+// (may_store()).
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ namespace inkwell::protocol {
   X(3, other_schema, "The records were written by a firmware with another schema and cannot be read. The next start sets every parameter to its default.")
 // clang-format on
 
-/// Result of the last command to store or to erase.
+/// Result of the last store or erase command.
 enum class StoreResult : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_STORE_RESULTS(X)
@@ -96,17 +97,16 @@ INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail
 
-/// True in states in which the board may store or erase parameters. In these states the force is off, and only a
-/// further command switches it on.
+/// True if the board may store or erase parameters: the force is off, and only a further command switches it on.
 constexpr bool may_store(State state) {
   return state == State::unreferenced || state == State::ready || state == State::fault;
 }
 
-/// Layout of the records. A firmware reads only records with the same schema.
+/// Version of the record layout. A firmware reads only records with its schema version.
 inline constexpr std::uint16_t store_schema = 1;
 /// Number of flash sectors. The records alternate between the sectors.
 inline constexpr std::size_t store_sectors = 2;
-/// Number of unknown parameter ids that the report lists.
+/// Largest number of unknown parameter ids that the report lists.
 inline constexpr std::size_t store_unknown_ids_maximum = 16;
 
 /// Feature report: the state of the store.
@@ -126,7 +126,7 @@ struct StoreReport {
   std::uint16_t schema;                        ///< schema of the contents at start-up; 0 for `nothing`
   std::uint16_t entries;                       ///< number of parameters in the contents at start-up
   std::uint16_t out_of_range;                  ///< entries with a refused value; they got their default
-  /// Entries with an unknown id. New records retain these entries, except those of another force law.
+  /// Entries with an unknown id. New records retain unknown entries, except for entries of another force law.
   std::uint16_t unknown;
   std::uint16_t unknown_ids[store_unknown_ids_maximum];  ///< first unknown ids, padded with 0
 };

@@ -1,5 +1,5 @@
 // Supervisor of the board, in three tables: states, transitions, and the monitored faults of each state. The firmware
-// uses these tables (control/supervisor.hpp), its tests cover every cell, and `inkwell reference` prints them.
+// uses the tables (control/supervisor.hpp), and `inkwell reference` prints them. Firmware tests cover every cell.
 #pragma once
 
 #include <array>
@@ -83,7 +83,7 @@ inline constexpr States with_force = []() {
   return states;
 }();
 
-/// Does not read the table, because the control interrupt calls this function.
+/// Uses a bit mask instead of the table, because the control interrupt calls this function.
 constexpr bool force_is_on(State state) { return with_force.contains(state); }
 
 // ---- transitions -------------------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ constexpr Events events(More... some) {
 }
 constexpr Events when(Event event, bool is_so) { return is_so ? static_cast<Events>(event) : 0u; }
 
-/// State transition. It occurs if all events of `needs` and no event of `unless` are present.
+/// State transition. A transition is open if all events of `needs` and no event of `unless` are present.
 struct Way {
   State from;
   State to;
@@ -143,8 +143,8 @@ struct Way {
   constexpr bool is_open(Events now) const { return (now & (needs | unless)) == needs; }
 };
 
-/// Rows with the same `from` are consecutive, and the first open transition occurs. A fault has precedence: it leads to
-/// `fault` from each state except `fault` and `update`.
+/// Rows with the same `from` are consecutive. The first open transition of these rows occurs. A fault has precedence:
+/// it leads to `fault` from each state except `fault` and `update`.
 inline constexpr auto way_table = std::to_array<Way>({
     {State::starting, State::update, events(Event::update), 0},
     {State::starting, State::testing, events(Event::measured), 0},
@@ -195,13 +195,13 @@ enum class Clearing : std::uint8_t {
   by_reset,   ///< only by a reset: the firmware cannot remove the cause
 };
 
-/// Switch-off of the motors by a fault.
+/// Method by which a fault switches the motors off.
 enum class Off : std::uint8_t {
   coast,  ///< bridges off: for faults that make currents, bridges, supply or speed unreliable
-  /// Low sides on until the probe is slow, so that the back EMF brakes the motors. The bridges are off in each period
-  /// with a measured motor current above the current for the force limit.
+  /// The low sides are on until the probe is slow, so that the back EMF brakes the motors. A measured motor current
+  /// above the current for the force limit switches the bridges off for one period.
   brake,
-  /// As `brake`, but with a lower current threshold, because the hand may continue its motion.
+  /// Like `brake`, but with a lower current threshold, because the hand may continue its motion.
   brake_gently,
 };
 
@@ -214,8 +214,8 @@ struct Watch {
   bool voids_reference = false;
 };
 
-/// If several faults occur in one period, the board reports the first one in this table, because it explains the
-/// others. The reported fault remains until it is cleared.
+/// If several faults occur in one period, the board reports the fault that comes first in this table, because that
+/// fault explains the others. The reported fault remains until it is cleared.
 inline constexpr auto watch_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};
@@ -230,7 +230,7 @@ inline constexpr auto watch_table = []() {
       {Fault::watchdog, every, at_once, coast},
       {Fault::servo_overrun, every, at_once, coast},
       {Fault::heartbeat_missed, every, at_once, coast},
-      // Not in `starting`, because the control interrupt starts before the main loop.
+      // The main loop is not monitored in `starting`, because the control interrupt starts first.
       {Fault::main_loop_stalled, started, at_once, coast},
       {Fault::not_finite, every, when_gone, coast},
       {Fault::force_law, every, at_once, brake},
@@ -257,12 +257,13 @@ inline constexpr auto watch_table = []() {
   });
 }();
 
-/// Set of rows of the table. Bit 0 is the first row.
+/// Set of rows of watch_table, as one bit per row. Bit 0 is the first row.
 using Watches = std::uint32_t;
 static_assert(watch_table.size() <= 32);
 
 namespace detail {
-/// Index of each fault code. With a long table the compiler does not evaluate a search at compile time.
+/// Index of each fault code. The indices are stored, because the compiler does not evaluate a search in a long table at
+/// compile time.
 inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(watch_table.size()));
@@ -272,7 +273,7 @@ inline constexpr auto places = []() {
 }();
 }  // namespace detail
 
-/// Returns the index of a fault in the table.
+/// Returns the index of a fault in watch_table.
 constexpr std::size_t place_of(Fault fault) {
   const auto code = static_cast<std::size_t>(fault);
   return code < detail::places.size() ? detail::places[code] : watch_table.size();
@@ -280,7 +281,7 @@ constexpr std::size_t place_of(Fault fault) {
 constexpr Watches watch(Fault fault) { return 1u << place_of(fault); }
 constexpr Watches watch(Fault fault, bool is_found) { return static_cast<Watches>(is_found) << place_of(fault); }
 
-/// Returns the rows for which `is_so` returns true.
+/// Returns the set of rows for which `is_so` returns true.
 template <class Predicate>
 constexpr Watches watches(Predicate is_so) {
   Watches bits = 0;
@@ -289,7 +290,7 @@ constexpr Watches watches(Predicate is_so) {
   return bits;
 }
 
-/// Faults that void the reference, in every state and together with any other fault.
+/// Faults that invalidate the reference in every state, even if another fault is reported.
 inline constexpr Watches voiding_watches = watches([](const Watch& row) { return row.voids_reference; });
 
 // ---- consistency of the tables -----------------------------------------------------------------------------

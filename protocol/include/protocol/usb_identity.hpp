@@ -5,8 +5,8 @@
 
 namespace inkwell::protocol::usb {
 
-/// The vendor identifier of pid.codes with its product identifier for private tests. docs/flashing.md lists the steps
-/// for registering a separate identifier for Inkwell.
+/// Vendor identifier of pid.codes, and the product identifier that pid.codes reserves for private tests.
+/// docs/flashing.md lists the steps for registering a separate identifier for Inkwell.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
 inline constexpr bool is_test_identity = true;
@@ -19,8 +19,8 @@ inline constexpr std::uint8_t hid_out_endpoint = 0x01;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t scope_interface = 1;
 inline constexpr std::uint8_t scope_in_endpoint = 0x82;  ///< bulk, 64 bytes
 
-/// Multi-axis controller for programs that support joysticks. It is a separate interface, because two collections of
-/// one interface share an endpoint, and the device would then lose poses.
+/// Multi-axis controller for programs that support joysticks. The controller has a separate interface: two collections
+/// of one interface would share an endpoint, and the device would lose poses.
 inline constexpr std::uint8_t controller_interface = 2;
 inline constexpr std::uint8_t controller_in_endpoint = 0x83;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t controller_interval_ms = 8;
@@ -28,7 +28,7 @@ inline constexpr std::uint8_t controller_interval_ms = 8;
 /// Run-time interface of USB device firmware upgrade 1.1. DFU_DETACH starts the boot loader in the chip's ROM.
 inline constexpr std::uint8_t firmware_update_interface = 3;
 
-/// Boot loader in the chip's ROM (AN2606). It is the same in every STM32.
+/// Boot loader in the chip's ROM (AN2606). These identifiers are the same in every STM32.
 inline constexpr std::uint16_t boot_loader_vendor_id = 0x0483;
 inline constexpr std::uint16_t boot_loader_product_id = 0xDF11;
 inline constexpr char boot_loader_product[] = "boot loader";

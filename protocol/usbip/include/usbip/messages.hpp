@@ -133,7 +133,7 @@ struct TransferHeader {
   Big32 endpoint;  ///< number, 0 to 15, without the direction bit
 };
 
-/// Returns the number of an imported device in transfer headers.
+/// Returns the device number for transfer headers.
 constexpr std::uint32_t device_of(std::uint32_t bus_number, std::uint32_t device_number) {
   return bus_number << 16 | device_number;
 }
@@ -141,7 +141,8 @@ constexpr std::uint32_t device_of(std::uint32_t bus_number, std::uint32_t device
 /// `packet_count` of a transfer that is not isochronous. Linux itself sends 0.
 inline constexpr std::uint32_t not_isochronous = 0xFFFF'FFFF;
 
-/// If the direction is OUT, `length` bytes of data follow. The `packet_count` IsochronousPackets follow the data.
+/// If the direction is OUT, `length` bytes of data follow this struct. The `packet_count` IsochronousPackets follow the
+/// data.
 struct Submit {
   TransferHeader header{.command = Command::submit};
   Big32 transfer_flags;  ///< Linux URB_ flags
@@ -152,8 +153,8 @@ struct Submit {
   std::array<std::byte, 8> setup{};  ///< setup packet of a control transfer, little-endian as on USB
 };
 
-/// If the direction of the transfer was IN, `actual_length` bytes of data follow. The packets of an isochronous
-/// transfer follow the data.
+/// If the direction of the transfer was IN, `actual_length` bytes of data follow this struct. The packets of an
+/// isochronous transfer follow the data.
 struct ReturnSubmit {
   TransferHeader header{.command = Command::return_submit};
   BigEndian<std::int32_t> status;  ///< 0, or a negative errno value of Linux
