@@ -47,7 +47,7 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
   return 0;
 }
 
-/// Creates a folder. `option`: the option with which the user can choose another one.
+/// Creates a folder. `option` is the command-line option that selects another folder.
 void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
@@ -56,7 +56,7 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
                                     folder.string(), code.message(), option));
 }
 
-/// Checks the folder before hours of cases instead of after them.
+/// Creates the folder of the page before the cases run, because the runs may take hours.
 void make_folder_of_page(const CampaignOptions& command) {
   const std::filesystem::path folder = std::filesystem::path(command.page).parent_path();
   if (!folder.empty()) make_folder(folder, "--page");

@@ -3,10 +3,10 @@
 
 // To add a command:
 // 1. Add a line to INKWELL_COMMANDS.
-// 2. Define add_NAME_command() in NAME_command.cpp in this folder. Its help needs examples with units.
+// 2. Define add_NAME_command() in NAME_command.cpp in this folder. The help text needs examples with units.
 // 3. Add the command and its subcommands to the list in tests/system/bad_input_test.cpp.
 //
-// Manual pages, completion and the page of commands are generated from the help texts.
+// Manual pages, completion and the command page are generated from the help texts.
 
 #include <functional>
 
@@ -18,7 +18,7 @@ namespace inkwell::command_line {
 
 /// The action of the chosen command; returns the exit code.
 using Action = std::function<int()>;
-/// Opens the window, with a recording unless its name is empty. Returns the exit code.
+/// Opens the window, and a recording if its name is not empty. Returns the exit code.
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
 /// The program to which a command adds itself, and the objects that the command may use.
@@ -29,7 +29,7 @@ struct Place {
   OpenWindow open_window;
 };
 
-/// In the order of the program's help.
+/// The commands, in the order of the program's help.
 #define INKWELL_COMMANDS(X) \
   X(info)                   \
   X(devices)                \
@@ -57,11 +57,11 @@ struct Place {
 INKWELL_COMMANDS(X)
 #undef X
 
-/// Without a command the program opens the window. Returns a function with which a command opens it.
+/// Without a command the program opens the window. Returns a function that opens the window for a command.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
-/// Throws UsageError if a window option was given with a command that opens no window. Such an option would be ignored,
-/// including any mistake in it.
+/// Throws UsageError if a window option was given with a command that opens no window. The program would otherwise
+/// ignore the option and any mistake in its value.
 void refuse_window_options_in_vain(const CLI::App& program);
 
 }  // namespace inkwell::command_line

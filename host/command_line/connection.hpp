@@ -21,7 +21,7 @@ class UsageError : public device::Error {
   using Error::Error;
 };
 
-/// How board time of a virtual board passes without --real-time.
+/// Pace of a virtual board's time without --real-time.
 enum class BoardPace : std::uint8_t {
   as_it_can,
   real_time,  ///< synchronized with wall time
@@ -50,8 +50,8 @@ struct DeviceOptions {
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the selected device, and takes it over if this was requested. With --arm, a virtual board gets the parameters
-/// of that arm description.
+/// Opens the selected device, and takes the arm over if --take-over was given. With --arm, a virtual board receives the
+/// parameters of the arm description.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 
@@ -63,7 +63,7 @@ struct Typed {
 };
 
 /// Parses with `read()`. A mistake is reported before any device is opened. Only an unknown name requires the device,
-/// because it may belong to the device's force law.
+/// because the name may belong to the device's force law.
 template <class Read>
 Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
                                              BoardPace pace = BoardPace::as_it_can) {
@@ -81,7 +81,7 @@ Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read 
   }
 }
 
-/// Name of the arm in the --arm description. Empty without --arm, because a board does not know its arm.
+/// Name of the arm in the --arm description. Empty without --arm, because a board does not store an arm name.
 std::string arm_name(const DeviceOptions& options);
 
 }  // namespace inkwell::command_line

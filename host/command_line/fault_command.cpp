@@ -37,7 +37,7 @@ bool has_crash(const BlackBoxReport& box) { return box.crash.exception != 0; }
 
 using Image = std::optional<crash::FirmwareImage>;
 
-/// The ELF that the user has given. Throws an error if it is not the image that crashed.
+/// Returns the image from --elf. Throws an error if another image crashed.
 Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
   if (options.elf.empty()) return std::nullopt;
   crash::FirmwareImage image(options.elf);

@@ -41,7 +41,8 @@ int switch_off(const DeviceOptions& options) {
   return 0;
 }
 
-/// Keeps the force on until an interrupt or the given time. The board switches the force off without a sign of life.
+/// Keeps the force on until an interrupt or the given time. Sends signs of life, because the board otherwise switches
+/// the force off.
 int keep_on(const DeviceOptions& options, double seconds) {
   const auto connection = connect(options, BoardPace::real_time);
   device::Device& device = *connection.device;

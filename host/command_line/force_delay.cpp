@@ -24,10 +24,10 @@ using protocol::Signal;
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double periods_per_ms = rate_Hz / 1000;
 constexpr std::int64_t periods_in(double seconds) { return static_cast<std::int64_t>(seconds * rate_Hz); }
-/// Time after the first force of a recording or a vibration that is not evaluated.
+/// Settling time after the first force of a recording or vibration. Samples in this time are not evaluated.
 constexpr std::int64_t settling_periods = periods_in(0.02);
 constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
-/// Waiting time for the last samples of a vibration, which must be complete.
+/// Time to wait for the last samples of a vibration.
 constexpr std::int64_t sample_delay_periods = periods_in(0.01);
 
 /// A program that answers each pose with a force along x, and reads the scope between two poses.
@@ -39,7 +39,7 @@ class Program {
 
   explicit Program(device::Device& device) : device_(device) {}
 
-  /// Answers poses for this number of control periods.
+  /// Answers poses for `periods` control periods.
   void run(std::int64_t periods, const Law& law, const Read& read) {
     Pose pose = next();
     for (const std::int64_t begin = pose.time_periods; pose.time_periods - begin < periods; pose = next()) {
@@ -62,7 +62,7 @@ class Program {
   std::int64_t poses_missed() const { return poses_missed_; }
 
  private:
-  /// The newest pose: poses that arrived during a request are too old to answer.
+  /// Returns the newest pose, because poses that arrived during a request are too old to answer.
   Pose next() {
     Pose pose = next_pose(device_);
     while (const auto newer = device_.read_pose(0ms)) pose = *newer;
@@ -104,7 +104,7 @@ ForceDelay::Recording record_ramp(Program& program) {
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 
-/// A sine that starts in period 0, and the component of a signal at its frequency.
+/// A sine that starts in period 0, and the component of a signal at the frequency of the sine.
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}

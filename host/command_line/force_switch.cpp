@@ -18,7 +18,7 @@ using device::Pose;
 using protocol::Command;
 using protocol::State;
 
-/// Board time. A device that is not referenced yet drops the request, so it is repeated.
+/// Intervals in board time. The request is repeated, because a device that is not referenced yet drops it.
 constexpr std::int64_t ask_again_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
 /// Repeats the command until the desired state, a fault, or the time limit.
@@ -51,7 +51,7 @@ void clear_what_a_host_left(device::Device& device) {
   });
 }
 
-/// The reason with a leading space; empty if the force only has to be switched on.
+/// Returns the reason why the force is off, with a leading space, or an empty text if nothing prevents the force.
 std::string what_keeps_it_off(const Pose& pose) {
   if (pose.state == State::ready) return {};
   return " " + (pose.state == State::fault ? device::fault_line(pose.fault) : std::string(info(pose.state).meaning));

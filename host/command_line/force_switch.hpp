@@ -9,13 +9,13 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force off, whichever program switched it on. Returns the first pose that shows this.
+/// Switches the force off, whichever program switched it on. Returns the newest pose after the command.
 device::Pose switch_force_off(device::Device& device);
 
 /// The force is on during the lifetime of this object. The owner must send signs of life.
 class ForceSwitch {
  public:
-  /// Waits until the force is on. Throws device::Error with the reason if it does not come on.
+  /// Waits until the force is on. Throws device::Error with the reason if the force cannot be switched on.
   explicit ForceSwitch(device::Device& device);
   ~ForceSwitch();
   ForceSwitch(const ForceSwitch&) = delete;
@@ -23,7 +23,7 @@ class ForceSwitch {
 
   /// Like switch_force_off(), but without effect after another program has taken over the arm. Throws device::Error.
   device::Pose switch_off();
-  /// Reason why this program has lost the force, based on this pose; none if it has not.
+  /// Returns the reason if `pose` or the driver shows that this program has lost the force.
   std::optional<std::string> loss(const device::Pose& pose) const;
 
  private:
@@ -31,7 +31,7 @@ class ForceSwitch {
   bool may_be_on_ = true;
 };
 
-/// A sentence that states whether the force is on, and otherwise the cause and the remedy.
+/// Returns a sentence with the state of the force. If the force is off, the sentence includes cause and remedy.
 std::string force_sentence(const device::Pose& pose);
 
 }  // namespace inkwell::command_line

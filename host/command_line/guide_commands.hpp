@@ -1,4 +1,4 @@
-// Adds guides as subcommands of the command for their group.
+// Adds the guides of a group as subcommands.
 #pragma once
 
 #include <functional>

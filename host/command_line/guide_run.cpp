@@ -25,7 +25,8 @@ using guides::Phase;
 
 constexpr auto silence_limit = 5s;
 
-/// A line that the user typed, or none if there is no complete line. Throws UsageError if standard input is closed.
+/// Returns a line that the user typed, or nothing if no input is available. Throws UsageError if standard input is
+/// closed.
 std::optional<std::string> typed_line() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return std::nullopt;
@@ -88,7 +89,7 @@ class Display {
 
 class GuideRun {
  public:
-  /// Ctrl+C cancels the guide, which leaves the motors off, instead of stopping the program.
+  /// Ctrl+C cancels the guide and leaves the motors off, instead of terminating the program.
   GuideRun(GuidedDevice& device, Guide& guide, const Consent& options, bool json, const InterruptGuard& interrupt)
       : device_(device),
         guide_(guide),
@@ -132,7 +133,7 @@ class GuideRun {
     std::this_thread::sleep_for(1ms);
   }
 
-  /// --yes agrees to the actions of the device. Only the user or button 1 can confirm that the user's own part is done.
+  /// --yes agrees to the actions of the device. Only the user or button 1 can confirm the end of the user's task.
   bool agrees() {
     if (guide_.phase() == Phase::asks && consent_.yes) return true;
     if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
@@ -178,7 +179,7 @@ class GuideRun {
   Clock::time_point heard_at_ = Clock::now();
 };
 
-/// Whether the changes must be stored. If the user cannot be asked, prints how to store them.
+/// Returns true if the changes are to be stored. If the user cannot be asked, prints how to store the changes.
 bool wants_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {

@@ -17,9 +17,9 @@ struct Consent {
   void add_to(CLI::App& command);
 };
 
-/// Runs guides one after another on the selected device, until one fails. Then stores their changes on the board if the
-/// user agrees. Returns the exit code. Throws device::Error with the failure, and UsageError if consent is required and
-/// standard input is closed.
+/// Runs guides one after another on the selected device, until one fails. After the last guide, stores the changes on
+/// the board if the user agrees. Returns the exit code. Throws device::Error with the failure, and UsageError if
+/// consent is required and standard input is closed.
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
                const guides::Choices& choices);
 

@@ -19,8 +19,8 @@ inline device::BoardTimeout transaction_limit() { return {5.0, std::chrono::seco
 
 class GuidedDevice {
  public:
-  /// Connects to the selected device. With --arm, sets the parameters of that arm description. With --virtual, a
-  /// simulated hand performs the user's part. Throws device::Error if there is no device.
+  /// Connects to the selected device. With --arm, sets the parameters of the arm description. With --virtual, a
+  /// simulated hand performs the user's tasks. Throws device::Error if there is no device.
   explicit GuidedDevice(const DeviceOptions& options);
 
   device::Session& session() { return *session_; }

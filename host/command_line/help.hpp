@@ -8,7 +8,7 @@
 
 namespace inkwell::command_line {
 
-/// Applies to the program and to all commands that are added afterwards.
+/// Sets the help style of the program and of all commands that are added afterwards.
 void set_help_style(CLI::App& program);
 
 /// Adds the text after a command's options: one example per line, and the hints that all commands share.
@@ -20,12 +20,12 @@ CLI::Validator more_than_zero();
 CLI::Validator number_within(double low, double high);
 CLI::Validator whole_number_within(int low, int high);
 
-/// Rejects an empty device or file name. It probably comes from an unset script variable, and must not select the
-/// default device.
+/// Rejects an empty device or file name. An empty name probably comes from an unset script variable and must not select
+/// the default device.
 CLI::Validator not_empty();
 
-/// An error sentence if an unknown command was given or a required subcommand is missing. It lists the commands and
-/// suggests the most similar one.
+/// Returns an error sentence if an unknown command was given or a required subcommand is missing. The sentence lists
+/// the commands and suggests the most similar command.
 std::optional<std::string> wrong_command(const CLI::App& program);
 
 }  // namespace inkwell::command_line

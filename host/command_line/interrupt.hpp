@@ -5,8 +5,8 @@
 
 namespace inkwell::command_line {
 
-/// During its lifetime, SIGINT and SIGTERM are recorded instead of terminating the program. A second signal terminates
-/// it.
+/// While a guard exists, SIGINT and SIGTERM are recorded instead of terminating the program. A second signal terminates
+/// the program.
 class InterruptGuard {
  public:
   InterruptGuard();

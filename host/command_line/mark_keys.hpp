@@ -8,8 +8,8 @@
 
 namespace inkwell::command_line {
 
-/// On a terminal each press of the space bar or the return key is a numbered mark. On a pipe each line is a mark, with
-/// the line as its text.
+/// On a terminal each press of the space bar or the return key sets a numbered mark. On a pipe each line sets a mark
+/// with the line as its text.
 class MarkKeys {
  public:
   explicit MarkKeys(int descriptor);

@@ -22,7 +22,7 @@ struct DelayOptions {
   bool is_held = false;  ///< the user holds the stylus of a real arm
 };
 
-/// Sets the limit of the force change to its maximum during a measurement, because it would affect the result.
+/// Sets the rate limit of the force to its maximum during a measurement, because a lower limit would affect the result.
 class FastForce {
  public:
   explicit FastForce(device::Device& device) : device_(device), stored_(device.parameters()[parameter]) {

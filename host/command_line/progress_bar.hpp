@@ -7,10 +7,11 @@
 
 namespace inkwell::command_line {
 
-/// A bar on a terminal. Otherwise one line per new step; the text before the first colon identifies a step.
+/// Draws a bar on a terminal, and otherwise prints one line per new step. The text before the first colon identifies a
+/// step.
 class ProgressBar {
  public:
-  /// `done` from 0 to 1. Without it no bar is shown, because the duration is unknown.
+  /// `done` from 0 to 1. Without `done` no bar is shown, because the duration is unknown.
   void operator()(std::string_view step, std::optional<double> done);
   /// Leaves the bar on the screen and starts a new line.
   void end();

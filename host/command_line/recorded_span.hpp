@@ -13,13 +13,12 @@ class RecordedSpan {
   /// 0 means no limit.
   explicit RecordedSpan(std::uint64_t periods) : periods_(periods) {}
 
-  /// Removes samples after the end. Samples whose time has restarted, as after a board restart, are retained: they do
-  /// not count towards the length, and the recorder reports the restart.
+  /// Removes samples after the end of the recording. Samples after a board restart are retained. These samples do not
+  /// count towards the length, and the recorder reports the restart.
   void cut(device::ScopeSamples& samples);
-  /// True once samples up to or after the end have arrived.
+  /// True if samples up to the end of the recording have arrived.
   bool is_over() const { return is_over_; }
-  /// Number of periods that are missing at the end of a finished recording with these numbers of stored and lost
-  /// samples.
+  /// Returns the number of missing periods at the end of a recording, from the numbers of stored and lost samples.
   std::uint64_t missing_at_end(std::uint64_t samples, std::uint64_t lost) const;
 
  private:

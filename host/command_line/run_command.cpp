@@ -1,4 +1,4 @@
-// Starts a program that was made for the libraries of another arm, with the drop-in libraries in their place.
+// Starts a program that was written for another arm, with the drop-in libraries instead of that arm's libraries.
 #include "commands.hpp"
 
 #include <spawn.h>
@@ -28,7 +28,7 @@ constexpr int passed_on[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2}
 
 volatile std::sig_atomic_t program_process = 0, early_signal = 0;
 
-/// Passes on signals of other processes. Signals of the terminal reach the program directly.
+/// Forwards signals from other processes to the program. Signals from the terminal reach the program directly.
 void pass_on(int signal, siginfo_t* information, void*) {
   if (information->si_code == SI_KERNEL) return;
   if (program_process == 0)

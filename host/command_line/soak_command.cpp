@@ -28,7 +28,7 @@ constexpr double default_board_time_s = 60;
 
 struct SoakOptions {
   soak::Choices choices;
-  /// Total of all sittings. Default: default_board_time_s, or a complete sitting of `choices` if one is selected.
+  /// Total of all sittings. Default: default_board_time_s, or a complete sitting of `choices` if a sitting is selected.
   std::optional<double> board_time_s;
   unsigned jobs = 1;
   std::optional<unsigned> sitting;  ///< runs only this sitting
@@ -40,7 +40,7 @@ struct Plan {
   std::vector<unsigned> numbers;  ///< numbers of the sittings
 };
 
-/// All sittings have the same length. Their sum is the requested time, independent of the number of jobs.
+/// All sittings have the same length. The sum of all sittings is the requested time, independent of the number of jobs.
 Plan plan_of(const SoakOptions& command) {
   if (command.sitting && !command.board_time_s) return {command.choices, {*command.sitting}};
   const double board_time_s = command.board_time_s.value_or(default_board_time_s);
@@ -57,7 +57,7 @@ Plan plan_of(const SoakOptions& command) {
   return plan;
 }
 
-/// Checks the file before an hour of work instead of after it. The existing content stays until the result replaces it.
+/// Checks before the soak whether the file can be written. The existing content remains until the result replaces it.
 void check_writable(const std::string& file) {
   std::error_code ignored;
   const bool was_there = std::filesystem::exists(file, ignored);
@@ -66,7 +66,7 @@ void check_writable(const std::string& file) {
   if (!was_there) std::filesystem::remove(file, ignored);
 }
 
-/// The completed sittings, and the reason if some are missing.
+/// The completed sittings, and the reason if any sittings are missing.
 struct Outcome {
   soak::Soak soak;
   std::string trouble;
@@ -124,7 +124,7 @@ void add_soak_command(const Place& place) {
       "soak",
       "Tests virtual boards with random use, faults, unplugged cables and parameter changes\n"
       "Ctrl-C stops the soak and prints the results so far. Exit code 1: the soak found a problem.");
-  // tools/soak sets default options; options of its user follow them and take precedence.
+  // tools/soak passes its default options before the user's options. The last value of an option takes precedence.
   command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
   command->add_option("--seconds", options->board_time_s, "Total board time, divided equally among the boards")

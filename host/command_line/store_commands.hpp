@@ -5,8 +5,7 @@
 
 namespace inkwell::command_line {
 
-/// A virtual board that was started for one command exits with it. Reports this, and the option that retains the
-/// values, if they would be lost.
+/// Warns if values are lost when the virtual board of this command exits, and names the option that retains them.
 void tell_what_ends(const DeviceOptions& options, bool is_stored);
 
 void add_store_commands(CLI::App& parameters, const Place& place);

@@ -18,11 +18,12 @@
 namespace inkwell::command_line {
 namespace {
 
-/// The name begins with "Window", because completion does not offer this group after a command.
+/// The completion generator recognizes the group by the word "Window" and does not offer it after a command.
 constexpr char window_group[] = "Window (without a command, and of replay)";
 constexpr std::string_view command_with_window = "replay";
 
-/// The choices in the form for help, manual page and completion. User-defined layouts are also accepted.
+/// Returns the layout names in the format for help, manual page and completion. The option also accepts user-defined
+/// layouts.
 std::string layout_choices() {
   std::vector<std::string_view> names;
   for (const window::ScopeLayout& layout : window::built_in_layouts()) names.push_back(layout.name);
@@ -49,7 +50,7 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
   window_options.virtual_board_control = control_socket(control);
   window_options.list_devices = [&options] { return device::find_arms(options.address()); };
   const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
-    // The mouse is the hand, so board time must follow real time.
+    // The user moves the hand with the mouse, so board time must follow real time.
     board = std::make_unique<device::VirtualBoard>(
         options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     of_window.serial_number.clear();

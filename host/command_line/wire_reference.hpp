@@ -9,7 +9,7 @@ namespace inkwell::command_line {
 
 /// Prints the layout as Markdown.
 void print_wire();
-/// The encoding of a signal in a scope frame, as print_wire() names it.
+/// Returns the name of a signal encoding, as in the output of print_wire().
 std::string_view name_of(protocol::SignalWire wire);
 
 }  // namespace inkwell::command_line

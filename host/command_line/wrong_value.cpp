@@ -34,8 +34,8 @@ std::string name_of(const CLI::Option& option) {
   return name;
 }
 
-/// The message for a value that cannot be converted: all converted values are numbers. A number that was refused must
-/// be a non-negative integer.
+/// Returns the message for a value that is not a valid number. Only numbers are converted. If the value is a number,
+/// the option requires a non-negative integer.
 std::string of_conversion(const Given& given) {
   const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
   const auto& values = given.option->results();
