@@ -332,7 +332,8 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(json.at("items").at(17).at("item") == "motor_2");
   const auto fault = run_program("inkwell", {"fault", "--usbip", port});
   INFO(fault.out, fault.err);
-  CHECK(fault.out.find("that the force needs: motor_2. Resistance too high: check the wires") != std::string::npos);
+  CHECK(fault.out.find("that the force needs: motor_2. If the resistance is too high, check the half bridges") !=
+        std::string::npos);
   CHECK(json.at("items").at(17).at("result") == "failed");
   CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
   CHECK(json.at("items").at(5).at("figure").is_null());

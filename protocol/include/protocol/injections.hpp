@@ -49,19 +49,19 @@ inline constexpr double wire_spike_s = 2e-6;
   X(wire_low, wires, wire, "", 0, 0, 0, "The wire is shorted to ground.")                                                                \
   X(wire_high, wires, wire, "", 0, 0, 0, "The wire is shorted to 3.3 V.")                                                                \
   X(wire_frozen, wires, wire, "", 0, 0, 0, "The wire is stuck at its present level.")                                         \
-  X(wires_shorted, wires, wires, "", 0, 0, 0, "Two wires are shorted: low wins, and analog levels are averaged.")                           \
+  X(wires_shorted, wires, wires, "", 0, 0, 0, "Two wires are shorted. A low level overrides a high level; analog levels are averaged.")                           \
   X(wire_spikes, wires, wire, "1/s", 1, 100000, 1000, "Number of spikes of {wire_spike_us} us per second on a digital input, at random times.") \
   X(encoder_stuck, encoders, motor, "", 0, 0, 0, "The encoder disc does not turn with the motor.")                               \
-  X(encoder_lost_counts, encoders, motor, "", 0.0001, 1, 0.01, "Fraction of the encoder counts that is lost, at random.")     \
+  X(encoder_lost_counts, encoders, motor, "", 0.0001, 1, 0.01, "Fraction of the encoder counts that are lost at random.")     \
   X(encoder_slip, encoders, motor, "counts", -20000, 20000, 400, "Encoder counts by which the disc slips on its shaft.")              \
   X(shunt_offset, shunts, motor, "A", -10, 10, 0.5, "Offset of the shunt amplifier.")                          \
   X(shunt_gain, shunts, motor, "", 0, 10, 0.5, "Gain of the shunt amplifier, relative to its nominal gain.")                              \
   X(shunt_high, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is at the upper rail.")                                  \
   X(shunt_low, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is at the lower rail.")                                   \
   X(shunt_frozen, shunts, motor, "", 0, 0, 0, "The output of the shunt amplifier is frozen.")                                   \
-  X(motor_open, motors, motor, "", 0, 0, 0, "No current flows: a lead or a brush is disconnected.")                                         \
+  X(motor_open, motors, motor, "", 0, 0, 0, "No current flows in the motor: a lead or a brush is disconnected.")                                         \
   X(motor_shorted, motors, motor, "", 0.05, 1, 0.5, "Fraction of the winding that remains; the rest is shorted.")      \
-  X(motor_hot, motors, motor, "K", 0, 300, 100, "Temperature rise of the motor: more resistance, less torque.")                      \
+  X(motor_hot, motors, motor, "K", 0, 300, 100, "Temperature rise of the motor, which increases its resistance and reduces its torque.")                      \
   X(leg_high, bridges, leg, "", 0, 0, 0, "The upper switch is shorted. The bridge trips when the lower switch turns on.")              \
   X(leg_low, bridges, leg, "", 0, 0, 0, "The lower switch is shorted. The bridge trips when the upper switch turns on.")               \
   X(leg_open, bridges, leg, "", 0, 0, 0, "Both switches are open. Only the diodes conduct.")                                                \
@@ -72,7 +72,7 @@ inline constexpr double wire_spike_s = 2e-6;
   X(supply_cut, supply, none, "", 0, 0, 0, "The bridge supply is disconnected.")                                                   \
   X(supply_ripple, supply, none, "V", 0, 6, 3, "Amplitude of a 100 Hz ripple on the bridge supply.")  \
   X(logic_sag, supply, none, "V", 0, 3.3, 2, "Voltage to which the 3.3 V supply and VDDA fall.")                                 \
-  X(analog_sag, supply, none, "V", 0, 3.6, 3, "Voltage of VDDA alone, the reference of converters and amplifiers.")                    \
+  X(analog_sag, supply, none, "V", 0, 3.6, 3, "Voltage of VDDA, the reference of converters and amplifiers. The 3.3 V supply does not change.")                    \
   X(crystal_stop, clocks, none, "", 0, 0, 0, "The crystal stops.")                                                                 \
   X(crystal_drift, clocks, none, "ppm", -10000, 10000, 5000, "Deviation of the crystal from its nominal frequency.")                   \
   X(usb_cut, usb, none, "", 0, 0, 0, "The cable is unplugged.")                                                                          \
@@ -85,8 +85,8 @@ inline constexpr double wire_spike_s = 2e-6;
   X(exception_late, core, exception, "cycles", 1, 1000000, 4200, "Delay of an interrupt in cycles.")                        \
   X(adc_stopped, core, converter, "", 0, 0, 0, "A converter does not start conversions.")                                       \
   X(dma_stopped, core, none, "", 0, 0, 0, "The DMA controller does not serve requests.")                                                    \
-  X(ram_bit, memory, address, "", -1, 7, -1, "Bit of the RAM byte that flips; -1 chooses the bit from the seed.")                               \
-  X(flash_bit, memory, address, "", -1, 7, -1, "Bit of the flash byte that flips; -1 chooses the bit from the seed. Healing restores the bit.")
+  X(ram_bit, memory, address, "", -1, 7, -1, "Bit that flips in the RAM byte; -1 chooses the bit from the seed.")                               \
+  X(flash_bit, memory, address, "", -1, 7, -1, "Bit that flips in the flash byte; -1 chooses the bit from the seed. Healing restores the bit.")
 // clang-format on
 
 /// The value of an enumerator is the index of its row.
@@ -133,8 +133,7 @@ constexpr bool parts_are_in_order() {
   return true;
 }
 }  // namespace detail
-static_assert(detail::injections_make_sense(),
-              "an amount that is taken unless another is given lies outside its range");
-static_assert(detail::parts_are_in_order(), "the rows of a part must stand together, in the order of InjectionPart");
+static_assert(detail::injections_make_sense(), "a default amount is outside its range");
+static_assert(detail::parts_are_in_order(), "the rows of a part must be consecutive, in the order of InjectionPart");
 
 }  // namespace inkwell::protocol

@@ -59,8 +59,8 @@ enum class ParameterKind : std::uint8_t {
   X(205, soft_landing_s, real, "s", 0.0f, 1.0f, 0.05f, "contact", "Time in which the force falls to zero after the command to switch it off. A stop, a fault or the loss of the host removes the force immediately.") \
   X(206, force_change_N_per_s, real, "N/s", 100.0f, 100000.0f, 5000.0f, "contact", "Largest rate of change of the force, for all force sources. Faster changes are slowed down to this rate.") \
   X(207, energy_reserve_J, real, "J", 0.001f, 1.0f, 0.05f, "contact", "Largest energy that the arm may deliver to the hand in addition to the energy received from the hand. The reserve is full when the force is switched on. The hand's work and power_given_W refill the reserve. A test pulse ends when it has delivered this energy.") \
-  X(208, power_given_W, real, "W", 0.0f, 20.0f, 1.0f, "contact", "Power that the arm may deliver to the hand continuously. When the energy reserve is empty, the force component along the motion is reduced to this power. Walls do not need it.") \
-  X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Time without a force report after which the force of a program fades within 10 ms.") \
+  X(208, power_given_W, real, "W", 0.0f, 20.0f, 1.0f, "contact", "Power that the arm may deliver to the hand continuously. When the energy reserve is empty, the force component along the motion is reduced to this power. Walls do not need this power.") \
+  X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Time without a force report after which the force of the program fades to zero within 10 ms.") \
   X(221, program_force_change_N_per_s, real, "N/s", 1.0f, 20000.0f, 1000.0f, "program force", "Largest rate of change of the force that a program requests. Faster changes are slowed down to this rate.") \
   X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops: inductance times desired bandwidth in rad/s.") \
   X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops: resistance times desired bandwidth in rad/s.") \
@@ -73,11 +73,11 @@ enum class ParameterKind : std::uint8_t {
   X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Current limit of motor 3.") \
   X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Probe speed above which a fault switches the force off. The force component along the motion is reduced above 80 % of this speed and is zero above 90 %.") \
   X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Time without a report from the host after which the force is switched off.")    \
-  X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Continuous current rating of motor 1. Motor heat is reported relative to the heat at this current. Above 85 % the current limit falls, and it reaches this current at 100 %. A change of this parameter does not change the reported heat.") \
+  X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Continuous current rating of motor 1. Motor heat is reported relative to the heat at this current. Above 85 % heat the current limit falls, and at 100 % it equals this current. A change of this parameter does not change the reported heat.") \
   X(406, continuous_current_2_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Continuous current rating of motor 2.") \
   X(407, continuous_current_3_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_3_A, "limits", "Continuous current rating of motor 3.") \
-  X(408, winding_time_constant_s, real, "s", 0.25f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Time in which the winding temperature covers 63 % of a step, relative to the housing.") \
-  X(409, housing_time_constant_s, real, "s", 0.25f, 2000.0f, arm_defaults::housing_time_constant_s, "limits", "Time in which the housing temperature covers 63 % of a step, relative to the room.") \
+  X(408, winding_time_constant_s, real, "s", 0.25f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Thermal time constant of the winding relative to the housing (63 % of a step).") \
+  X(409, housing_time_constant_s, real, "s", 0.25f, 2000.0f, arm_defaults::housing_time_constant_s, "limits", "Thermal time constant of the housing relative to the room (63 % of a step).") \
   X(410, winding_heat_part, real, "", 0.01f, 1.0f, arm_defaults::winding_heat_part, "limits", "Thermal resistance from winding to housing, divided by the thermal resistance from winding to room.") \
   X(500, transmission, choice, "", 0.0f, 1.0f, arm_defaults::transmission, "arm", "Transmission from motor 3 to link 3: 0 serial (joint 3 is relative to link 2), 1 parallelogram (joint 3 is absolute).") \
   X(501, frame, choice, "", 0.0f, 1.0f, arm_defaults::frame, "arm", "Axes of the workspace: 0 as in the paper (x forward, y left, z up), 1 as on the Omni (x right, y up, z to the user).") \
@@ -99,9 +99,9 @@ enum class ParameterKind : std::uint8_t {
   X(533, motor_1_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_1_reversed, "arm", "1 if a positive current turns joint 1 backward, else 0.") \
   X(534, motor_2_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_2_reversed, "arm", "1 if a positive current turns joint 2 backward, else 0.") \
   X(535, motor_3_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_3_reversed, "arm", "1 if a positive current turns joint 3 backward, else 0.") \
-  X(540, torque_constant_1_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_1_Nm_per_A, "arm", "Torque of motor 1 per ampere at the motor shaft.") \
-  X(541, torque_constant_2_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_2_Nm_per_A, "arm", "Torque of motor 2 per ampere at the motor shaft.") \
-  X(542, torque_constant_3_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_3_Nm_per_A, "arm", "Torque of motor 3 per ampere at the motor shaft.") \
+  X(540, torque_constant_1_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_1_Nm_per_A, "arm", "Torque at the shaft of motor 1 per ampere.") \
+  X(541, torque_constant_2_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_2_Nm_per_A, "arm", "Torque at the shaft of motor 2 per ampere.") \
+  X(542, torque_constant_3_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_3_Nm_per_A, "arm", "Torque at the shaft of motor 3 per ampere.") \
   X(550, joint_1_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_minimum_rad, "arm", "Lower stop of joint 1.")        \
   X(551, joint_1_maximum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_maximum_rad, "arm", "Upper stop of joint 1.")        \
   X(552, joint_2_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_2_minimum_rad, "arm", "Lower stop of joint 2.")        \
@@ -274,17 +274,17 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
 }
 }  // namespace detail
 #define X(id, name, kind, unit, minimum, maximum, default_value, group, help)                                       \
-  static_assert((id) < force_law_first_id, #name ": its id is one of those of a force law's parameters");           \
+  static_assert((id) < force_law_first_id, #name ": the id is reserved for force law parameters");                  \
   static_assert(detail::id_rises(parameter_table, static_cast<std::size_t>(Parameter::name)),                       \
-                #name ": its id is not above that of the row before; ids rise from row to row");                    \
+                #name ": the id must be greater than the id of the previous row");                                  \
   static_assert(detail::default_is_in_range(parameter_table, static_cast<std::size_t>(Parameter::name)),            \
-                #name ": its default is outside of its range");                                                     \
+                #name ": the default is outside the range");                                                        \
   static_assert(detail::stands_with_its_group(parameter_table, static_cast<std::size_t>(Parameter::name)),          \
-                #name ": its group stands further up; put it there, with an id of that group");                     \
+                #name ": the row must follow the other rows of its group, with an id of that group");               \
   static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
-                #name ": it takes another row's default");                                                          \
+                #name ": the default belongs to another row");                                                      \
   static_assert(detail::neighbors_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),            \
-                #name ": rows 1 to 3, or x to z, must all be there and agree in kind, unit, range and group");
+                #name ": the rows 1 to 3, or x to z, must all exist and agree in kind, unit, range and group");
 INKWELL_PARAMETERS(X)
 #undef X
 

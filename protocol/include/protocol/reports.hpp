@@ -36,7 +36,7 @@
 
 namespace inkwell::protocol {
 
-static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "the structures are transmitted in their memory layout");
 
 /// Number of versions by which this build is ahead of the source tree. A test firmware sets this number
 /// (tests/target/next_protocol).
@@ -83,7 +83,7 @@ constexpr bool is_closed(std::uint8_t switches, Switch which) {
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_FORCE_SOURCES(X)                                   \
-  X(1, walls, "The force law of the board acts: the walls of the box in the default image.") \
+  X(1, walls, "The force law of the board acts. In the default image, the force law renders the walls of the box.") \
   X(2, shapes, "Planes or a sphere placed by a program act on the probe.") \
   X(4, program, "A program on the PC sends forces.")
 // clang-format on
@@ -114,7 +114,7 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
-  X(1, force, "The force is limited by force_limit_N, or rises to it.")               \
+  X(1, force, "The force is limited by force_limit_N. After an increase, the limit rises gradually to the new value.")               \
   X(2, current, "A motor is at its current limit. All motor currents are scaled down together, so the force is weaker but keeps its direction.") \
   X(4, change, "The force changes at its largest rate, force_change_N_per_s.") \
   X(8, energy, "The energy reserve is empty: the force component along the motion is reduced.") \

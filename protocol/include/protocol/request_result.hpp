@@ -18,8 +18,8 @@ namespace inkwell::protocol {
   X(1, carried_out, "The control interrupt has carried out the command.", "Nothing to do.")                            \
   X(2, not_the_driver, "The request came from a program that does not drive the arm, so the board refused it.", "Claim the arm, or take it over from the program that drives it.") \
   X(3, accepted, "The board has accepted the request. Shapes apply from the next control period on.", "Nothing to do.") \
-  X(4, busy, "The board had no room: the control interrupt had not taken an earlier request yet. The board dropped the request.", "Send the request again.") \
-  X(5, malformed, "The request has a wrong version or length, or values that are not allowed, so the board refused it.", "Use the companion that belongs to the firmware, and values within the ranges of the protocol.")
+  X(4, busy, "The board dropped the request, because the control interrupt had not processed an earlier request yet.", "Send the request again.") \
+  X(5, malformed, "The request has a wrong version or length, or values that are not allowed, so the board refused it.", "Use the companion version that matches the firmware, and values within the ranges of the protocol.")
 // clang-format on
 
 enum class RequestResult : std::uint8_t {
@@ -41,8 +41,8 @@ inline constexpr auto request_result_table = std::to_array<RequestResultInfo>({
 });
 
 inline constexpr RequestResultInfo unknown_request_result{"unknown",
-                                                          "The device sent a result that this companion does not know.",
-                                                          "Use the companion that belongs to the firmware."};
+                                                          "The device sent a result that is unknown to this companion.",
+                                                          "Use the companion version that matches the firmware."};
 
 constexpr const RequestResultInfo& info(RequestResult result) {
   const auto code = static_cast<std::size_t>(result);

@@ -15,23 +15,24 @@
 namespace inkwell::protocol {
 
 namespace self_test_text {
-inline constexpr std::string_view encoder = "The wire from the encoder drives its input.";
-inline constexpr std::string_view encoder_remedy = "Repair this wire, its plug or the Schmitt trigger at the input.";
+inline constexpr std::string_view encoder = "The wire from the encoder drives the input pin.";
+inline constexpr std::string_view encoder_remedy =
+    "Repair the encoder wire, its plug or the Schmitt trigger at the input.";
 inline constexpr std::string_view fault_wire = "The fault wire of the bridges reaches the chip.";
-inline constexpr std::string_view fault_wire_remedy = "Repair the wire between this pin, its pull-up and the bridges.";
+inline constexpr std::string_view fault_wire_remedy =
+    "Repair the fault wire between the chip, the pull-up resistor and the bridges.";
 inline constexpr std::string_view wiper = "The wiper of the gimbal potentiometer is within its track.";
 inline constexpr std::string_view wiper_remedy =
-    "Check the three wires of the potentiometer. The force does not need it, but this gimbal angle is wrong.";
+    "Check the three wires of the potentiometer. The force does not depend on the potentiometer, but this gimbal angle "
+    "is wrong.";
 inline constexpr std::string_view motor = "Short voltage pulses cause the current that the motor resistance predicts.";
 inline constexpr std::string_view motor_remedy =
-    "Resistance too high: check the wires and brushes of the motor and its half bridges. Too low: the winding may be "
-    "shorted. "
-    "In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, which `inkwell tune current-loop` "
-    "measures. "
-    "If the motor is not installed, set its current_limit_n_A to 0.";
+    "If the resistance is too high, check the half bridges, and the wires and brushes of the motor. If the resistance "
+    "is too low, the winding may be shorted. In both cases check the shunt, its amplifier, and motor_resistance_n_ohm, "
+    "which `inkwell tune current-loop` measures. If the motor is not installed, set its current_limit_n_A to 0.";
 inline constexpr std::string_view bridge = "The half bridges switch within their dead time.";
 inline constexpr std::string_view bridge_remedy =
-    "Check the bridge's supply and its inputs for slow edges, or replace it.";
+    "Check the supply of the bridge, check its inputs for slow edges, or replace the bridge.";
 }  // namespace self_test_text
 
 // clang-format off
@@ -56,7 +57,7 @@ inline constexpr std::string_view bridge_remedy =
   X(16, motor_1, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
   X(17, motor_2, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
   X(18, motor_3, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
-  X(19, current_wires, "A", true, "The current of each motor appears only at its own sensor.", "Check the wires from the shunt amplifiers to the chip: two of them are swapped or shorted together.") \
+  X(19, current_wires, "A", true, "The current of each motor appears only at the sensor of that motor.", "Check the wires from the shunt amplifiers to the chip: two wires are swapped or shorted together.") \
   X(20, bridge_1, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
   X(21, bridge_2, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
   X(22, bridge_3, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)
@@ -111,7 +112,7 @@ inline constexpr auto self_test_result_table = std::to_array<SelfTestResultInfo>
 });
 
 inline constexpr SelfTestResultInfo unknown_self_test_result{
-    "unknown", "The device reported a result that this companion does not know."};
+    "unknown", "The device reported a result that is unknown to this companion."};
 
 constexpr const SelfTestItemInfo& info(SelfTestItem item) {
   return self_test_item_table[static_cast<std::size_t>(item)];
@@ -123,11 +124,11 @@ constexpr const SelfTestResultInfo& info(SelfTestResult result) {
 
 namespace detail {
 #define X(id, text, ...) \
-  static_assert(self_test_item_table[id].name == std::string_view(#text), #text ": its id is not its place");
+  static_assert(self_test_item_table[id].name == std::string_view(#text), #text ": the id must be the row index");
 INKWELL_SELF_TEST_ITEMS(X)
 #undef X
 #define X(id, text, ...) \
-  static_assert(self_test_result_table[id].name == std::string_view(#text), #text ": its id is not its place");
+  static_assert(self_test_result_table[id].name == std::string_view(#text), #text ": the id must be the row index");
 INKWELL_SELF_TEST_RESULTS(X)
 #undef X
 }  // namespace detail

@@ -47,13 +47,13 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< range +-1, finer than 
   X(6, position_x_m, "m", float32, "Probe, x.")                                                                \
   X(7, position_y_m, "m", float32, "Probe, y.")                                                                \
   X(8, position_z_m, "m", float32, "Probe, z.")                                                                \
-  X(9, velocity_x_m_s, "m/s", float32, "Probe velocity from the adaptive window, x.")                   \
+  X(9, velocity_x_m_s, "m/s", float32, "Probe velocity, x, estimated with an adaptive window.")                   \
   X(10, velocity_y_m_s, "m/s", float32, "Probe velocity, y.")                                           \
   X(11, velocity_z_m_s, "m/s", float32, "Probe velocity, z.")                                           \
   X(12, penetration_x_m, "m", float32, "Proxy minus probe, x. The vector points out of the wall.")                        \
   X(13, penetration_y_m, "m", float32, "Proxy minus probe, y.")                                                \
   X(14, penetration_z_m, "m", float32, "Proxy minus probe, z.")                                                \
-  X(15, force_x_N, "N", float32, "Requested force on the hand, x. The signal limits shows further reductions.")                          \
+  X(15, force_x_N, "N", float32, "Requested force on the hand, x. The signal `limits` shows further reductions.")                          \
   X(16, force_y_N, "N", float32, "Requested force on the hand, y.")                          \
   X(17, force_z_N, "N", float32, "Requested force on the hand, z.")                          \
   X(18, force_N, "N", float32, "Magnitude of the requested force.")                                                      \
@@ -72,11 +72,11 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< range +-1, finer than 
   X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal. One of the three gimbal angles is measured in each control period.")                                                    \
   X(32, gimbal_2_rad, "rad", float32, "Pitch of the gimbal.")                                                  \
   X(33, gimbal_3_rad, "rad", float32, "Roll of the gimbal.")                                                   \
-  X(34, joint_speed_1_rad_s, "rad/s", float32, "Speed of joint 1 from the adaptive window.")                   \
-  X(35, joint_speed_2_rad_s, "rad/s", float32, "Speed of joint 2 from the adaptive window.")                   \
-  X(36, joint_speed_3_rad_s, "rad/s", float32, "Speed of joint 3 from the adaptive window.")                   \
+  X(34, joint_speed_1_rad_s, "rad/s", float32, "Speed of joint 1, estimated with an adaptive window.")                   \
+  X(35, joint_speed_2_rad_s, "rad/s", float32, "Speed of joint 2, estimated with an adaptive window.")                   \
+  X(36, joint_speed_3_rad_s, "rad/s", float32, "Speed of joint 3, estimated with an adaptive window.")                   \
   X(37, supply_V, "V", float32, "Supply voltage of the bridges, filtered.")                                            \
-  X(38, servo_cycles, "cycles", float32, "CPU cycles of the previous control interrupt, all stages.") \
+  X(38, servo_cycles, "cycles", float32, "CPU cycles of all stages of the previous control interrupt.") \
   X(39, stage_sample_cycles, "cycles", float32, "Cycles of stage 1: neutral duty, encoders, currents, gimbal.") \
   X(40, stage_pose_cycles, "cycles", float32, "Cycles of stage 2: joints, velocities, position, Jacobian.")    \
   X(41, stage_contact_cycles, "cycles", float32, "Cycles of stage 3: proxy, penetration, force.")              \
@@ -89,8 +89,8 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< range +-1, finer than 
   X(48, program_force_x_N, "N", float32, "Force of a program on the PC, interpolated by the board, x.") \
   X(49, program_force_y_N, "N", float32, "Force of a program on the PC, y.")                                   \
   X(50, program_force_z_N, "N", float32, "Force of a program on the PC, z.")                                   \
-  X(51, force_sources, "", float32, "Force sources, as a sum: 1 walls, 2 shapes, 4 program.")       \
-  X(52, limits, "", float32, "Active limits, as a sum: 1 force, 2 current, 4 change, 8 energy, 16 heat, 32 speed.")
+  X(51, force_sources, "", float32, "Sum of the active force sources: 1 walls, 2 shapes, 4 program.")       \
+  X(52, limits, "", float32, "Sum of the active limits: 1 force, 2 current, 4 change, 8 energy, 16 heat, 32 speed.")
 // clang-format on
 
 /// Index of a signal in the table. The index is also the id in the protocol. Values after the last enumerator are
@@ -156,11 +156,11 @@ constexpr bool id_is_place(std::size_t id, std::string_view name) {
   return id < signal_count && signal_table[id].name == name;
 }
 }  // namespace detail
-#define X(id, name, unit, wire, help)                                                                            \
-  static_assert(detail::id_is_place(id, #name),                                                                  \
-                #name ": its id is not its place in the table; a new signal is the last row, with the next id"); \
-  static_assert(detail::neighbors_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),               \
-                #name ": rows 1 to 3, or x to z, must all be there and agree in unit and wire");
+#define X(id, name, unit, wire, help)                                                              \
+  static_assert(detail::id_is_place(id, #name),                                                    \
+                #name ": the id must be the row index; append a new signal with the next id");     \
+  static_assert(detail::neighbors_are_alike(signal_table, static_cast<std::size_t>(Signal::name)), \
+                #name ": the rows 1 to 3, or x to z, must all exist and agree in unit and wire");
 INKWELL_SIGNALS(X)
 #undef X
 

@@ -24,24 +24,24 @@ namespace inkwell::protocol {
   X(true_velocity_x_m_s, "m/s", "Velocity of the simulated probe, x.")                               \
   X(true_velocity_y_m_s, "m/s", "Velocity of the simulated probe, y.")                               \
   X(true_velocity_z_m_s, "m/s", "Velocity of the simulated probe, z.")                               \
-  X(true_joint_1_rad, "rad", "Angle of joint 1 of the simulated arm, the waist.")                             \
-  X(true_joint_2_rad, "rad", "Angle of joint 2 of the simulated arm, the shoulder.")                          \
-  X(true_joint_3_rad, "rad", "Angle of joint 3 of the simulated arm, the elbow.")                             \
+  X(true_joint_1_rad, "rad", "Angle of joint 1, the waist, of the simulated arm.")                             \
+  X(true_joint_2_rad, "rad", "Angle of joint 2, the shoulder, of the simulated arm.")                          \
+  X(true_joint_3_rad, "rad", "Angle of joint 3, the elbow, of the simulated arm.")                             \
   X(true_joint_speed_1_rad_s, "rad/s", "Speed of joint 1 of the simulated arm.")                     \
   X(true_joint_speed_2_rad_s, "rad/s", "Speed of joint 2 of the simulated arm.")                     \
   X(true_joint_speed_3_rad_s, "rad/s", "Speed of joint 3 of the simulated arm.")                     \
-  X(true_current_1_A, "A", "Current in the simulated motor 1, ripple included.")                     \
-  X(true_current_2_A, "A", "Current in the simulated motor 2, ripple included.")                     \
-  X(true_current_3_A, "A", "Current in the simulated motor 3, ripple included.")                     \
+  X(true_current_1_A, "A", "Current in the simulated motor 1, including ripple.")                     \
+  X(true_current_2_A, "A", "Current in the simulated motor 2, including ripple.")                     \
+  X(true_current_3_A, "A", "Current in the simulated motor 3, including ripple.")                     \
   X(true_torque_1_Nm, "Nm", "Torque of the simulated motor 1 at joint 1.")                           \
   X(true_torque_2_Nm, "Nm", "Torque of the simulated motor 2 at joint 2.")                           \
   X(true_torque_3_Nm, "Nm", "Torque of the simulated motor 3 at joint 3.")                           \
   X(hand_force_x_N, "N", "Force of the simulated hand on the probe, x.")                             \
   X(hand_force_y_N, "N", "Force of the simulated hand on the probe, y.")                             \
   X(hand_force_z_N, "N", "Force of the simulated hand on the probe, z.")                             \
-  X(hand_target_x_m, "m", "Target position of the simulated hand, x. Equal to the probe position while the hand does not hold the stylus.") \
-  X(hand_target_y_m, "m", "Target position of the simulated hand, y. Equal to the probe position while the hand does not hold the stylus.") \
-  X(hand_target_z_m, "m", "Target position of the simulated hand, z. Equal to the probe position while the hand does not hold the stylus.") \
+  X(hand_target_x_m, "m", "Target position of the simulated hand, x. The target equals the probe position while the hand does not hold the stylus.") \
+  X(hand_target_y_m, "m", "Target position of the simulated hand, y. The target equals the probe position while the hand does not hold the stylus.") \
+  X(hand_target_z_m, "m", "Target position of the simulated hand, z. The target equals the probe position while the hand does not hold the stylus.") \
   X(true_supply_V, "V", "Supply voltage of the simulated bridges.")
 // clang-format on
 

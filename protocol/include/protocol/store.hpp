@@ -20,8 +20,8 @@ namespace inkwell::protocol {
 #define INKWELL_STORE_RESULTS(X)                                                                                       \
   X(0, none, "No parameters have been stored or erased since the board started.", "Nothing to do.")                        \
   X(1, done, "The parameters are in flash and survive a power loss.", "Nothing to do.")                                          \
-  X(2, under_way, "The parameters are being written. Writing waits while the force is on.", "Ask again after some milliseconds. If the force is on, switch it off.") \
-  X(3, force_is_on, "Refused: the force is on, or a waiting command switches it on.", "Switch the force off, wait until a running test has ended, then try again.") \
+  X(2, under_way, "The parameters are being written. Writing waits while the force is on.", "Read the result again after some milliseconds. If the force is on, switch it off.") \
+  X(3, force_is_on, "Refused: the force is on, or a queued command will switch the force on.", "Switch the force off, wait until a running test has ended, then try again.") \
   X(4, no_room, "Refused: the flash sector is full. The next start of the board frees space.", "Switch the board off and on, or reset it. Then set the values again and store them.") \
   X(5, flash_failed, "A flash word could not be written. The previously stored parameters are still valid.", "Reset the board and try again. If the error returns, replace the chip: its flash is worn.") \
   X(6, nothing_stored, "No parameters were stored, so nothing was erased. Every parameter has its default.", "Nothing to do.")
@@ -29,7 +29,7 @@ namespace inkwell::protocol {
 /// X(id, name, meaning)
 #define INKWELL_STORE_CONTENTS(X)                                                                                      \
   X(0, nothing, "No parameters are stored, or they cannot be read. The next start sets every parameter to its default.")  \
-  X(1, parameters, "Stored parameters, which the next start loads.")                                                        \
+  X(1, parameters, "Parameters are stored, and the next start loads them.")                                                        \
   X(2, factory_reset, "A factory reset erased the stored parameters. The next start sets every parameter to its default.")     \
   X(3, other_schema, "The records were written by a firmware with another schema and cannot be read. The next start sets every parameter to its default.")
 // clang-format on
@@ -72,10 +72,10 @@ inline constexpr auto store_contents_table = std::to_array<StoreContentsInfo>({
 });
 
 inline constexpr StoreResultInfo unknown_store_result{"unknown",
-                                                      "The device reported a result that this companion does not know.",
-                                                      "Use the companion of the firmware's version."};
+                                                      "The device reported a result that is unknown to this companion.",
+                                                      "Use the companion version that matches the firmware."};
 inline constexpr StoreContentsInfo unknown_store_contents{
-    "unknown", "The device reported stored contents that this companion does not know."};
+    "unknown", "The device reported stored contents that are unknown to this companion."};
 
 constexpr const StoreResultInfo& info(StoreResult result) {
   const auto index = static_cast<std::size_t>(result);
@@ -88,11 +88,11 @@ constexpr const StoreContentsInfo& info(StoreContents contents) {
 
 namespace detail {
 #define X(id, text, ...) \
-  static_assert(store_result_table[id].name == std::string_view(#text), #text ": its id is not its place");
+  static_assert(store_result_table[id].name == std::string_view(#text), #text ": the id must be the row index");
 INKWELL_STORE_RESULTS(X)
 #undef X
 #define X(id, text, ...) \
-  static_assert(store_contents_table[id].name == std::string_view(#text), #text ": its id is not its place");
+  static_assert(store_contents_table[id].name == std::string_view(#text), #text ": the id must be the row index");
 INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail

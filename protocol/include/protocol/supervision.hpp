@@ -49,7 +49,7 @@ inline constexpr auto state_table = std::to_array<StateInfo>({
 inline constexpr std::size_t state_count = state_table.size();
 
 inline constexpr StateInfo unknown_state{"unknown", false,
-                                         "The device is in a state that this companion does not know."};
+                                         "The device is in a state that is unknown to this companion."};
 
 constexpr const StateInfo& info(State state) {
   const auto index = static_cast<std::size_t>(state);
@@ -92,7 +92,7 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
 /// X(bit, name, meaning)
 #define INKWELL_EVENTS(X)                                                             \
   X(1, measured, "the offsets of the current sensors are known")                      \
-  X(2, referenced, "the stylus has rested in the inkwell")                            \
+  X(2, referenced, "the arm position is known because the stylus was in the inkwell")                            \
   X(4, enable, "the command enable_force was received")                                       \
   X(8, disable, "the command disable_force was received")                                     \
   X(16, clear, "the command clear_fault was received")                                        \
@@ -102,9 +102,9 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(256, update, "the host has requested the boot loader and has not reset the bus since") \
   X(512, stop, "the command stop was received, or the USB connection was lost")                          \
   X(1024, landed, "the force has fallen to zero") \
-  X(2048, tested, "the self-test has ended, and no item failed that the force needs") \
+  X(2048, tested, "the self-test has ended without a failure that prevents the force") \
   X(4096, self_test, "the command self_test was received") \
-  X(8192, told, "a fault was raised before and has not been cleared")
+  X(8192, told, "an earlier fault has not been cleared")
 // clang-format on
 
 /// Inputs of the supervisor's decisions.
@@ -311,12 +311,12 @@ constexpr bool ways_stand_together() {
   return true;
 }
 #define X(id, text, ...) \
-  static_assert(state_table[id].name == std::string_view(#text), #text ": its id is not its place in the table");
+  static_assert(state_table[id].name == std::string_view(#text), #text ": the id must be the row index");
 INKWELL_STATES(X)
 #undef X
 }  // namespace detail
 
-static_assert(detail::every_fault_is_watched_once(), "watch_table: each fault but none has one row");
-static_assert(detail::ways_stand_together(), "way_table: the ways from one state stand together");
+static_assert(detail::every_fault_is_watched_once(), "watch_table: each fault except `none` needs exactly one row");
+static_assert(detail::ways_stand_together(), "way_table: the transitions from one state must be consecutive");
 
 }  // namespace inkwell::protocol

@@ -187,7 +187,7 @@ TEST_CASE("shapes that the device refuses, or has no room for within seconds, ar
       server.request_results.report.time_periods += protocol::servo_rate_Hz / 10;
       return protocol::RequestResult::busy;
     };
-    part = "The board refused shapes. The board had no room";
+    part = "The board refused shapes. The board dropped the request";
   }
   SUBCASE("malformed") {
     server.judge_shapes = [] { return protocol::RequestResult::malformed; };
@@ -238,7 +238,7 @@ TEST_CASE("a command that finds the board busy is sent again, and given up after
   CHECK(server.commands().size() == 4);
   busy = std::numeric_limits<int>::max();
   CHECK(contains(message_of<device::Error>([&] { arm->carry_out(protocol::Command::disable_force); }),
-                 "The board refused a command. The board had no room"));
+                 "The board refused a command. The board dropped the request"));
 }
 
 TEST_CASE("the device is asked for no more of a report than it uses, because it pads what it sends") {
