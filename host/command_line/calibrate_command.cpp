@@ -47,9 +47,7 @@ void add_calibrate_command(const Place& place) {
   for (const auto* offer : guides_of("calibrate")) names.emplace_back(offer->name);
   names.emplace_back("all");
   command->add_option("WHAT", options->what, "Calibration to run")->check(CLI::IsMember(names))->capture_default_str();
-  command
-      ->add_option("--trust", options->trust,
-                   "Reference if a stop is not at its described angle: joint limits or encoders")
+  command->add_option("--trust", options->trust, "Values to trust if a stop is not at the angle in the arm description")
       ->check(CLI::IsMember({"limits", "encoders"}))
       ->capture_default_str();
   const char* ranges[] = {"--yaw-range", "--pitch-range", "--roll-range"};
@@ -57,7 +55,7 @@ void add_calibrate_command(const Place& place) {
     command->add_option(ranges[axis], options->range[axis], "Angles of both stops as MINIMUM:MAXIMUM, in radians")
         ->type_name("RANGE");
   command->add_flag("--quadratic", options->choices.potentiometers.quadratic,
-                    "Fit the quadratic term of the potentiometers, with a third point in the middle");
+                    "Also fit a quadratic term for the potentiometers, from a third point in the middle");
   options->consent.add_to(*command);
   add_examples(*command,
                "inkwell calibrate\n"

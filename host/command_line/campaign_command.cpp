@@ -158,7 +158,7 @@ void add_campaign_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "campaign",
       "Runs every fault in every situation on virtual boards, and writes a page of the results\n"
-      "Without a subcommand it runs the cases that have no result yet, then writes the page.");
+      "Without a subcommand, runs the cases that have no result yet, then writes the page.");
   command->require_subcommand(0, 1);
   add_folder(*command, *options);
   add_jobs(*command, *options);

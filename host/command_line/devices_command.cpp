@@ -43,7 +43,7 @@ Listed ask(const Endpoint& endpoint) {
     listed.serial_number = information.serial_number;  // USB/IP device lists do not contain it
     listed.board = information.board_name;
   } catch (const device::Error& error) {
-    fmt::print(stderr, "inkwell: The board of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());
+    fmt::print(stderr, "inkwell: The board name of arm {} cannot be read. {}\n", endpoint.serial_number, error.what());
   }
   return listed;
 }
@@ -65,7 +65,7 @@ int list_devices(const DeviceOptions& options) {
   if (options.json)
     fmt::print("{}\n", json.dump(2));
   else if (devices.empty())
-    fmt::print("No arm is on USB. Plug one in, or name a virtual board with --usbip HOST:PORT.\n");
+    fmt::print("No arm is connected over USB. Connect one, or name a virtual board with --usbip HOST:PORT.\n");
   return 0;
 }
 

@@ -73,7 +73,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("The board contained {}.\n", before_text(result.before));
-    if (result.has_set_brown_out) fmt::print("Its brown-out level was changed to 3.\n");
+    if (result.has_set_brown_out) fmt::print("The board's brown-out level was changed to 3.\n");
   }
   if (result.firmware_version.empty())
     throw device::Error(
@@ -137,13 +137,14 @@ int flash(const DeviceOptions& options, FlashOptions given) {
 }  // namespace
 
 void add_flash_command(const Place& place) {
-  auto* command = place.program.add_subcommand("flash",
-                                               "Writes a firmware image to a board, verifies it and starts it\n\n"
-                                               "Over USB the board restarts into the boot loader of its chip. A board "
-                                               "that was switched on with its button BOOT0\n"
-                                               "held down is already in the boot loader, and is found there. Stored "
-                                               "parameters are retained. If the command was\n"
-                                               "interrupted, run it again.");
+  auto* command = place.program.add_subcommand(
+      "flash",
+      "Writes a firmware image to a board, verifies it and starts it\n"
+      "\n"
+      "Over USB the board restarts into the boot loader of its chip. The command also finds a board that\n"
+      "is already in the boot loader because BOOT0 was pressed at power-on. Stored parameters are retained. If the "
+      "command\n"
+      "was interrupted, run it again.");
   const auto given = std::make_shared<FlashOptions>();
   auto* image = command->add_option("IMAGE", given->image,
                                     "Firmware image (ELF). Default: the installed image for the connected board");

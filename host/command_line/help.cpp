@@ -153,8 +153,9 @@ std::optional<std::string> wrong_command(const CLI::App& program) {
 void add_examples(CLI::App& command, const std::string& examples) {
   command.footer(fmt::format(
       "Examples:\n"
-      "{}\n\n"
-      "The command uses the arm on USB; choose another with --virtual, --usbip HOST:PORT or --serial NUMBER.\n"
+      "{}\n"
+      "\n"
+      "The command uses the arm on USB; choose another arm with --virtual, --usbip HOST:PORT or --serial NUMBER.\n"
       "--json prints JSON for programs. `inkwell --help` describes these options and the exit codes.",
       indented(examples)));
 }

@@ -26,7 +26,7 @@ ordered_json law_signals(const device::ForceLaw& law) {
 
 std::string board_text(const std::string& name) {
   if (name.empty()) return "unknown: the firmware does not report it";
-  return board::find_board(name) ? name : name + ", which this companion does not know";
+  return board::find_board(name) ? name : name + ", which is unknown to this companion";
 }
 
 ordered_json to_json(const device::Information& information, const protocol::StoreReport& store,

@@ -79,7 +79,7 @@ ordered_json to_json(const ForceDelay& delay, bool is_simulation) {
 void print(const ForceDelay& delay, bool is_simulation) {
   const auto shortest = std::ranges::min_element(delay.recordings, {}, &ForceDelay::Recording::shortest_ms);
   const auto longest = std::ranges::max_element(delay.recordings, {}, &ForceDelay::Recording::longest_ms);
-  fmt::print("From pose to force, {} recordings{}: {:.2f} to {:.2f} ms; {} poses were missed.\n\n",
+  fmt::print("Delay from pose to force, {} recordings{}: {:.2f} to {:.2f} ms; {} poses were missed.\n\n",
              delay.recordings.size(), is_simulation ? " (simulation)" : "", shortest->shortest_ms, longest->longest_ms,
              delay.poses_missed);
   fmt::print("{:>9}  {:>21}  {:>21}\n", "", "force of the program", "current of motor 1");
@@ -117,7 +117,7 @@ void add_measure_command(const Place& place) {
   auto* delay = command->add_subcommand(
       "delay", "Measures the delay from a pose to the force computed from it, and the frequency response");
   const auto wanted = std::make_shared<DelayOptions>();
-  delay->add_option("--recordings", wanted->recordings, "Number of 60 ms recordings to measure the delay in, 1 to 1000")
+  delay->add_option("--recordings", wanted->recordings, "Number of 60 ms recordings for the delay, 1 to 1000")
       ->type_name("NUMBER")
       ->check(whole_number_within(1, 1000))
       ->capture_default_str();

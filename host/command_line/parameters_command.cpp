@@ -194,12 +194,12 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
 }  // namespace
 
 void add_parameters_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
-      "parameters",
-      "Lists all parameters with value, default, range and unit, or runs a command from below\n"
-      "Changed values are lost when the board loses power. To store them on the board, use `inkwell parameters "
-      "store`,\n"
-      "or add --store to the command that changes them.");
+  auto* command =
+      place.program.add_subcommand("parameters",
+                                   "Lists all parameters with value, default, range and unit, or runs a subcommand\n"
+                                   "Changed values are lost when the board loses power. To store them on the board, "
+                                   "use `inkwell parameters store`,\n"
+                                   "or add --store to the command that changes them.");
   command->require_subcommand(0, 1);
   const DeviceOptions& options = place.device;
   command->callback([place, command] {
@@ -235,7 +235,8 @@ void add_parameters_command(const Place& place) {
              "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
              "inkwell parameters set wall_stiffness_N_per_m=600 --store",
              [&options, words, store] { return set(options, *words, *store); })
-      ->add_option("ASSIGNMENT", *words, "NAME=VALUE: a parameter and its new value, in the unit that its name ends in")
+      ->add_option("ASSIGNMENT", *words,
+                   "NAME=VALUE: a parameter and its new value, in the unit at the end of its name")
       ->required();
   add_change("defaults", "Sets every parameter to its default", "inkwell parameters defaults",
              [&options, store] { return restore_defaults(options, *store); });

@@ -81,11 +81,10 @@ void add_plot_command(const Place& place) {
   const auto plot_options = std::make_shared<PlotOptions>();
   command->add_option("FILE", plot_options->file, "Recording from `inkwell record` or `inkwell experiment`")
       ->required();
-  auto* signals =
-      command
-          ->add_option("--signals", plot_options->signals,
-                       "Comma-separated signal names, also of a simulation's true values. Default: all signals")
-          ->type_name("NAMES");
+  auto* signals = command
+                      ->add_option("--signals", plot_options->signals,
+                                   "Comma-separated names of signals or simulated quantities. Default: all signals")
+                      ->type_name("NAMES");
   auto* paper =
       command->add_flag("--paper", plot_options->as_in_paper,
                         "Plot a wall push like figures 11 to 14 of Eriksson and Wikander; not with --signals");

@@ -28,7 +28,7 @@ int complain(const std::exception& error, int exit_code) {
 int run(int argument_count, char** arguments) {
   CLI::App program(
       "Companion of an Inkwell haptic arm: a robot arm with a stylus that you hold and motors that let you feel walls\n"
-      "Without a command it opens the window. The commands do the same work for scripts and terminals.",
+      "Without a command it opens the window. The commands provide the same functions for scripts and terminals.",
       "inkwell");
   set_help_style(program);
   program.set_version_flag("--version", INKWELL_VERSION, "Print the version");
@@ -38,16 +38,18 @@ int run(int argument_count, char** arguments) {
       "  inkwell --virtual                            the window, on a simulated board, arm and hand\n"
       "  inkwell info                                 shows the connected arm and its state\n"
       "  inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
-      "  inkwell experiment wall --virtual --out results\n\n"
-      "The window shows the arm in its box, and signals over time below it. The panes on the right are Tuning, "
+      "  inkwell experiment wall --virtual --out results\n"
+      "\n"
+      "The window shows the arm in its box, with the signals over time below. The panes on the right are Tuning, "
       "Guides,\n"
       "Recording, Faults and Log. F1 lists the keys; Escape, F12 and STOP switch the force off. Sizes, theme and "
       "layouts\n"
-      "are saved to inkwell/window.toml of $XDG_CONFIG_HOME (~/.config), unless --forget-settings is given.\n\n"
+      "are saved to inkwell/window.toml of $XDG_CONFIG_HOME (~/.config), unless --forget-settings is given.\n"
+      "\n"
       "`inkwell COMMAND --help` describes a command. The options above may precede or follow the command.\n"
       "Lengths are in meters, angles in radians, forces in newtons, times in seconds of board time. Names of\n"
       "parameters and signals end in their unit.\n"
-      "Exit code: 0 success, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
+      "Exit code: 0 success, 1 the device or the command failed (the reason is on standard error), 2 wrong usage.");
   program.require_subcommand(0, 1);
   program.fallthrough();  // device options may also follow the command
 

@@ -195,11 +195,11 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   }
   auto status = recorder.stop();
   if (status.error.empty() && !failure.empty())
-    status.error = failure + " The recording contains all samples up to then.";
+    status.error = failure + " The recording contains all samples up to that time.";
   if (const auto missing = span.missing_at_end(status.samples, status.lost); missing > 0 && status.error.empty())
     status.error = fmt::format(
         "The last {:.4f} s were lost between board and PC, or the disk was too slow. The recording contains all "
-        "samples up to then.",
+        "samples up to that time.",
         static_cast<double>(missing) / protocol::servo_rate_Hz);
   if (device_options.json)
     fmt::print("{}\n", to_json(options, status, force_went_off).dump());

@@ -31,11 +31,14 @@ std::string_view kind_text(protocol::ReportKind kind) {
 
 void print_reports() {
   fmt::print(
-      "## Reports of the HID interface\n\nTheir fields, and those of the scope's frames, which go over interface {}, "
-      "endpoint 0x{:02x}, are below. The device fills a report that is read with zeros up to its declared size. It "
-      "accepts a write from its shortest length to the longest report of its kind ({} bytes for output, {} for feature "
-      "reports), and ignores the bytes after the used part. A busy board and a refusal are results in a report. Only a "
-      "request that the device does not know ends in a stall.\n\n"
+      "## Reports of the HID interface\n"
+      "\n"
+      "The tables below list the fields of the reports and of the scope frames. Scope frames use interface {}, "
+      "endpoint 0x{:02x}. When the host reads a report, the device pads the report with zeros to its declared size. A "
+      "written report may have any length from its shortest write to the longest report of its kind ({} bytes for "
+      "output, {} for feature reports). The device ignores the bytes after the used part. The device reports a full "
+      "queue and a refusal as results, and stalls only unknown requests.\n"
+      "\n"
       "| id | kind | read | written | declared bytes | shortest write | meaning |\n"
       "| --- | --- | --- | --- | --- | --- | --- |\n",
       protocol::usb::scope_interface, protocol::usb::scope_in_endpoint,
@@ -49,9 +52,10 @@ void print_reports() {
                row.can_be_set() ? fmt::format("{}", row.set_bytes_minimum) : "-", text.meaning);
   }
   fmt::print(
-      "\nInterface {}, endpoint 0x{:02x}, is a HID multi-axis controller of its own: a ControllerReport of {} bytes "
-      "every {} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates. A DETACH "
-      "while the force is on completes without effect, and GETSTATUS then reports errVENDOR (0x0B) in the state "
+      "\n"
+      "Interface {}, endpoint 0x{:02x}, is a separate HID multi-axis controller. It sends a ControllerReport of {} "
+      "bytes every {} ms, without an id. Interface {} is the run-time interface of USB device firmware upgrade. A "
+      "DETACH while the force is on completes without effect, and GETSTATUS then reports errVENDOR (0x0B) in the state "
       "appIDLE until a DETACH is accepted.\n",
       protocol::usb::controller_interface, protocol::usb::controller_in_endpoint, sizeof(protocol::ControllerReport),
       protocol::usb::controller_interval_ms, protocol::usb::firmware_update_interface);
@@ -107,24 +111,28 @@ void print_supervision() {
   for (const auto& row : protocol::event_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
   fmt::print(
       "\n"
-      "## Monitored faults\n\n"
-      "Of several faults in one period the board reports the first in this list. A braked motor is shorted through the "
-      "low sides of its bridge until the arm is slow. Gentle braking pauses while the motor presses with more than a "
-      "share of the force limit.\n\n"
-      "| fault | watched while | can be cleared | an arm that moves |\n"
+      "## Monitored faults\n"
+      "\n"
+      "If several faults occur in one period, the board reports the first of them in this list. A braked motor is "
+      "shorted through the low sides of its bridge until the arm is slow. Gentle braking pauses while a motor current "
+      "exceeds a fraction of the current for the force limit.\n"
+      "\n"
+      "| fault | monitored in | can be cleared | moving arm |\n"
       "| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::watch_table)
     fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
-               row.voids_reference ? ", and requires the inkwell again" : "", text(row.off));
+               row.voids_reference ? ", and the arm must be referenced again" : "", text(row.off));
 }
 
 void print_self_test() {
   fmt::print(
       "\n"
-      "## Self-test\n\n"
-      "The self-test runs after each start and on command. A failed item disables the force where the table says "
-      "so.\n\n"
-      "| item | figure | takes the force | what it checks | remedy |\n"
+      "## Self-test\n"
+      "\n"
+      "The self-test runs after each start and on command. A failed item disables the force if its third column "
+      "contains yes.\n"
+      "\n"
+      "| item | figure | disables the force | expected | remedy |\n"
       "| --- | --- | --- | --- | --- |\n");
   for (const auto& row : protocol::self_test_item_table)
     fmt::print("| {} | {} | {} | {} | {} |\n", row.name, row.unit, row.takes_force ? "yes" : "no", row.meaning,
@@ -178,14 +186,20 @@ void print_codes() {
 
 void print_tables() {
   fmt::print(
-      "\n## Parameters\n\n| id | parameter | unit | range | default | what it is |\n"
+      "\n"
+      "## Parameters\n"
+      "\n"
+      "| id | parameter | unit | range | default | meaning |\n"
       "| --- | --- | --- | --- | --- | --- |\n");
   for (const auto& row : protocol::parameter_table)
     fmt::print("| {} | `{}` | {} | {:g} to {:g} | {:g} | {} |\n", row.id, row.name, row.unit, row.minimum, row.maximum,
                row.default_value, row.help);
   fmt::print(
-      "\n## Signals of the scope\n\n| id | signal | unit | on the wire | what it is |\n| --- | --- | --- | --- | --- "
-      "|\n");
+      "\n"
+      "## Signals of the scope\n"
+      "\n"
+      "| id | signal | unit | on the wire | meaning |\n"
+      "| --- | --- | --- | --- | --- |\n");
   for (const auto& row : protocol::signal_table)
     fmt::print("| {} | `{}` | {} | {} | {} |\n", row.id, row.name, row.unit, name_of(row.wire), row.help);
 }
@@ -203,7 +217,7 @@ void add_reference_command(const Place& place) {
           "USB {:04x}:{:04x}{}. Generated by `inkwell reference` from the tables that firmware and companion "
           "share.\n\n",
           protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id,
-          protocol::usb::is_test_identity ? ", a test number that other devices may have too" : "");
+          protocol::usb::is_test_identity ? ", a test identifier that other devices may also use" : "");
       print_reports();
       print_wire();
       print_supervision();

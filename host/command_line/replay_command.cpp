@@ -107,7 +107,7 @@ void add_replay_command(const Place& place) {
                    "Text of the mark that aligns both recordings. Default: their first samples")
       ->type_name("MARK");
   command->add_flag("--info", replay_options->information, "Only describe the recording");
-  command->add_flag("--log", replay_options->log, "Only print its marks and device events: clock, time, kind, text");
+  command->add_flag("--log", replay_options->log, "Only print marks and device events: clock, time, kind, text");
   add_examples(*command,
                "inkwell replay push.h5\ninkwell replay soft.h5 stiff.h5 --align touch\n"
                "inkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");

@@ -91,11 +91,12 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
 void add_run_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "run",
-      "Starts a program written for an Omni's libraries (HDAPI, CHAI3D) with this arm\n\n"
+      "Runs a program for the Omni's libraries (HDAPI, CHAI3D) on this arm\n"
+      "\n"
       "Replaces the Omni's libraries with libHD.so and libhdPhantom.so of this arm, and sets INKWELL_DEVICE. With\n"
       "--virtual, a virtual board runs as long as the program. Options precede PROGRAM; words after it are its "
       "arguments.\n"
-      "Exit code: that of the program, or 128 plus the number of the signal that ended it.");
+      "The exit code is that of the program, or 128 plus the number of the signal that terminated the program.");
   const auto own = std::make_shared<DeviceOptions>();
   command->fallthrough(false);
   own->add_to(*command);

@@ -51,7 +51,7 @@ Plan plan_of(const SoakOptions& command) {
   if (!command.sitting) return plan;
   if (*command.sitting > count)
     throw UsageError(
-        fmt::format("A soak of --seconds {} has {} sittings. Give a number up to that, or increase --seconds.",
+        fmt::format("A soak of --seconds {} has only {} sittings. Give a smaller number, or increase --seconds.",
                     board_time_s, count));
   plan.numbers = {*command.sitting};
   return plan;
@@ -140,7 +140,7 @@ void add_soak_command(const Place& place) {
       ->capture_default_str();
   command
       ->add_option("--sitting", options->sitting,
-                   "Run only this board of the seed; with --seconds as in a soak of that time")
+                   "Run only the board with this number; --seconds sets its time as in a full soak")
       ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
   command->add_option("--sitting-seconds", options->choices.sitting_s, "Maximum board time of one board")

@@ -89,7 +89,7 @@ void print(const ParameterSet& held, const BoardStore& store) {
   }
   fmt::print(
       "\n"
-      "Lost at power loss, unless you store them with `inkwell parameters store`:\n");
+      "These values are lost at power loss, unless you store them with `inkwell parameters store`:\n");
   for (const auto parameter : waiting)
     fmt::print("  {:<32} {:>12}   stored {:>12} {}\n", info(parameter).name, format_value(parameter, held[parameter]),
                format_value(parameter, store.at_next_start[parameter]), info(parameter).unit);

@@ -19,7 +19,7 @@ namespace inkwell::command_line {
 namespace {
 
 /// The completion generator recognizes the group by the word "Window" and does not offer it after a command.
-constexpr char window_group[] = "Window (without a command, and of replay)";
+constexpr char window_group[] = "Window (without a command, or with replay)";
 constexpr std::string_view command_with_window = "replay";
 
 /// Returns the layout names in the format for help, manual page and completion. The option also accepts user-defined
@@ -103,7 +103,7 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->group(group);
   program
       .add_option("--width", window.width,
-                  "Width of the window in points: one pixel, or several on a high-resolution display")
+                  "Window width in points; a point is one pixel, or several on a high-resolution display")
       ->type_name("POINTS")
       ->check(whole_number_within(window::smallest_window_points.width, 16384))
       ->capture_default_str()

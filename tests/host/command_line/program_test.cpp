@@ -54,8 +54,8 @@ TEST_CASE("an arm that does not tell its board does not keep the others from bei
   usb.add_arm("0022");
   const auto [exit_code, complaint] = run_here({"inkwell", "devices"});
   CHECK(exit_code == 0);
-  CHECK(contains(complaint, "The board of arm 0011 cannot be read"));
-  CHECK(contains(complaint, "The board of arm 0022 cannot be read"));
+  CHECK(contains(complaint, "The board name of arm 0011 cannot be read"));
+  CHECK(contains(complaint, "The board name of arm 0022 cannot be read"));
 }
 
 TEST_CASE("a recording whose end does not come says so, and is no success") {
@@ -82,7 +82,7 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
   std::string said;
   SUBCASE("its stream breaks off, and the poses go on") {
     end = [&] { usb.set_bulk_fails(arm, true); };
-    said = "The recording contains all samples up to then";
+    said = "The recording contains all samples up to that time";
   }
   SUBCASE("its stream says nothing, and the poses go on") {
     end = [] {};
