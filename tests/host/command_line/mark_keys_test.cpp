@@ -23,7 +23,7 @@ void type(int descriptor, std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("each line of a pipe is a mark with its text") {
+TEST_CASE("each line from a pipe sets a mark with the line's text") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   MarkKeys keys(ends[0]);
@@ -39,7 +39,7 @@ TEST_CASE("each line of a pipe is a mark with its text") {
   close(ends[0]);
 }
 
-TEST_CASE("on a terminal the space bar is a mark, at once, and the terminal is given back") {
+TEST_CASE("on a terminal the space bar sets a mark immediately, and the terminal settings are restored") {
   const int keyboard = posix_openpt(O_RDWR | O_NOCTTY);
   if (keyboard < 0) {
     MESSAGE("skipped: this computer has no pseudo-terminals (/dev/ptmx): ", std::strerror(errno));
@@ -66,7 +66,7 @@ TEST_CASE("on a terminal the space bar is a mark, at once, and the terminal is g
   close(keyboard);
 }
 
-TEST_CASE("an interrupt is noted while it is watched for") {
+TEST_CASE("an interrupt is recorded while an InterruptGuard exists") {
   InterruptGuard guard;
   CHECK_FALSE(guard.was_asked_to_end());
   raise(SIGINT);

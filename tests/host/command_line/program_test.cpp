@@ -48,7 +48,7 @@ Ended run_here(std::vector<std::string> words) {
 
 }  // namespace
 
-TEST_CASE("an arm that does not tell its board does not keep the others from being listed") {
+TEST_CASE("other arms are listed although one arm does not report its board name") {
   FakeUsb usb;
   usb.add_arm("0011");
   usb.add_arm("0022");
@@ -58,7 +58,7 @@ TEST_CASE("an arm that does not tell its board does not keep the others from bei
   CHECK(contains(complaint, "The board name of arm 0022 cannot be read"));
 }
 
-TEST_CASE("a recording whose end does not come says so, and is no success") {
+TEST_CASE("a recording whose last samples do not arrive fails with a message") {
   FakeUsb usb;
   FakeUsbDevice& arm = usb.add_arm("0011");
   answer_as_inkwell(arm);
@@ -80,15 +80,15 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
   };
   std::function<void()> end;
   std::string said;
-  SUBCASE("its stream breaks off, and the poses go on") {
+  SUBCASE("the scope stream breaks off, and the poses continue") {
     end = [&] { usb.set_bulk_fails(arm, true); };
     said = "The recording contains all samples up to that time";
   }
-  SUBCASE("its stream says nothing, and the poses go on") {
+  SUBCASE("the scope stream is silent, and the poses continue") {
     end = [] {};
     said = "sends poses but no samples";
   }
-  SUBCASE("what comes next lies behind its end") {
+  SUBCASE("the next samples are after the end of the recording") {
     end = [&] {
       const auto token = selection_token();
       usb.send_bulk(arm, scope_frame(token, 1000, 0.5f));
@@ -111,7 +111,7 @@ TEST_CASE("a recording whose end does not come says so, and is no success") {
   CHECK(contains(complaint, said));
 }
 
-TEST_CASE("of several arms none is used that was not named, and the sentence says how one is") {
+TEST_CASE("with several arms, a command without a serial number fails and asks for it") {
   FakeUsb usb;
   usb.add_arm("0011");
   usb.add_arm("0022");

@@ -19,7 +19,7 @@ std::size_t taken(RecordedSpan& span, std::int64_t first_period, std::size_t cou
 
 }  // namespace
 
-TEST_CASE("a recording of a given length ends with its last period, also after days") {
+TEST_CASE("a recording of a given length stops with its last period, even after days") {
   for (const std::int64_t first : {std::int64_t{7}, std::int64_t{5} << 32}) {
     CAPTURE(first);
     RecordedSpan span(100);
@@ -35,18 +35,18 @@ TEST_CASE("a recording of a given length ends with its last period, also after d
   CHECK(endless.missing_at_end(1'000'000, 0) == 0);
 }
 
-TEST_CASE("samples that are lost at the end of a recording are missing, those between others are not") {
+TEST_CASE("samples lost at the end of a recording count as missing, samples lost earlier do not") {
   RecordedSpan span(100);
   CHECK(taken(span, 7, 50) == 50);
   CHECK(taken(span, 7 + 60, 20) == 20);
   CHECK_FALSE(span.is_over());
   CHECK(span.missing_at_end(70, 10) == 0);  // a recording that was stopped early has no missing samples
-  SUBCASE("the next come from behind the end") {
+  SUBCASE("the next samples are after the end") {
     CHECK(taken(span, 7 + 110, 20) == 0);
     CHECK(span.is_over());
     CHECK(span.missing_at_end(70, 10) == 20);
   }
-  SUBCASE("the last come, and the recorder has no room for them") {
+  SUBCASE("the last samples arrive, but the recorder has no room for them") {
     CHECK(taken(span, 7 + 80, 20) == 20);
     CHECK(span.is_over());
     CHECK(span.missing_at_end(70, 10) == 20);
@@ -54,14 +54,14 @@ TEST_CASE("samples that are lost at the end of a recording are missing, those be
   }
 }
 
-TEST_CASE("a board whose time begins anew ends no recording as if it were complete") {
+TEST_CASE("a restart of the board does not complete a recording") {
   RecordedSpan span(100);
   CHECK(taken(span, 1000, 50) == 50);
   CHECK(taken(span, 0, 20) == 20);  // the recorder must receive the samples of the restarted board
   CHECK_FALSE(span.is_over());
 }
 
-TEST_CASE("a recording may take days") {
+TEST_CASE("a recording may last days") {
   constexpr std::uint64_t periods = 3ull << 32;
   RecordedSpan span(periods);
   constexpr std::uint32_t block = 1u << 30;
