@@ -48,7 +48,7 @@ Ended run_here(std::vector<std::string> words) {
 
 }  // namespace
 
-TEST_CASE("other arms are listed although one arm does not report its board name") {
+TEST_CASE("the list of devices continues after an arm that does not report its board name") {
   FakeUsb usb;
   usb.add_arm("0011");
   usb.add_arm("0022");
