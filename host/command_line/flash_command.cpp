@@ -92,7 +92,7 @@ int flash_file(const DeviceOptions& options, const FlashOptions& given, const Ne
   if (options.json)
     fmt::print("{}\n", to_json(written, before).dump(2));
   else
-    fmt::print("{} now contains {}. Before: {}.\n", given.flash_file.string(),
+    fmt::print("{} now contains {}. Before, it contained {}.\n", given.flash_file.string(),
                written.identity ? firmware_update::describe(*written.identity) : written.file.string(),
                before_text(before));
   return 0;

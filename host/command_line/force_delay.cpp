@@ -24,7 +24,7 @@ using protocol::Signal;
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double periods_per_ms = rate_Hz / 1000;
 constexpr std::int64_t periods_in(double seconds) { return static_cast<std::int64_t>(seconds * rate_Hz); }
-/// Settling time after the first force of a recording or vibration. Samples in this time are not evaluated.
+/// Settling time after the first force of a recording or vibration. Samples during the settling time are not evaluated.
 constexpr std::int64_t settling_periods = periods_in(0.02);
 constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
 /// Time to wait for the last samples of a vibration.
@@ -109,7 +109,7 @@ class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}
   double operator()(std::int64_t period) const { return delay_force_N * std::sin(angle(period)); }
-  /// `value` times the complex phasor of the sine.
+  /// Returns `value` times the complex phasor of the sine.
   std::complex<double> part(std::int64_t period, double value) const {
     return value * std::complex<double>(std::sin(angle(period)), std::cos(angle(period)));
   }

@@ -14,7 +14,7 @@ void set_help_style(CLI::App& program);
 /// Adds the text after a command's options: one example per line, and the hints that all commands share.
 void add_examples(CLI::App& command, const std::string& examples);
 
-/// Number checks whose messages state the range in words.
+/// Validators for numbers, with messages that state the range.
 CLI::Validator zero_or_more();
 CLI::Validator more_than_zero();
 CLI::Validator number_within(double low, double high);

@@ -18,7 +18,7 @@ class MarkKeys {
   MarkKeys(const MarkKeys&) = delete;
   MarkKeys& operator=(const MarkKeys&) = delete;
 
-  /// The text of the next mark, or none. Does not wait.
+  /// Returns the text of the next mark, or nothing. Does not wait.
   std::optional<std::string> next();
 
  private:

@@ -117,7 +117,9 @@ void add_measure_command(const Place& place) {
   auto* delay = command->add_subcommand(
       "delay", "Measures the delay from a pose to the force computed from it, and the frequency response");
   const auto wanted = std::make_shared<DelayOptions>();
-  delay->add_option("--recordings", wanted->recordings, "Number of 60 ms recordings for the delay, 1 to 1000")
+  delay
+      ->add_option("--recordings", wanted->recordings,
+                   "Number of 60 ms recordings for the delay measurement, 1 to 1000")
       ->type_name("NUMBER")
       ->check(whole_number_within(1, 1000))
       ->capture_default_str();

@@ -33,7 +33,7 @@ ordered_json to_json(Parameter parameter, float value, float stored) {
 void explain_marks(std::size_t not_stored) {
   fmt::print("\n* differs from the default of this companion\n");
   if (not_stored == 0)
-    fmt::print("After its next start the board has the same parameter values.\n");
+    fmt::print("After the next start, the board has the same parameter values.\n");
   else
     fmt::print("! {} {} not stored and lost at power loss, unless you store {} with `inkwell parameters store`\n",
                not_stored, not_stored == 1 ? "value is" : "values are", not_stored == 1 ? "it" : "them");
@@ -140,7 +140,7 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
     fmt::print(stderr, "inkwell: {} is not a parameter of this version and is ignored.{}\n", name,
                device::parameter_suggestion(name));
   if (loaded.changes.empty())
-    throw device::Error(fmt::format("{} contains no parameter that this version knows. Nothing was sent.", file));
+    throw device::Error(fmt::format("{} contains no parameter of this version. Nothing was sent.", file));
   if (!connection) connection = connect(options);
   return {std::move(loaded), std::move(connection)};
 }
@@ -187,7 +187,7 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
   if (options.json)
     fmt::print("{}\n", json.dump(2));
   else if (differences.empty())
-    fmt::print("The device has the values of {}.\n", file);
+    fmt::print("The device has the same values as {}.\n", file);
   return 0;
 }
 

@@ -48,7 +48,8 @@ void say_which_device(const device::Endpoint& endpoint, const std::string& addre
 }
 
 int run(const DeviceOptions& options, std::vector<std::string> words) {
-  if (words.empty()) throw UsageError("No program is named. Give one: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
+  if (words.empty())
+    throw UsageError("The program is missing. Give its name: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
   if (words.front().starts_with('-'))
     throw UsageError(fmt::format("There is no option {}. `inkwell run --help` lists the options.", words.front()));
   const auto libraries = installation::dropins();

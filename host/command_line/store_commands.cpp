@@ -65,10 +65,10 @@ void print_start(const StoreReport& report) {
   if (report.contents_at_start != StoreContents::parameters) return;
   fmt::print("at the start   {} parameters, stored by firmware {}\n", report.entries, firmware_version(report));
   if (report.out_of_range > 0)
-    fmt::print("               {} of them have their default: this firmware rejects the stored value\n",
+    fmt::print("               {} parameters have their default: this firmware rejects the stored values\n",
                report.out_of_range);
   if (report.unknown > 0)
-    fmt::print("               {} of them are unknown to this firmware but retained: {}{}\n", report.unknown,
+    fmt::print("               {} parameters are unknown to this firmware but retained: {}{}\n", report.unknown,
                fmt::join(unknown_ids(report), ", "),
                report.unknown > protocol::store_unknown_ids_maximum ? ", ..." : "");
 }
@@ -78,13 +78,13 @@ void print(const ParameterSet& held, const BoardStore& store) {
   const auto waiting = not_stored(held, store);
   fmt::print("stored         {}\n", info(report.contents).meaning);
   print_start(report);
-  fmt::print("room           {} more stores before the board's next start, which frees space\n", report.stores_left);
+  fmt::print("room           {} more stores; the next start of the board frees space\n", report.stores_left);
   fmt::print("wear           {} records written, sectors erased {} times\n", report.records_written,
              fmt::join(report.sector_erases, " and "));
   if (waiting.empty()) {
     fmt::print(
         "\n"
-        "After its next start the board has the same parameter values.\n");
+        "After the next start, the board has the same parameter values.\n");
     return;
   }
   fmt::print(

@@ -80,7 +80,7 @@ TEST_CASE("values last until the board's power goes, unless they are stored") {
 
 TEST_CASE("what is not stored is marked, counted and listed with the value that is") {
   RememberingBoard board;
-  CHECK(board.run({"parameters"}).out.find("After its next start the board has the same parameter values") !=
+  CHECK(board.run({"parameters"}).out.find("After the next start, the board has the same parameter values") !=
         std::string::npos);
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "wall_damping_Ns_per_m=3"});
   board.done({"parameters", "store"});

@@ -21,7 +21,7 @@ template <class Info>
 inline constexpr Info nameless_row{};
 
 /// Table with rows that are added at run time. `own` is the number of rows of the table itself. Constant expressions
-/// read the table directly.
+/// use the table instead of this class.
 ///
 /// The constructor must not call std::is_constant_evaluated(): with GCC 14 the added rows would be missing in a
 /// range-based for loop. GCC 14 evaluates this function to true wherever a reference is bound to the new object.

@@ -16,7 +16,7 @@
 
 namespace inkwell::protocol {
 
-/// Control periods from one row to the next. The interval before the fault's row is different.
+/// Control periods from one row to the next, except before the row of the fault.
 inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
 /// 100 rows (100 ms) before the fault, and 101 rows from the fault's row on.
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
@@ -55,7 +55,7 @@ struct BlackBoxReport {
   std::uint16_t rows_before;    ///< number of rows before the fault; these rows come first
   std::uint16_t row_count;      ///< 0..black_box_rows_maximum
   std::uint32_t fault_periods;  ///< control period of the fault, or of the last row before a restart
-  /// Number of crashes with a restart since the fault. These restarts do not change the rows.
+  /// Number of crashes with a restart since the fault. Later crashes do not change the rows.
   std::uint32_t later_crashes;
   CrashFacts crash;  ///< crash record of the newest restart after a crash
 };

@@ -12,8 +12,8 @@
 // 3. Add a row to watch_table in protocol/supervision.hpp and a separate row to
 //    tests/firmware/control/supervisor_test.cpp. The row of watch_table sets the monitored states, the clearing,
 //    the motor switch-off and the loss of the reference.
-// 4. Add an enumerator to host/library/include/inkwell/inkwell.h and a line to host/library/c_codes.cpp. The
-//    library does not compile without this line.
+// 4. Add an enumerator to host/library/include/inkwell/inkwell.h and a line to host/library/c_codes.cpp. The compiler
+//    reports a missing line.
 
 #include <array>
 #include <cstddef>
@@ -22,11 +22,11 @@
 
 namespace inkwell::protocol {
 
-/// Limit of a motor current, relative to the current limit of the motor.
+/// Motor current that raises a fault, relative to the current limit of the motor.
 inline constexpr float over_current_ratio = 1.5f;
 /// Largest age of the supply and gimbal measurements.
 inline constexpr float samples_stale_s = 0.001f;
-/// Longest pass of the main loop. The shortest watchdog timeout exceeds this limit.
+/// Longest allowed pass of the main loop. The shortest watchdog timeout is longer than main_loop_stalled_s.
 inline constexpr float main_loop_stalled_s = 0.01f;
 /// Largest deviation of the bridge supply from its mean, in either direction (control/supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
@@ -56,7 +56,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(17, memory_damaged, "A bit of the firmware or of the active parameters has changed in memory.", "Reset the board. If the fault returns, flash the firmware again. If it still returns, replace the chip.") \
   X(18, motor_implausible, "The voltage, current and speed of a motor are inconsistent.", "Check the wires, the shunt amplifier and the encoder of the motor. A wrong motor resistance also causes this fault: measure it with `inkwell tune current-loop`. Put the stylus into the inkwell, then clear the fault.") \
   X(19, logic_supply_low, "The microcontroller's 3.3 V supply fell below 2.9 V.", "Check the regulator and its input voltage, and check the 3.3 V supply for a short circuit. Then clear the fault.") \
-  X(20, supply_ripple, "The ripple of the bridge supply repeatedly exceeds {supply_ripple_V} V in either direction.", "Check the bulk capacitor at the bridges, the {supply_nominal_V} V supply and the plugs between the two. Then clear the fault.") \
+  X(20, supply_ripple, "The ripple of the bridge supply repeatedly exceeds {supply_ripple_V} V in either direction.", "Check the bulk capacitor at the bridges, the {supply_nominal_V} V supply and the plugs between capacitor and supply. Then clear the fault.") \
   X(21, encoder_wire, "An encoder count alternates between two values faster than the arm can move: one of the two signal wires is broken or stuck.", "Check the plug and both signal wires of the encoder, put the stylus into the inkwell, then clear the fault.") \
   X(22, bridge_wire, "The enable wire, the heartbeat wire or the wire of a half bridge does not follow the level of its pin, or the bridges are on when they must be off.", "Check the wires between chip and bridges for shorts to ground, to a supply or to another wire, and check the monostable of the heartbeat. Then clear the fault.") \
   X(23, analog_supply, "The analog supply VDDA differs by more than {analog_supply_percent} % from 3.3 V. VDDA is the reference of converters, amplifiers and potentiometers.", "Check the regulator, and check the ferrite bead and the capacitors of VDDA. Then clear the fault.") \
@@ -116,7 +116,7 @@ inline constexpr auto refusal_table = std::to_array<CodeInfo>({
 #undef X
 });
 
-/// One more than the last code.
+/// The number after the last code.
 inline constexpr std::size_t fault_code_end = std::size_t{fault_table.back().code} + 1;
 
 inline constexpr CodeInfo unknown_code{0xFFFF, "unknown", "The device sent a code that is unknown to this companion.",

@@ -25,7 +25,7 @@
 
 namespace inkwell::protocol {
 
-/// Part of board and arm that fails. The rows of one part are consecutive.
+/// Failed part of the board or the arm. The rows of one part are consecutive.
 enum class InjectionPart : std::uint8_t { wires, encoders, shunts, motors, bridges, supply, clocks, usb, core, memory };
 
 /// Kind of location at which a fault is injected.

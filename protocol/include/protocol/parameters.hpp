@@ -6,7 +6,7 @@
 // ends in the unit, and files and command line use the same name.
 //
 // A row with the default arm_defaults::NAME describes the arm. Every file in boards/arms/ sets all parameters of the
-// arm. The build selects one description and writes its values to the generated header <arm/defaults.hpp>.
+// arm. The build selects one arm description and writes its values to the generated header <arm/defaults.hpp>.
 //
 // The parameters of the image's force law follow the last row (docs/force-laws.md).
 #pragma once
@@ -68,7 +68,7 @@ enum class ParameterKind : std::uint8_t {
   X(303, motor_resistance_1_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_1_ohm, "current loop", "Winding resistance of motor 1. The self-test fails if the measured resistance differs too much from this value. The motor check uses this value until a self-test has measured the resistance. `inkwell tune current-loop` measures it.") \
   X(304, motor_resistance_2_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_2_ohm, "current loop", "Winding resistance of motor 2.") \
   X(305, motor_resistance_3_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_3_ohm, "current loop", "Winding resistance of motor 3.") \
-  X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Current limit of motor 1. When one motor reaches its limit, all three are scaled down together. A motor with limit 0 is not used.") \
+  X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Current limit of motor 1. When one motor reaches its limit, all motor currents are scaled down together. A motor with limit 0 is not used.") \
   X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Current limit of motor 2.") \
   X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Current limit of motor 3.") \
   X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Probe speed above which a fault switches the force off. The force component along the motion is reduced above 80 % of this speed and is zero above 90 %.") \
@@ -122,8 +122,8 @@ enum class ParameterKind : std::uint8_t {
   X(608, gimbal_3_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_3_offset_rad, "gimbal", "Offset of the roll potentiometer.")
 // clang-format on
 
-/// Index of a parameter in the table. The protocol transmits the id instead. Values after the last enumerator are
-/// parameters of the force law.
+/// Index of a parameter in the table. The protocol transmits the id instead of the index. Values after the last
+/// enumerator are parameters of the force law.
 enum class Parameter : std::uint8_t {
 #define X(id, name, ...) name,
   INKWELL_PARAMETERS(X)
@@ -177,8 +177,9 @@ constexpr const ParameterInfo& info(Parameter parameter) {
   return place < parameter_count ? parameter_table[place] : known_parameters()[place];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
-/// True if the parameter is part of the arm's geometry. A change would make the force jump, so it is allowed only while
-/// the force is off. Parameters outside the group "arm" can change at any time, even if belongs_to_arm is set.
+/// True if the parameter is part of the arm's geometry. A change would make the force jump, and is therefore allowed
+/// only while the force is off. Parameters outside the group "arm" can change at any time, even if belongs_to_arm is
+/// set.
 constexpr bool needs_force_off(const ParameterInfo& row) { return row.group == "arm"; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
   return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&

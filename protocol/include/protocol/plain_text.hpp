@@ -50,7 +50,7 @@ inline std::string plain_text(std::string_view text) {
   return plain;
 }
 
-/// Like plain_text(), but keeps tabs and line feeds. Used for multi-line text and for the output of other programs.
+/// Like plain_text(), but retains tabs and line feeds. Used for multi-line text and for the output of other programs.
 inline std::string plain_lines(std::string_view text) {
   std::string plain;
   while (!text.empty()) {

@@ -18,7 +18,7 @@
 // its kind. A report that the host reads is filled with zeros up to its declared size or the requested length (HID
 // 1.11, section 7.2.1).
 //
-// ControllerReport has a separate interface. Every program that supports joysticks can read this report.
+// ControllerReport has a separate interface, which every program that supports joysticks can read.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ static_assert(std::endian::native == std::endian::little, "the structures are tr
 #define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
 #endif
 
-/// Protocol version. It increases whenever a structure below or the meaning of an id changes.
+/// The protocol version increases whenever a structure below or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt and the scope. Every `time_periods` counts at this rate.
@@ -213,22 +213,22 @@ struct SignalSelection {
 struct TestPulse {
   std::uint8_t motor;  ///< 1..3
   /// Pulse height in A or V. The height is bounded by the current or voltage limit, and by the current that produces
-  /// force_limit_N in this pose.
+  /// force_limit_N in the present pose.
   float amplitude;
   float duration_s;  ///< 0..test_duration_maximum_s; the pulse stops early when it has delivered energy_reserve_J
 };
 
 /// Output report. PoseReport::command_token equals `token` after the command has been carried out. The device does not
 /// acknowledge an invalid command, or a report with a wrong version or length. The device also does not acknowledge a
-/// command on endpoint 0 while the command queue is full. While a program drives the arm, the device accepts only
-/// commands that need no claim (needs_claim()) from other programs.
+/// command on endpoint 0 while the command queue is full. While a program drives the arm, other programs can send only
+/// commands that need no claim (needs_claim()).
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
   std::uint8_t version = protocol_version;
   std::uint8_t token;
   std::uint32_t claim;  ///< claim of the sender; 0 if it has none
-  /// Chosen by the program. RequestResultsReport lists the result under this number. If the ticket is 0, the result is
+  /// Chosen by the program. RequestResultsReport lists the result under the ticket. If the ticket is 0, the result is
   /// not recorded.
   std::uint32_t ticket;
   union {
@@ -242,11 +242,11 @@ struct CommandReport {
 /// Longest interval between two force reports over which the board interpolates.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 
-/// Output report, at most one per millisecond: the force that a program requests at the probe. The board moves to this
-/// force along a straight line within `interval_ms`. force_limit_N limits the force, and program_force_change_N_per_s
-/// limits its rate of change. The force fades if no report arrives for program_force_expiry_s. The device refuses and
-/// counts a force that is not finite, an unknown mode, and an interval out of range. The device also refuses and counts
-/// an old pose, and a claim that is not the driver's.
+/// Output report, at most one per millisecond: the force that a program requests at the probe. The board interpolates
+/// linearly to the requested force within `interval_ms`. force_limit_N limits the force, and
+/// program_force_change_N_per_s limits its rate of change. The force fades if no report arrives for
+/// program_force_expiry_s. The device refuses and counts a force that is not finite, an unknown mode, and an interval
+/// out of range. The device also refuses and counts an old pose, and a claim that is not the driver's.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
@@ -400,7 +400,7 @@ struct ShapesReport {
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
   std::uint32_t claim;  ///< claim of the driver
-  /// Chosen by the program. RequestResultsReport lists the result under this number. If the ticket is 0, the result is
+  /// Chosen by the program. RequestResultsReport lists the result under the ticket. If the ticket is 0, the result is
   /// not recorded.
   std::uint32_t ticket;
   SphereEntry sphere;
@@ -419,7 +419,7 @@ struct ForceLawReport {
   std::uint16_t size;  ///< size of the whole report, up to force_law_report_maximum
 };
 
-/// Largest size of a ForceLawReport. Some kernels do not accept longer reports.
+/// Largest size of a ForceLawReport, because some kernels do not accept longer reports.
 inline constexpr std::size_t force_law_report_maximum = 2048;
 
 constexpr std::size_t shapes_report_size(std::size_t plane_count) {

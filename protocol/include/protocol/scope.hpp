@@ -5,9 +5,9 @@
 // bytes, which is empty if the length is a multiple of 64.
 //
 // Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
-// floats per sample, each frame leaves an idle time of two packets. With only 36 samples, a frame would leave less than
-// half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the number of
-// lost samples.
+// floats per sample, each frame leaves an idle time of two packets. A frame of only 36 samples would leave an idle time
+// of less than half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the
+// number of lost samples.
 //
 //   full     A sample has the value of every selected signal, in the order of the selection.
 //   changes  A sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values that differ

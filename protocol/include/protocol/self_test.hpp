@@ -40,7 +40,7 @@ inline constexpr std::string_view bridge_remedy =
 #define INKWELL_SELF_TEST_ITEMS(X)                                                                                     \
   X(0, flash, "", true, "The firmware in flash, its copies in RAM and the active parameters are undamaged.", "Reset the board. If the failure returns, flash the firmware again. If it still returns, replace the chip.") \
   X(1, ram, "", true, "The RAM retains each bit of a pattern. The RAM is tested at power-on, not at a reset.", "Switch the power off and on. If the failure returns, replace the chip.") \
-  X(2, watchdog, "ms", true, "The watchdog oscillator runs, the watchdog has accepted its timeout, and it expired in time in the test at power-on.", "Switch the power off and on. If the failure returns, replace the chip.") \
+  X(2, watchdog, "ms", true, "The watchdog oscillator runs, the watchdog has accepted its timeout, and the watchdog expired in time in the power-on test.", "Switch the power off and on. If the failure returns, replace the chip.") \
   X(3, current_offsets, "A", true, "With the bridges off, the current sensors read zero, which is the middle of the converter range.", "Check the shunt amplifiers and their reference, then reset the board.") \
   X(4, analog_supply, "V", true, "The analog supply VDDA is correct relative to the chip's internal reference.", "Check the ferrite bead and capacitors of VDDA, and the 3.3 V regulator.") \
   X(5, encoder_1_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
@@ -158,7 +158,7 @@ struct SelfTestReport {
 static_assert(sizeof(SelfTestEntry) == 8);
 static_assert(sizeof(SelfTestReport) == 16 + 8 * self_test_item_count);
 
-/// True if an item that the force requires has failed.
+/// True if a failed item prevents the force.
 constexpr bool takes_force(const SelfTestReport& report) {
   for (std::size_t i = 0; i < self_test_item_count; ++i)
     if (self_test_item_table[i].takes_force && report.entries[i].result == SelfTestResult::failed) return true;

@@ -92,7 +92,7 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
 /// X(bit, name, meaning)
 #define INKWELL_EVENTS(X)                                                             \
   X(1, measured, "the offsets of the current sensors are known")                      \
-  X(2, referenced, "the arm position is known because the stylus was in the inkwell")                            \
+  X(2, referenced, "the arm position is known, because the stylus was in the inkwell")                            \
   X(4, enable, "the command enable_force was received")                                       \
   X(8, disable, "the command disable_force was received")                                     \
   X(16, clear, "the command clear_fault was received")                                        \
@@ -143,8 +143,8 @@ struct Way {
   constexpr bool is_open(Events now) const { return (now & (needs | unless)) == needs; }
 };
 
-/// Rows with the same `from` are consecutive. The first open transition of these rows occurs. A fault has precedence:
-/// it leads to `fault` from each state except `fault` and `update`.
+/// Rows with the same `from` are consecutive, and the supervisor follows the first open transition among them. A fault
+/// has precedence: it leads to `fault` from each state except `fault` and `update`.
 inline constexpr auto way_table = std::to_array<Way>({
     {State::starting, State::update, events(Event::update), 0},
     {State::starting, State::testing, events(Event::measured), 0},
@@ -262,8 +262,8 @@ using Watches = std::uint32_t;
 static_assert(watch_table.size() <= 32);
 
 namespace detail {
-/// Index of each fault code. The indices are stored, because the compiler does not evaluate a search in a long table at
-/// compile time.
+/// Index of each fault code in watch_table. The indices are stored, because the compiler does not evaluate a search in
+/// a long table at compile time.
 inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(watch_table.size()));

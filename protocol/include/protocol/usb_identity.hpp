@@ -28,7 +28,7 @@ inline constexpr std::uint8_t controller_interval_ms = 8;
 /// Run-time interface of USB device firmware upgrade 1.1. DFU_DETACH starts the boot loader in the chip's ROM.
 inline constexpr std::uint8_t firmware_update_interface = 3;
 
-/// Boot loader in the chip's ROM (AN2606). These identifiers are the same in every STM32.
+/// Identifiers of the boot loader in the chip's ROM (AN2606), which are the same in every STM32.
 inline constexpr std::uint16_t boot_loader_vendor_id = 0x0483;
 inline constexpr std::uint16_t boot_loader_product_id = 0xDF11;
 inline constexpr char boot_loader_product[] = "boot loader";
