@@ -19,7 +19,7 @@ namespace inkwell::protocol {
 /// Board time from the last report with a claim to the expiry of the claim.
 inline constexpr float claim_expiry_s = 1.0f;
 
-/// Longest program name. A longer name is truncated.
+/// Longest program name. Longer program names are truncated.
 inline constexpr std::size_t program_name_maximum = 31;
 
 /// True if the board refuses the command while another program drives the arm. Any program may stop the force and

@@ -47,7 +47,7 @@ static_assert(std::endian::native == std::endian::little, "the structures are tr
 /// The protocol version increases whenever a structure below or the meaning of an id changes.
 inline constexpr std::uint16_t protocol_version = 16 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
-/// Rate of the control interrupt and the scope. Every `time_periods` counts at this rate.
+/// Rate of the control interrupt and the scope. Every `time_periods` is a number of control periods.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
 /// Bus frames per second of the host's clock.

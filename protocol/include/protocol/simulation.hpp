@@ -24,9 +24,9 @@ namespace inkwell::protocol {
   X(true_velocity_x_m_s, "m/s", "Velocity of the simulated probe, x.")                               \
   X(true_velocity_y_m_s, "m/s", "Velocity of the simulated probe, y.")                               \
   X(true_velocity_z_m_s, "m/s", "Velocity of the simulated probe, z.")                               \
-  X(true_joint_1_rad, "rad", "Angle of joint 1, the waist, of the simulated arm.")                             \
-  X(true_joint_2_rad, "rad", "Angle of joint 2, the shoulder, of the simulated arm.")                          \
-  X(true_joint_3_rad, "rad", "Angle of joint 3, the elbow, of the simulated arm.")                             \
+  X(true_joint_1_rad, "rad", "Angle of joint 1 (waist) of the simulated arm.")                             \
+  X(true_joint_2_rad, "rad", "Angle of joint 2 (shoulder) of the simulated arm.")                          \
+  X(true_joint_3_rad, "rad", "Angle of joint 3 (elbow) of the simulated arm.")                             \
   X(true_joint_speed_1_rad_s, "rad/s", "Speed of joint 1 of the simulated arm.")                     \
   X(true_joint_speed_2_rad_s, "rad/s", "Speed of joint 2 of the simulated arm.")                     \
   X(true_joint_speed_3_rad_s, "rad/s", "Speed of joint 3 of the simulated arm.")                     \

@@ -125,7 +125,7 @@ struct StoreReport {
   std::uint32_t force_law_hash;                ///< force_law_name_hash() of that firmware's force law
   std::uint16_t schema;                        ///< schema of the contents at start-up; 0 for `nothing`
   std::uint16_t entries;                       ///< number of parameters in the contents at start-up
-  std::uint16_t out_of_range;                  ///< entries with a refused value; they got their default
+  std::uint16_t out_of_range;                  ///< entries with a refused value, which have their default
   /// Entries with an unknown id. New records retain unknown entries, except for entries of another force law.
   std::uint16_t unknown;
   std::uint16_t unknown_ids[store_unknown_ids_maximum];  ///< first unknown ids, padded with 0
