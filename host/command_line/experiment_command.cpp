@@ -24,8 +24,8 @@ void print(const nlohmann::ordered_json& summary, const std::string& directory) 
              summary.at("samples").get<std::size_t>(), summary.at("samples_lost").get<std::size_t>(),
              summary.at("samples_in_contact").get<std::size_t>());
   fmt::print("penetration      {:.2f} mm at most\n", 1e3 * number("penetration_maximum_m"));
-  fmt::print("force            {:.2f} N at most; differs from k d + c d' by {:.2f} mN at most\n",
-             number("force_maximum_N"), 1e3 * summary.at("force_law").at("error_maximum_N").get<double>());
+  fmt::print("force            {:.2f} N at most; within {:.2f} mN of k d + c d'\n", number("force_maximum_N"),
+             1e3 * summary.at("force_law").at("error_maximum_N").get<double>());
   fmt::print("torque           T1z {:.2f} mNm at most, T2x and T3x {:.0f} mNm\n", 1e3 * number("torque_1_maximum_Nm"),
              1e3 * number("torque_2_and_3_maximum_Nm"));
   if (summary.contains("steady_hold"))
