@@ -13,8 +13,8 @@ class RecordedSpan {
   /// 0 means no limit.
   explicit RecordedSpan(std::uint64_t periods) : periods_(periods) {}
 
-  /// Removes samples after the end of the recording. Samples after a board restart are retained. These samples do not
-  /// count towards the length, and the recorder reports the restart.
+  /// Removes samples after the end of the recording. Samples after a board restart are retained, but do not count
+  /// towards the length. The recorder reports the restart.
   void cut(device::ScopeSamples& samples);
   /// True if samples up to the end of the recording have arrived.
   bool is_over() const { return is_over_; }

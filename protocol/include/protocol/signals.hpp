@@ -76,7 +76,7 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< range +-1, finer than 
   X(35, joint_speed_2_rad_s, "rad/s", float32, "Speed of joint 2, estimated with an adaptive window.")                   \
   X(36, joint_speed_3_rad_s, "rad/s", float32, "Speed of joint 3, estimated with an adaptive window.")                   \
   X(37, supply_V, "V", float32, "Supply voltage of the bridges, filtered.")                                            \
-  X(38, servo_cycles, "cycles", float32, "CPU cycles of all stages of the previous control interrupt.") \
+  X(38, servo_cycles, "cycles", float32, "Total CPU cycles of the previous control interrupt.") \
   X(39, stage_sample_cycles, "cycles", float32, "Cycles of stage 1: neutral duty, encoders, currents, gimbal.") \
   X(40, stage_pose_cycles, "cycles", float32, "Cycles of stage 2: joints, velocities, position, Jacobian.")    \
   X(41, stage_contact_cycles, "cycles", float32, "Cycles of stage 3: proxy, penetration, force.")              \
