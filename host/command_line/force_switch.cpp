@@ -1,6 +1,6 @@
 #include "force_switch.hpp"
 
-#include <chrono>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -61,8 +61,11 @@ std::string what_keeps_it_off(const Pose& pose) {
 
 Pose switch_force_off(device::Device& device) {
   device.switch_force_off();
+  // Poses from before the confirmation may still be in the queue.
   Pose pose = next_pose(device);
-  while (const auto newer = device.read_pose(std::chrono::milliseconds(0))) pose = *newer;
+  const std::int64_t begin_periods = pose.time_periods;
+  while (protocol::force_is_on(pose.state) && pose.time_periods - begin_periods < patience_periods)
+    pose = next_pose(device);
   return pose;
 }
 

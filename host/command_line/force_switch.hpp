@@ -9,7 +9,8 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force off, whichever program switched it on. Returns the newest pose after the command.
+/// Switches the force off, whichever program switched it on. Returns the first pose without force, or after two seconds
+/// of board time the newest pose.
 device::Pose switch_force_off(device::Device& device);
 
 /// The force is on during the lifetime of this object. The owner must send signs of life.

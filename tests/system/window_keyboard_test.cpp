@@ -112,13 +112,14 @@ TEST_CASE("a signal gets a plot of its own by Enter") {
 TEST_CASE("the arrows turn the scene, move the hand and the lines between the parts") {
   WindowRig rig;
   go_to_part(rig, "scene");
-  const auto handle = [&rig] { return rig.look().item("scene/box_maximum_x_m"); };
-  const auto before = handle();
-  rig.tap_key("shift+Right");
-  const auto turned = handle();
-  CHECK(std::abs(turned.x - before.x) > 2.0);
-  rig.tap_key("shift+Prior");
-  CHECK(std::abs(handle().x - turned.x) > 2.0);
+  const auto turns_by = [&rig](const std::string& key) {
+    const auto x = [](const Sight& now) { return now.item("scene/box_maximum_x_m").x; };
+    const auto before = x(rig.look());
+    rig.tap_key(key);
+    rig.look_until("the scene turns by " + key, [&](const Sight& now) { return std::abs(x(now) - before) > 2.0; });
+  };
+  turns_by("shift+Right");
+  turns_by("shift+Prior");
 
   const device::Vector3 held_m = rig.true_probe_m();
   for (int step = 0; step < 5; ++step) rig.tap_key("ctrl+Right");
@@ -128,9 +129,11 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
 
   const auto view = rig.look().item("scene/view");
   rig.tap_key("alt+Left");
-  CHECK(rig.look().item("scene/view").width == doctest::Approx(view.width - 20));
+  rig.look_until("the scene is 20 pixels narrower",
+                 [&](const Sight& now) { return now.item("scene/view").width == doctest::Approx(view.width - 20); });
   rig.tap_key("alt+Up");
-  CHECK(rig.look().item("scene/view").height == doctest::Approx(view.height - 20));
+  rig.look_until("the scene is 20 pixels lower",
+                 [&](const Sight& now) { return now.item("scene/view").height == doctest::Approx(view.height - 20); });
 }
 
 TEST_CASE("Escape leaves the keyboard where it is, and a button that changes its name keeps it") {
