@@ -15,7 +15,7 @@
 namespace inkwell::arms {
 namespace {
 
-/// A number of [motor] or [simulation]: its target and its range.
+/// Numeric key of [motor] or [simulation], with the variable that receives its value.
 struct Number {
   std::string_view name;
   double* value;
@@ -51,7 +51,7 @@ class Section {
 
   double number(std::string_view key, double minimum, double maximum) const {
     const auto& node = get(key);
-    // TOML could convert a boolean or a string, but neither is accepted as a number.
+    // Booleans and strings are not accepted as numbers, although the TOML library could convert them.
     if (!node.is_number()) fail(node, fmt::format("{} must be a number", key));
     const double value = *node.value<double>();
     if (!std::isfinite(value)) fail(node, fmt::format("{} must be a finite number", key));

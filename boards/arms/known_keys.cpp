@@ -15,7 +15,7 @@ struct Unit {
   std::string_view rule;
 };
 
-// A suffix comes after longer suffixes that end with it.
+// If a suffix ends with another suffix, the longer suffix comes first.
 constexpr Unit units[] = {
     {"_counts_per_turn", "encoders are in counts per turn"},
     {"_Nms_per_rad", "damping is in newton metre seconds per radian"},
@@ -34,7 +34,7 @@ constexpr Unit units[] = {
     {"_A", "currents are in amperes"},
 };
 
-// Common unit suffixes that are not used here. The empty string represents a key without a unit.
+// Common unit suffixes that arm descriptions do not use. The empty string represents a key without a unit.
 // clang-format off
 constexpr std::string_view foreign_units[] = {
     "", "mm", "cm", "um", "in", "inch", "metre", "metres", "meter", "meters", "deg", "degree", "degrees", "radians",
@@ -43,7 +43,7 @@ constexpr std::string_view foreign_units[] = {
     "pulses_per_turn", "counts", "Nm_per_deg", "Nms_per_deg", "m", "rad", "kg", "Nm", "H", "A", "ohm"};
 // clang-format on
 
-/// Rule for the unit of `known` if `key` is the same quantity in another unit, otherwise empty.
+/// Returns the unit rule of `known` if `key` is the same quantity in another unit. Otherwise returns an empty string.
 std::string_view unit_rule(std::string_view key, std::string_view known) {
   for (const Unit& unit : units) {
     if (!known.ends_with(unit.suffix)) continue;

@@ -17,10 +17,10 @@ struct Motor {
   double inductance_H;
 };
 
-/// Properties that only a simulation needs. Links are slender, so their inertia is about an axis perpendicular to the
-/// link.
+/// Properties that only a simulation needs. The links are slender, so each inertia refers to an axis perpendicular to
+/// its link.
 struct Simulation {
-  double base_inertia_kg_m2;  ///< of the parts that turn with joint 1 only, about its axis
+  double base_inertia_kg_m2;  ///< inertia about the axis of joint 1, without the links
   double link_2_mass_kg;
   double link_2_centre_m;       ///< center of mass, from the shoulder
   double link_2_inertia_kg_m2;  ///< about the center of mass
@@ -45,19 +45,19 @@ struct Description {
   Simulation simulation;
 };
 
-/// A sentence that names the file, the line if known, the error and its remedy. The text is safe to print.
+/// Error message with the file, the line if known, the error and its remedy. The message is safe to print.
 class DescriptionError : public std::runtime_error {
  public:
   explicit DescriptionError(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
 /// Reads an arm description.
-/// @throws DescriptionError if the file is missing or is not TOML, or if a key is missing or unknown (also because of
-///         its unit). Also thrown if a value is not a number, is out of range or is not an integer where required, or
-///         if a lower bound is not below its upper bound.
+/// @throws DescriptionError if the file is missing or is not TOML. Also thrown if a key is missing, is unknown or has a
+///         wrong unit. Also thrown if a value is not a number, is out of range, or is not an integer although the key
+///         requires an integer. Also thrown if a lower bound is not below its upper bound.
 Description read(const std::filesystem::path& file);
 
-/// Reads an arm description from a string; `source` names it in errors.
+/// Reads an arm description from a string. Error messages name the string by `source`.
 Description parse(std::string_view text, const std::string& source);
 
 }  // namespace inkwell::arms

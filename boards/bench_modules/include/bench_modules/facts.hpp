@@ -1,5 +1,5 @@
-// Facts of a board of purchased modules with manual wiring. README.md describes the modules and wires, and the sources
-// of the figures.
+// Facts of a hand-wired board that consists of purchased modules. README.md describes the modules, the wires and the
+// sources of the values.
 #pragma once
 
 #include <board/checks.hpp>
@@ -16,7 +16,7 @@ inline constexpr Facts bench_modules{
     .bridges = {{3, {{'A', 10}, 1}, {{'C', 8}, 3}},
                 {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
                 {1, {{'A', 8}, 1}, {{'C', 6}, 3}}},
-    // BOOT1 must be low for the boot loader. The pull-down of the monostable ensures this too.
+    // BOOT1 must be low for the boot loader. The pull-down of the monostable also keeps BOOT1 low.
     .bridge_enable = {'B', 2},
     .bridge_heartbeat = {'B', 1},
     .bridge_hold = {'B', 0},

@@ -21,7 +21,7 @@ constexpr bool package_has_pins(const Facts& facts) {
   return true;
 }
 
-/// Data sheet, pin definitions, "ADC123_INx" and "ADC12_INx".
+/// Whether the pin has this ADC channel (data sheet, pin definitions, "ADC123_INx" and "ADC12_INx").
 constexpr bool is_at_pin(const AnalogInput& input) {
   const auto [port, number] = input.pin;
   return (port == 'A' && number <= 7 && input.channel == number) ||
@@ -37,7 +37,8 @@ constexpr bool third_converter_reaches(const AnalogInput& input) {
   return input.channel <= 3 || (input.channel >= 10 && input.channel <= 13);
 }
 
-/// Data sheet, table of alternate functions: the allowed pins for the first three channels of TIM1 and TIM8.
+/// Whether the legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of alternate
+/// functions).
 constexpr bool legs_are_at_their_pins(const Facts& facts) {
   unsigned channels = 0;
   for (const auto& [channel, leg_a, leg_b] : facts.bridges) {

@@ -1,19 +1,18 @@
 // Description of a board, and constants that are common to all boards: clocks, rates, limits.
 //
-// This file contains no registers. The firmware configures the chip from the facts of a board, and the virtual board
-// connects its simulated arm accordingly. board/checks.hpp rejects invalid facts. Sections refer to RM0090 (reference
-// manual) and to the STM32F405 data sheet (tables of alternate functions).
+// This file defines no registers. The firmware configures the chip from the facts of a board. The virtual board
+// connects its simulated arm according to the same facts. board/checks.hpp rejects invalid facts. Section titles refer
+// to RM0090 (reference manual) and to the STM32F405 data sheet (tables of alternate functions).
 #pragma once
 
 // To add a board:
-// 1. Copy boards/bench_modules to boards/NAME. Change the facts in include/NAME/facts.hpp and the wiring in
-//    README.md. board/checks.hpp refuses facts that cannot work.
+// 1. Copy boards/bench_modules to boards/NAME. Change the facts in include/NAME/facts.hpp and the wiring in README.md.
 // 2. Add the expected scales to tests/boards/NAME. Tests compare the facts with the wiring table of README.md.
 // 3. Add the images to tests/installation/kinds.py and the folder to docs/architecture.md.
 //
-// The build then makes inkwell-NAME.elf, `virtual-board --board NAME` simulates the board, and
-// tests/system/boards_test.cpp tests it. Another chip, or another assignment of peripherals, needs changes of the
-// drivers.
+// The build then creates inkwell-NAME.elf. `virtual-board --board NAME` simulates the board, and
+// tests/system/boards_test.cpp tests the board. Another chip or another assignment of peripherals requires changes in
+// the drivers.
 
 #include <array>
 #include <cstdint>
@@ -51,7 +50,7 @@ struct AnalogInput {
   std::uint8_t channel;  ///< ADC channel number
 };
 
-/// Use of a pin, with the name of its fact.
+/// Use of a pin, and the name of the board fact that defines the pin.
 struct PinUse {
   constexpr PinUse(std::string_view fact, Pin plain) : name(fact), pin(plain), function("-") {}
   constexpr PinUse(std::string_view fact, PeripheralPin peripheral)
@@ -90,8 +89,8 @@ static_assert(adc_Hz <= 36'000'000, "limit of the ADC");
 // ---- encoders ----------------------------------------------------------------------------------------
 //
 // The motors' switching edges couple into the encoder wires. An input filter therefore accepts a level only after
-// `encoder_filter_samples` equal samples, one every `encoder_filter_divider` timer cycles (RM0090, TIMx_CCMR1, ICxF).
-// The encoder edges of each arm must be further apart than this time.
+// `encoder_filter_samples` equal samples. The filter samples once per `encoder_filter_divider` timer cycles (RM0090,
+// TIMx_CCMR1, ICxF). The time between two encoder edges must be longer than the filter time for each arm.
 
 inline constexpr std::uint32_t encoder_filter_samples = 8, encoder_filter_divider = 4;
 inline constexpr float encoder_filter_s =
@@ -99,16 +98,16 @@ inline constexpr float encoder_filter_s =
 
 // ---- bridges -----------------------------------------------------------------------------------------
 //
-// Both legs of a bridge switch at pwm_Hz, center-aligned, with duties (1 + u) / 2 and (1 - u) / 2. The motor voltage
-// consists of pulses of one sign at twice pwm_Hz. The current crosses its mean in the middle of each zero vector,
-// where the timers reverse and the ADCs sample. Compared with locked antiphase at the servo rate this divides the
-// ripple by 12.
+// Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
+// u) / 2 and (1 - u) / 2. The motor voltage consists of pulses of one sign at twice pwm_Hz. The current crosses its
+// mean in the middle of each zero vector, where the timers reverse and the ADCs sample. Locked antiphase at the servo
+// rate would cause 12 times the ripple.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
 inline constexpr std::uint32_t pwm_Hz = servo_rate_Hz * pwm_periods_per_servo_period;
 inline constexpr std::uint32_t pwm_top = timer_apb2_Hz / (2 * pwm_Hz);  ///< ARR, center-aligned
-/// Update events occur at both turning points, so there are two per PWM period (RM0090, repetition counter).
+/// Update events occur at both counter reversals, twice per PWM period (RM0090, repetition counter).
 inline constexpr std::uint32_t pwm_repetition = 2 * pwm_periods_per_servo_period - 1;
 static_assert(pwm_top * 2 * pwm_Hz == timer_apb2_Hz, "the servo rate must be exact");
 static_assert(pwm_top >= 1000, "at least 10 bits of duty");
@@ -120,13 +119,13 @@ inline constexpr float supply_minimum_V = 12.0f;
 inline constexpr float supply_maximum_V = 24.0f;
 /// Worst-case peak-to-peak ripple of a motor current, at half duty.
 constexpr float current_ripple_A(float inductance_H) { return supply_nominal_V / (8.0f * pwm_Hz * inductance_H); }
-/// The continuous motor current should be at least six times this value.
+/// Tolerated current ripple. The continuous motor current should be at least six times the ripple.
 inline constexpr float current_ripple_maximum_A = 0.2f;
 
-/// A leg is never on for a whole period. Bridges with a charge pump need the off time, and the currents must be
-/// sampled before the next edge (see below).
+/// A bridge leg is never on for a whole PWM period. Bridges with a charge pump need the off time, and the currents must
+/// be sampled before the next edge.
 inline constexpr float duty_limit = 0.92f;
-/// Time from an update to the next edge of the shorter leg.
+/// Shortest time from a timer update to the next edge of a bridge leg.
 constexpr float time_to_next_edge_s(float duty) { return (1.0f - duty) / (4.0f * pwm_Hz); }
 
 // ---- analog inputs ------------------------------------------------------------------------------------
@@ -136,7 +135,7 @@ inline constexpr std::uint32_t adc_counts = 4096;
 inline constexpr float adc_step_V = adc_reference_V / adc_counts;
 inline constexpr float shunt_amplifier_offset_V = adc_reference_V / 2;  ///< output at zero current
 
-/// One injected conversion has 3 cycles of sampling and 12 cycles of conversion. The latency from the update to the
+/// An injected conversion takes 3 cycles of sampling and 12 cycles of conversion. The latency from the update to the
 /// sampling is at most 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).
 inline constexpr float injected_conversion_s = 15.0f / adc_Hz;
 inline constexpr float injected_latency_s = 3.0f / adc_Hz;
@@ -147,27 +146,26 @@ static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(dut
 
 // ---- a board -------------------------------------------------------------------------------------------
 
-/// Wiring and components that differ between boards. Each board defines a constant of this type with the name of its
-/// folder. Its README.md describes them for assembly.
+/// Wiring and components that differ between boards. Each board folder defines a constant of this type with the name of
+/// the folder. README.md in this folder describes the wiring and the components for assembly.
 struct Facts {
   std::string_view name;  ///< name of the folder
 
   EncoderWiring encoders[3];
   BridgeWiring bridges[3];
-  /// High enables the bridges, for `bridge_hold_s` after each rising edge of the heartbeat. A monostable between these
-  /// two wires and the bridges disables them if the processor stops with the wire high. A pull-down on the board keeps
-  /// the bridges off during reset and while the boot loader runs. The boot loader must not pull up or drive this pin
-  /// (AN2606).
+  /// A high level enables the bridges for `bridge_hold_s` after each rising edge of the heartbeat. If the processor
+  /// stops with this pin high, a monostable disables the bridges. A pull-down on the board keeps the bridges off during
+  /// reset and while the boot loader runs. The boot loader must not pull up or drive this pin (AN2606).
   Pin bridge_enable;
   /// Rises with each control interrupt while the bridges are on, and falls before the end of the interrupt. The pin
   /// must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
   /// Output of the monostable, connected to the bridge enable inputs. It is high while the bridges may switch.
   Pin bridge_hold;
-  /// Open-drain fault output of the bridges, active low. Both pins are connected to the same wire, and each switches
-  /// off the outputs of its timer in hardware (RM0090, "Using the break function").
+  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins, and each pin
+  /// switches off the outputs of its timer in hardware (RM0090, "Using the break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
-  AnalogInput motor_current[3];  ///< ADC n converts motor n, all three at the same instant
+  AnalogInput motor_current[3];  ///< ADC n converts the current of motor n; all ADCs convert simultaneously
   /// Gimbal potentiometers (yaw, pitch, roll) and supply: regular sequence of ADC1.
   AnalogInput gimbal[3];
   AnalogInput supply;
@@ -175,32 +173,32 @@ struct Facts {
   Pin status_led;
   bool status_led_shines_when_low;
   PeripheralPin usb_minus, usb_plus;
-  Pin usb_supply;  ///< high while the cable supplies VBUS; PA9, the VBUS pin of the USB core, drives a bridge
+  Pin usb_supply;  ///< high while the cable supplies VBUS; the VBUS pin of the USB core, PA9, drives a bridge
   PeripheralPin console_transmit, console_receive;  ///< USART2, 115200 8N1
   Pin debug_data, debug_clock;                      ///< SWDIO, SWCLK
 
   std::uint32_t crystal_Hz;
   float bridge_hold_s;  ///< pulse width of the monostable
-  /// Inserted by the bridge itself; the firmware adds no dead time.
+  /// Dead time that the bridge inserts; the firmware adds no dead time.
   float bridge_dead_time_s;
   float shunt_ohm, shunt_amplifier_gain;
-  /// The amplifiers run from the 3.3 V supply of the converters. Closer than this to either rail their output may not
-  /// follow the current.
+  /// If the output of a shunt amplifier is closer than this to a rail, the output may not follow the current. The rails
+  /// are ground and the 3.3 V supply of the converters.
   float shunt_amplifier_headroom_V;
-  float supply_upper_ohm, supply_lower_ohm;  ///< divider for the bridge supply
-  /// Filters at the analog pins. They must tolerate the charge that the previous channel leaves in the sampling
+  float supply_upper_ohm, supply_lower_ohm;  ///< voltage divider at the bridge supply
+  /// Filters at the analog pins. The filters must tolerate the charge that the previous channel leaves in the sampling
   /// capacitor.
   float current_filter_ohm, current_filter_F, gimbal_track_ohm, gimbal_filter_F, supply_filter_F;
-  /// Pull-down at each current input. After a wire break the reading changes faster than a real current can within a
-  /// control period.
+  /// Pull-down at each current input. If the wire breaks, the pull-down changes the reading in one control period by
+  /// more than a real current can change.
   float current_pull_down_ohm;
 
-  /// Limits of the hold time: the tolerances of the monostable, resistor and capacitor add up to one sixth.
+  /// Limits of the hold time. The tolerances of the monostable, resistor and capacitor add up to one sixth.
   constexpr float bridge_hold_shortest_s() const { return bridge_hold_s * 5 / 6; }
   constexpr float bridge_hold_longest_s() const { return bridge_hold_s * 7 / 6; }
 
   constexpr std::uint32_t pll_m() const { return crystal_Hz / pll_input_Hz; }
-  /// Voltage loss from dead time, as a fraction of the supply: both legs wait once per PWM period.
+  /// Voltage loss due to dead time, as a fraction of the supply voltage. Each leg inserts one dead time per PWM period.
   constexpr float bridge_dead_time_part() const { return 2.0f * pwm_Hz * bridge_dead_time_s; }
   constexpr float shunt_V_per_A() const { return shunt_ohm * shunt_amplifier_gain; }
   /// Positive current flows from leg A through the motor to leg B and increases the reading.
@@ -209,7 +207,7 @@ struct Facts {
   constexpr float current_linear_A() const {
     return (shunt_amplifier_offset_V - shunt_amplifier_headroom_V) / shunt_V_per_A();
   }
-  /// Beyond this value the amplifier may be at its rail. The margin of 5 % covers errors of shunt, gain, amplifier
+  /// Above this current a shunt amplifier may be saturated. The margin of 5 % covers errors of shunt, gain, amplifier
   /// offset and reference.
   constexpr float current_measurable_A() const { return 0.95f * current_linear_A(); }
   constexpr float supply_divider() const { return (supply_upper_ohm + supply_lower_ohm) / supply_lower_ohm; }
