@@ -15,9 +15,10 @@ bool BackgroundWatch::start() {
   return memory_sound;
 }
 
-// All checks run in every third round, 0.15 ms, except the memory check, which runs in small steps. If the checks ran
-// in every round, they would use a tenth of the main loop's time and displace its code from the flash cache. Each
-// result is valid for three rounds, so the control interrupt always reads it.
+// The memory check runs one small step in every round of the main loop. All other checks run in every third round,
+// every 0.15 ms. If these checks ran in every round, they would use a tenth of the main loop's time and displace main
+// loop code from the flash cache. Each result is stored for three rounds, so the control interrupt always reads the
+// result.
 void BackgroundWatch::look() {
   const bool memory_sound = memory_check_.step();
   if (++rounds_ < rounds_per_look) return;
@@ -64,8 +65,8 @@ protocol::Watches BackgroundWatch::found_of_bridges() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};
-  // The result is skipped if a control interrupt occurred during the reads, because the interrupt may have switched the
-  // bridges.
+  // The levels are ignored if a control interrupt occurred while they were read, because the interrupt may have
+  // switched the bridges.
   if (completed_periods.load() == periods_before) look_at(bridge_wire_, pins);
   return watch(Fault::bridge_wire, touches(bridge_wire_));
 }

@@ -1,6 +1,6 @@
-// Checks in the main loop: memory, supplies and wires. None of them needs a reaction within one or two control periods,
-// and the control interrupt has no spare cycles. The CPU supply needs a faster reaction and has an interrupt. The main
-// loop only polls how long this supply stays low.
+// Checks in the main loop: memory, supplies and wires. None of these checks needs a reaction within one or two control
+// periods, and the control interrupt has no spare cycles. The CPU supply needs a faster reaction and has a separate
+// interrupt. The main loop only polls whether the CPU supply is still low.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ class BackgroundWatch {
   /// Returns false if a bit is wrong.
   bool start();
 
-  /// Call this function in each round of the main loop, at most once per control period. The results go to the control
-  /// interrupt.
+  /// Call this function in each round of the main loop, at most once per control period. The control interrupt reads
+  /// the results.
   void look();
 
   const control::AnalogSupply& analog_supply() const { return analog_supply_; }

@@ -1,4 +1,4 @@
-// The control interrupt: 20 000 times per second, from the sensors to the bridges.
+// The control interrupt, which reads the sensors and sets the bridges 20 000 times per second.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/interrupts.hpp>
@@ -46,7 +46,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
   if (drive.enabled)
     bridges.write(drive.duty);
   else
-    bridges.write_brake();  // also while the bridges are off: the bridges start with these levels
+    bridges.write_brake();  // also while the bridges are off, because they start with these levels
   if (drive.enabled || drive.brake)
     bridges.enable();
   else
@@ -58,7 +58,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t begin_cycles = clock.begin();
   const bool bridges_were_let_go = bridges.begin_period();
-  bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
+  bridges.write_neutral();  // if the interrupt does not finish in time, the motors get no voltage
 
   const std::uint32_t period = controller.periods();
   const control::Samples samples = read_samples();
@@ -75,7 +75,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t came_round_at_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - came_round_at_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  // Requested once per stall, and not during start-up.
+  // The hang record is requested once per stall, and not during start-up.
   if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != first_period) [[unlikely]]
     drivers::CallBehindInterrupts::ask();  // calls hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
@@ -109,8 +109,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   drivers::finish_stores();
 }
 
-// The two interrupts do not preempt each other. The next control period switches the bridges off. The main loop also
-// polls the supply and reports it while it is low.
+// This interrupt and the control interrupt do not preempt each other. The next control period switches the bridges off.
+// The main loop also polls the CPU supply and reports the fault while the supply is low.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
   drivers::finish_stores();

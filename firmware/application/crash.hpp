@@ -1,4 +1,4 @@
-// Crash record: the fault handler writes it, it survives the reset, and the next boot reports it.
+// Crash record. The fault handler writes this record before the reset, and the next boot reports the record.
 #pragma once
 
 #include <drivers/kept_over_reset.hpp>
@@ -8,7 +8,7 @@ namespace inkwell::application {
 
 extern drivers::KeptOverReset<protocol::CrashFacts> crash_record;
 
-/// The non-maskable interrupt has no other source (RM0090, "Clock security system").
+/// A stopped crystal is the only source of the non-maskable interrupt (RM0090, "Clock security system").
 constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
   return crash.exception == protocol::crystal_exception;
 }

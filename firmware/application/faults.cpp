@@ -1,5 +1,5 @@
-// Handling of CPU faults: bridges off, crash record, restart. This file also records the location of a hang of the main
-// loop.
+// Handling of CPU faults: bridges off, crash record, restart. This file also records the code location at which the
+// main loop hangs.
 #include <algorithm>
 #include <iterator>
 
@@ -25,7 +25,8 @@ struct SavedRegisters {
   std::uint32_t exception_return;
 };
 
-/// Frame that the processor pushes on entry. Space for floating-point registers follows, if they were in use.
+/// Frame that the processor pushes on exception entry. If the floating-point registers were in use, space for these
+/// registers follows.
 struct ExceptionFrame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12, link_register, program_counter, program_status;
@@ -40,8 +41,8 @@ std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_
          ((frame->program_status & was_aligned) != 0 ? 4 : 0);
 }
 
-/// Whether the address is in firmware code directly after a BL, or after a BLX with a register (ARMv7-M, A7.7.18 and
-/// A7.7.19).
+/// Whether the address is in firmware code, directly after a BL instruction or a BLX instruction with a register
+/// (ARMv7-M, A7.7.18 and A7.7.19).
 bool is_behind_call(std::uint32_t address) {
   const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
     return address >= address_of(begin) + 4 && address < address_of(end);
@@ -90,10 +91,11 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 }  // namespace
 
-/// First switches the motors off with three stores that use no memory, because even the stack may be damaged. Then the
-/// record is made with the lowest 512 bytes of the stack, which are unused unless the stack has overflowed. No
-/// interrupt can preempt this function, because faults have the highest priority. A second fault in this function runs
-/// it again as a hard fault. A fault in the hard fault handler locks the processor up until the watchdog resets it.
+/// The handler first switches the motors off with three stores that need no stack, because the stack may be damaged.
+/// The crash record is then made with the lowest 512 bytes of the stack. These bytes are unused unless the stack has
+/// overflowed. No interrupt can preempt this function, because faults have the highest priority. A second fault in this
+/// function restarts the function as a hard fault handler. A fault in the hard fault handler locks up the processor
+/// until the watchdog expires.
 extern "C" [[gnu::naked]] void fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
@@ -120,8 +122,8 @@ extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame
   drivers::reset_chip();
 }
 
-/// The control interrupt requests this exception and can preempt it. The stack therefore contains the state of the main
-/// loop, which continues afterwards if possible.
+/// The control interrupt requests this exception and can preempt this handler. The handler itself preempts only the
+/// main loop, so the stack contains the state of the main loop. If possible, the main loop continues afterwards.
 extern "C" [[gnu::naked]] void hang_handler() {
   asm volatile(
       "mov r0, sp \n"

@@ -6,14 +6,14 @@ namespace inkwell::application {
 extern "C" {
 /// First instruction after a reset.
 [[noreturn]] void reset_handler();
-/// All faults, the non-maskable interrupt and all unexpected interrupts.
+/// Handles all faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void fault_handler();
-/// Runs after all other interrupts, on request of drivers::CallBehindInterrupts (PendSV). Records the location of the
-/// main loop.
+/// PendSV handler, which runs after all other interrupts. drivers::CallBehindInterrupts requests this handler. Records
+/// the code location of the main loop.
 void hang_handler();
-/// End of the injected conversions, once per control period.
+/// Runs once per control period, at the end of the injected conversions.
 void control_interrupt();
-/// The CPU supply has fallen too low.
+/// Runs when the CPU supply has become too low.
 void logic_supply_interrupt();
 }
 

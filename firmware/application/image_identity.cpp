@@ -1,4 +1,5 @@
-// The linker script places the identity at a fixed offset, where flashing tools read it: protocol/image_identity.hpp.
+// The linker script places the image identity at a fixed offset, which flashing tools read
+// (protocol/image_identity.hpp).
 #include <board/board.hpp>
 #include <protocol/image_identity.hpp>
 
@@ -11,7 +12,7 @@ static_assert(protocol::image_identity_offset == 512,
               "the linker script, boards/facts/stm32f405.ld, has the same number");
 static_assert(protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS).board_name() == board::facts.name);
 
-/// Consists of whole words, like the entire image.
+/// The size of the identity is a multiple of a word, as is the size of the entire image.
 struct alignas(4) PlacedIdentity {
   protocol::ImageIdentity identity;
 };

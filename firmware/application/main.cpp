@@ -1,4 +1,4 @@
-// Firmware of the driver board: its parts in start-up order.
+// Start-up sequence and main loop of the driver board's firmware.
 #include <optional>
 
 #include <board/board.hpp>
@@ -20,7 +20,8 @@
 namespace inkwell::application {
 namespace {
 
-/// Blinks ten times per second while `lasts` returns true. The board cannot work, and its bridges are off.
+/// Blinks the status LED ten times per second while `lasts` returns true. Meanwhile the board does not work, and its
+/// bridges are off.
 template <class Condition>
 void blink_while(std::uint32_t processor_Hz, Condition lasts) {
   for (bool on = true; lasts(); on = !on) {
@@ -32,8 +33,8 @@ void give_up() {
   blink_while(board::processor_Hz, [] { return true; });
 }
 
-/// Returns false if the first attempt to start the clocks failed. USB needs the clocks, so only LED and console can
-/// report this.
+/// Returns false if the first attempt to start the clocks failed. USB needs the clocks, so only the LED and the console
+/// can report this failure.
 bool start_clocks() {
   if (drivers::start_clocks()) return true;
   if (!drivers::crystal_swings()) report_no_crystal();
@@ -41,7 +42,7 @@ bool start_clocks() {
   return false;
 }
 
-/// Returns the crash record, if the crash caused the last reset.
+/// Returns the crash record if a crash caused the last reset.
 std::optional<protocol::CrashFacts> take_crash(const drivers::ResetCause& cause) {
   const auto crash = crash_record.take();
   if (crash && is_hang(*crash) && !cause.watchdog()) return std::nullopt;
@@ -75,8 +76,8 @@ int main() {
   logic_supply.start();
   if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
 
-  // The stored parameters are loaded before any parameter is used. A flash erase delays nothing here, because watchdog,
-  // bridges, interrupts and USB do not run yet.
+  // The stored parameters are loaded before any parameter is used. A flash erase is harmless at this point, because
+  // watchdog, bridges, interrupts and USB do not run yet.
   ParameterMemory parameter_memory;
   host_link.stored.start(parameter_memory, {INKWELL_VERSION_NUMBERS}, host_link.parameters);
 
@@ -94,7 +95,7 @@ int main() {
   BackgroundWatch background_watch;
   host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
 
-  // Directly after an update event there is nearly a whole period in which to arm all three converters.
+  // Directly after an update event, nearly a whole period is available to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
   analog_inputs.arm();
   logic_supply.arm();

@@ -37,9 +37,9 @@ void take_motor_heat(bool power_has_come) {
   if (const auto warmth = motor_heat_keeper.start(power_has_come)) controller.start_warm(*warmth);
 }
 
-// Runs only when the heat changes: in every round it would use a third of the main loop's sleep time. After a control
-// interrupt in between, the housing of a motor may be one update newer than its heat. The error is the heat of one
-// update.
+// The motor heat is stored only when it changes. Storing the heat in every round would use a third of the main loop's
+// sleep time. If a control interrupt occurs during the copy, the housing heat of a motor may be one update newer than
+// its total heat.
 void keep_motor_heat() {
   static std::uint32_t kept_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
@@ -64,7 +64,7 @@ void prove_that_it_runs() {
   static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
-  // Half of the bound is used, because the control interrupt may have advanced since the count was read.
+  // Half of the bound is used, because the control interrupt may have advanced since `periods` was read.
   const bool may_be_noted = periods - main_loop_periods.load() > main_loop_stalled_periods / 2;
   main_loop_periods.store(periods);
   if (may_be_noted) crash_record.forget();  // the main loop runs again, and no hang is recorded after the store

@@ -1,4 +1,4 @@
-// Tasks of the main loop in each round, in addition to USB.
+// Main loop tasks of each round, in addition to USB.
 #pragma once
 
 #include "background_watch.hpp"
@@ -9,15 +9,15 @@ namespace inkwell::application {
 inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
 /// Call this function once per round of the main loop. This function feeds the watchdog only if the control interrupt
-/// ran too. The watchdog therefore expires if the main loop or the control interrupt hangs. The control interrupt
-/// detects missing rounds sooner than the watchdog.
+/// has also run since the previous call. The watchdog therefore expires if the main loop or the control interrupt
+/// hangs. The control interrupt detects missing rounds sooner than the watchdog.
 void prove_that_it_runs();
 
-/// Continues the self-test, if it runs.
+/// Continues a self-test that is in progress.
 void follow_self_test(const BackgroundWatch& background_watch);
 
-/// Sets the motor heat to that of the previous run, except after power-on. Call this function before the control
-/// interrupt is enabled.
+/// Restores the motor heat of the previous run, except after power-on. Call this function before the control interrupt
+/// is enabled.
 void take_motor_heat(bool power_has_come);
 
 /// Stores the motor heat for the next boot.

@@ -10,7 +10,7 @@
 namespace inkwell::application {
 namespace {
 
-/// Few words, so that the main loop is not slowed down.
+/// Only a few words per step, so that the main loop is not slowed down.
 constexpr std::ptrdiff_t words_per_step = 4;
 
 /// Memory range that start-up copied.
@@ -78,7 +78,7 @@ void MemoryCheck::check_copy() {
   ++part_;
 }
 
-// One checksum per step, because a step must be short.
+// Each step checks only one checksum, because a step must be short.
 void MemoryCheck::check_parameters() {
   switch (part_++ - copies().size()) {
     case 1: sound_ = host_link.parameters.settings_are_intact(); break;

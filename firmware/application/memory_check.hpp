@@ -12,7 +12,8 @@ namespace inkwell::application {
 /// - the settings of the control interrupt, and the parameters from which new settings are computed
 class MemoryCheck {
  public:
-  /// Runs the first round completely, because damaged memory must not drive a motor. Returns false if a bit is wrong.
+  /// Runs the whole first round, because no motor may be driven if the memory is damaged. Returns false if a bit is
+  /// wrong.
   [[nodiscard]] bool start();
 
   /// Checks a few words. Call this function in each round of the main loop. Returns false as soon as a wrong bit has

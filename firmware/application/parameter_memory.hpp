@@ -1,4 +1,4 @@
-// The two flash sectors for parameters, as the memory of the record log.
+// Memory of the record log (link/flash_log.hpp): the two flash sectors for parameters.
 #pragma once
 
 #include <link/flash_log.hpp>

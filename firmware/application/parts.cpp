@@ -11,7 +11,8 @@ using BlackBoxMemory = link::BlackBoxMemory<protocol::black_box_rows_before, pro
 extern link::ScopeFrames scope_frames;
 extern BlackBoxMemory black_box_memory;
 
-/// The loops overshoot by at most 5 % (see the current loop tests). The amplifier offsets are added to the overshoot.
+/// Whether a current at this limit is measurable. The current loops overshoot by at most 5 % (see the current loop
+/// tests), and the amplifier offsets add to the overshoot.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
   return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A <
          board::facts.current_measurable_A();

@@ -29,7 +29,7 @@ using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::A
 template <class Driver>
 requires(Parts::has<Driver>) using Part = Driver;
 
-/// Set up by main(), then owned by the interrupts. The main loop also reads logic_supply.
+/// main() sets up these drivers, and then only the interrupts use them. The main loop also reads logic_supply.
 extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;
@@ -47,7 +47,7 @@ extern Part<drivers::ParameterFlash> parameter_flash;
 
 extern link::Link host_link;
 
-/// Initial numbers of control periods and bus frames. A test image starts just before the counters wrap
+/// Initial counts of control periods and bus frames. A test image starts just before the counters wrap
 /// (tests/target/near_wrap).
 #ifndef INKWELL_FIRST_PERIOD
 #define INKWELL_FIRST_PERIOD 0

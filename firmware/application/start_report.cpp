@@ -30,7 +30,7 @@ constexpr CrashWord crash_words[] = {
 
 }  // namespace
 
-/// The virtual board reads the name from the ELF file and connects its simulated wires for this board.
+/// The virtual board reads this board name from the ELF file and connects its simulated wires accordingly.
 extern "C" {
 extern const std::array<char, board::facts.name.size() + 1> inkwell_board_name;
 const std::array<char, board::facts.name.size() + 1> inkwell_board_name = board_name();

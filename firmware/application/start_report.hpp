@@ -1,4 +1,4 @@
-// First output of the console.
+// First console output of each boot.
 #pragma once
 
 #include <drivers/system.hpp>
@@ -7,10 +7,10 @@
 
 namespace inkwell::application {
 
-/// Starts the console and writes the version, the reset cause and, after a crash, its location.
+/// Starts the console and writes the version, the reset cause and, after a crash, the crash location.
 void report_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash);
 
-/// Reports on the console why there is no USB. The console then runs from the internal oscillator.
+/// Reports on the console why USB is not available. The console then uses the internal oscillator.
 void report_no_crystal();
 
 }  // namespace inkwell::application

@@ -19,9 +19,9 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 
 }  // namespace
 
-/// The stack is in the core-coupled memory. The clock of this memory runs after a reset. This clock is off when the
-/// boot loader of the chip starts the program, because the boot loader leaves RCC_AHB1ENR at 0 (AN2606). Boot loader
-/// and reset both load the stack pointer.
+/// The stack is in the core-coupled memory, whose clock runs after a reset. The chip's boot loader leaves RCC_AHB1ENR
+/// at 0 (AN2606), so this clock must be enabled if the boot loader started the program. Both the boot loader and a
+/// reset load the stack pointer.
 extern "C" [[gnu::naked]] void reset_handler() {
   asm volatile(
       "ldr r0, =%c[clocks] \n"
@@ -50,13 +50,13 @@ extern "C" [[noreturn, gnu::used]] void start() {
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
-  // From here on the processor finds the handlers without flash access, even if a boot loader left its own table.
+  // From here on the processor reads the vector table from RAM, even if a boot loader had set another vector table.
   std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();
-  // Faults get separate handlers before any interrupt is enabled. A fault without a stack for its frame then becomes a
-  // hard fault and is not lost. A hard fault without a stack would lock the processor up.
+  // Separate fault handlers are enabled before any interrupt. A fault whose frame cannot be stacked then becomes a hard
+  // fault and is not lost. A hard fault whose frame cannot be stacked would lock up the processor.
   SCB::SHCSR::modify(SCB::SHCSR::MEMFAULTENA(1), SCB::SHCSR::BUSFAULTENA(1), SCB::SHCSR::USGFAULTENA(1));
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 
@@ -66,5 +66,5 @@ extern "C" [[noreturn, gnu::used]] void start() {
 
 }  // namespace inkwell::application
 
-/// Called for a virtual function of an object that is not yet or no longer complete. This defect raises a CPU fault.
+/// Called when a program calls a pure virtual function. This defect raises a CPU fault.
 extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }

@@ -10,11 +10,11 @@ using Handler = void (*)();
 
 struct VectorTable {
   const std::uint32_t* initial_stack;
-  std::array<Handler, 15> exceptions;  ///< reset is the first
+  std::array<Handler, 15> exceptions;  ///< the first exception is the reset
   std::array<Handler, 82> interrupts;
 };
 
-/// The processor requires an address that is a multiple of 512 (PM0214, VTOR).
+/// The address of the vector table must be a multiple of 512 (PM0214, VTOR).
 extern const VectorTable vectors;
 
 }  // namespace inkwell::application

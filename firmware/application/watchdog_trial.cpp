@@ -12,23 +12,23 @@ namespace {
 enum class Outcome : std::uint32_t { open, bitten, none };
 
 struct Course {
-  std::uint32_t reset_flags;  ///< flags of the power-on that started the trial
+  std::uint32_t reset_flags;  ///< reset flags of the power-on that started the trial
   Outcome outcome;
 };
 
 [[gnu::section(".noinit")]] drivers::KeptOverReset<Course> kept_course;
-/// Time since the watchdog was started, without feeding. The time is a separate variable, because the reset can occur
-/// between any two instructions.
+/// Time since the start of the watchdog, which is not fed during the trial. The time is a separate variable, because
+/// the reset can occur between any two instructions.
 [[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
 
-/// The timeout is 20 ms of the watchdog oscillator (17 to 47 kHz), plus some of its cycles. The internal oscillator
-/// measures this timeout with an error of at most 4 % from -10 to 85 C (data sheet).
+/// The timeout is 20 ms at the nominal 32 kHz of the watchdog oscillator (17 to 47 kHz), plus some oscillator cycles.
+/// The internal oscillator measures this timeout with an error of at most 4 % from -10 to 85 C (data sheet).
 constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
 
 /// Returns only if the watchdog does not expire.
 void wait_for_bite() {
   constexpr std::uint32_t cycles_per_us = drivers::internal_oscillator_Hz / 1'000'000;
-  static_cast<void>(watchdog.start());  // main() starts it again and reports whether it accepted its timeout
+  static_cast<void>(watchdog.start());  // main() repeats the start and checks the result
   const std::uint32_t from_cycles = drivers::CycleCounter::now();
   std::uint32_t waited_now_us;
   do waited_us = waited_now_us = (drivers::CycleCounter::now() - from_cycles) / cycles_per_us;
@@ -38,7 +38,7 @@ void wait_for_bite() {
 }  // namespace
 
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
-  // With BOOT0 held high, the watchdog reset would start the boot loader again instead of the firmware.
+  // If BOOT0 is still high, the watchdog reset would start the boot loader instead of the firmware.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
     kept_course.leave({cause.flags, Outcome::open});
     wait_for_bite();

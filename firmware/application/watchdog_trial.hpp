@@ -7,14 +7,15 @@
 namespace inkwell::application {
 
 struct WatchdogTrial {
-  drivers::ResetCause cause;  ///< cause of this boot, not including the reset of the trial
+  drivers::ResetCause cause;  ///< cause of this boot; the reset of the trial does not count
   bool is_passed;             ///< expired in time, or was not tried since power-on
   float bitten_after_ms;      ///< 0 if the watchdog did not expire
 };
 
-/// At power-on the watchdog expires in this function after 14 to 38 ms, and the next boot returns the result. After
-/// other resets the function returns the result of the last power-on. Call this function first: no bridge, clock or
-/// interrupt may run meanwhile. The cycle counter must count at the frequency of the internal oscillator.
+/// At power-on the watchdog expires in this function after 14 to 38 ms, and the call in the next boot returns the
+/// result. After other resets the function returns the result of the last power-on. Call this function first, because
+/// no bridge, clock or interrupt may be active during the trial. The cycle counter must count at the frequency of the
+/// internal oscillator.
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause);
 
 }  // namespace inkwell::application

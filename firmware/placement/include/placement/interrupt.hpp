@@ -1,4 +1,4 @@
-// Location of interrupt code.
+// Memory location of interrupt code.
 #pragma once
 
 /// Place this mark before the definition of a function that an interrupt calls. The mark places the function in the

@@ -119,8 +119,8 @@ struct UsbPower {
   struct PCGCCTL : Register<base + 0x00> {};
 };
 
-/// Windows into the FIFO memory. A write fills the transmit FIFO of the endpoint. A read of any window empties the
-/// receive FIFO.
+/// Windows into the FIFO memory. A write adds a word to the transmit FIFO of the endpoint. A read from any window
+/// removes a word from the receive FIFO.
 template <std::uint32_t base>
 struct UsbFifo {
   struct DFIFO : RegisterArray<base + 0x0000, 0x1000, 4> {};

@@ -1,5 +1,5 @@
-// Used peripherals of the chip and its core, with register map and base address (RM0090, "Memory map"; core: ARMv7-M
-// Architecture Reference Manual).
+// Peripherals of the chip and of its core that the firmware uses, with register map and base address (RM0090, "Memory
+// map"; core: ARMv7-M Architecture Reference Manual).
 #pragma once
 
 // To add a peripheral, write its register map in a header in this folder and add a row to one of the tables below.
@@ -16,7 +16,7 @@
 #include <registers/timer.hpp>
 #include <registers/watchdog.hpp>
 
-/// X(name, map, base). Each of these belongs to one driver, which claims it: see drivers::RegistersOf.
+/// X(name, map, base). Each of these peripherals belongs to the driver that claims it (drivers::RegistersOf).
 #define INKWELL_CLAIMABLE_PERIPHERALS(X)             \
   X(TIM2, CaptureTimer, 0x40000000)                  \
   X(TIM3, EncoderTimer, 0x40000400)                  \
@@ -39,7 +39,8 @@
   X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)             \
   X(OTG_FS_FIFO, UsbFifo, 0x50001000)
 
-/// X(name, map, base). All code may use these: `registers::RCC::CR::read()`. Pins of a port are claimed separately.
+/// X(name, map, base). All code may use these peripherals, for example `registers::RCC::CR::read()`. Pins of a port are
+/// claimed separately.
 #define INKWELL_SHARED_PERIPHERALS(X)                    \
   X(SIGNATURE, DeviceSignature, 0x1FFF7A10)              \
   X(PWR, PowerControl, 0x40007000)                       \

@@ -1,4 +1,4 @@
-// Registers and fields as types: an address is a template argument, so an access compiles to a load or a store.
+// Registers and fields as types. Addresses are template arguments, so an access compiles to a load or a store.
 //
 // Headers in this folder have a fixed form. tools/check_registers.py compares the compiled result with the
 // manufacturer's description of the chip:
@@ -22,7 +22,8 @@ namespace inkwell::registers {
 
 [[gnu::error("this value does not fit into the field")]] void value_does_not_fit_into_its_field();
 
-/// Field of register `Owner_`. An object of it is a value for the field: `TIM1::CR1::modify(TIM1::CR1::CEN(1))`.
+/// Field of register `Owner_`. An object of this class is a value for the field:
+/// `TIM1::CR1::modify(TIM1::CR1::CEN(1))`.
 template <class Owner_, unsigned position_, unsigned width_>
 struct Field {
   static_assert(width_ >= 1 && position_ + width_ <= 32);
@@ -52,13 +53,13 @@ struct Register {
 
   static Value read() { return at(); }
   static void write(Value value) { at() = value; }
-  /// Writes the given fields, and zero to all others.
+  /// Writes the given fields, and writes zero to all other fields.
   template <class... Fields>
   requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...)) static void write(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
     at() = static_cast<Value>((fields.bits | ...));
   }
-  /// Changes the given fields only. Not for registers with flags that are cleared by writing one.
+  /// Changes only the given fields. Do not use this function for a register with flags that are cleared by writing one.
   template <class... Fields>
   static void modify(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
@@ -69,7 +70,7 @@ struct Register {
   static volatile Value& at() { return *reinterpret_cast<volatile Value*>(address); }
 };
 
-/// `count` registers of one form, `stride` bytes apart. The caller ensures that `index` is below `count`.
+/// `count` registers with the same fields, `stride` bytes apart. The caller ensures that `index` is below `count`.
 template <std::uint32_t address_, std::uint32_t stride, unsigned count_, class Value = std::uint32_t>
 struct RegisterArray {
   static constexpr std::uint32_t address = address_;
