@@ -34,12 +34,12 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
   return false;
 }
 
-/// A force of at least this part of the force limit counts as limited. A program's force is limited before the
-/// addition, and both operations may round it down by some millionths.
+/// A force counts as limited if its magnitude is at least this part of the force limit. A program's force is limited
+/// before it is added to the other forces, and both operations may round the force down by a few millionths.
 constexpr float at_limit_part = 1.0f - 1e-4f;
 
-/// Decrease of an over-current bound in every third period. The bound falls from the largest limit to the smallest in
-/// 10 ms.
+/// Decrease of a motor's over-current bound in every third period. The bound falls from the largest limit to the
+/// smallest limit in 10 ms.
 constexpr float over_current_fall_A = 0.06f;
 
 bool joint_implausible(std::size_t joint, const Triple& joint_rad, Transmission transmission, const Limits& limits) {
@@ -122,15 +122,15 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
-  // While walls push, a new reference would shift the probe position under the hand.
+  // While the force is on, a new reference would shift the walls relative to the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
-/// Runs before the pose and the control errors of this period are computed: a current change depends on the previous
-/// speed and the previous errors.
+/// Runs before the pose and the current errors of this period are computed, because a current change depends on the
+/// previous speed and the previous errors.
 void Controller::look_for_jump(const Triple& change_A, const Settings& settings) {
-  // Braking currents change quickly, and so do currents of bridges that were just switched off.
+  // Currents change quickly during braking and directly after the bridges are switched off.
   if (!drive_.enabled) return;
   for (std::size_t i = 0; i < 3; ++i) {
     const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[i] * joint_speed_rad_per_s_[i];
@@ -179,14 +179,14 @@ void Controller::render_force(const Settings& settings) {
     probe_.wall = settings.wall;
     probe_.switches = switches_.closed;
     const Vector3& law_N = law_.force_N(probe_, settings.force_law);
-    // The squared force must also be finite, because it determines the direction of the limited force. If the inputs
-    // are not finite, the law is not at fault.
+    // The squared force must also be finite, because the direction of the limited force is computed from it. If the
+    // inputs are not finite, the force law did not cause the fault.
     if (is_finite(dot(law_N, law_N))) [[likely]]
       touched_N = touched_N + law_N;
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
       raise(Fault::force_law);
   }
-  // The jump starts from the limited force, because only the limited force was felt.
+  // The transition starts from the limited force, because only the limited force acted on the hand.
   if (world_changed || law_changed)
     transition_ = over(bounded(touched_N_, force_limit_N_).force_N - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
@@ -200,7 +200,7 @@ void Controller::render_force(const Settings& settings) {
   give(scaled(force, force_gain_), settings);
 }
 
-/// Applies a force to the hand, limited in energy, in speed and in its rate of change.
+/// Applies a force to the hand and limits the energy, the speed and the rate of change of the force.
 void Controller::give(Force asked, const Settings& settings) {
   account(reserve_, force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
@@ -212,7 +212,7 @@ void Controller::give(Force asked, const Settings& settings) {
   const float squared_N2 = dot(change_N, change_N);
   if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
     const float part = settings.change_squared_N2 * reciprocal_square_root(settings.change_squared_N2 * squared_N2);
-    // A lowered limit applies immediately, whatever the previous force was.
+    // A lowered force limit applies immediately, even if the previous force was larger.
     asked = bounded(force_.force_N + part * change_N, force_limit_N_);
     limits_ |= bit(Limit::change, true);
   }
@@ -231,7 +231,8 @@ Force Controller::less_driving(const Force& asked, float power_W, const Settings
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  // Without the torque of one link motor, the torque of the other would produce a different and possibly larger force.
+  // If one link motor is not used, the torque of the other link motor alone would produce a different and possibly
+  // larger force.
   if (settings.motors.idle != 0) leave_out(settings.motors.idle, torque_Nm_, jacobian_);
   const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
@@ -242,14 +243,15 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
-/// Updates the resistance of the motor of this period from its measurement and its present heat.
+/// Updates the assumed resistance of this period's motor from the measured resistance and the present heat.
 void Controller::know_resistance(const Settings& settings) {
   resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
                                        settings.motor_model.resistance_ohm[turn_]);
 }
 
 void Controller::watch_motors(const Settings& settings) {
-  // With the force on, the resistance changes only with heat, so it is updated as rarely as the heat.
+  // With the force on, the resistance changes only with the heat, so the resistance is updated only together with the
+  // heat.
   if (!force_is_on() || heat_.readings == 0) know_resistance(settings);
   if (!force_is_on()) {
     rest(motor_watch_);
@@ -264,9 +266,9 @@ void Controller::watch_motors(const Settings& settings) {
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
-/// A current reading that is too low makes its loop request more current. The voltage range of the motor of this period
-/// is therefore limited to the current of the force limit. The range includes the unused part of the force limit, as if
-/// this motor alone produced it at the end of the longer link.
+/// If a current reading is too low, the current loop drives too much current. The voltage range of this period's motor
+/// is therefore limited to the voltage for its reference current plus a current margin. The margin is the current at
+/// which this motor alone produces the unused part of the force limit at the end of the longer link.
 void Controller::bound_voltages(const Settings& settings) {
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
   const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
@@ -300,7 +302,7 @@ void Controller::regulate_currents(const Settings& settings) {
       drive_pulses(settings);
     return;
   }
-  // A voltage test has no current loop.
+  // A motor in a voltage test has no current loop.
   constexpr std::size_t none = 3;
   const bool is_voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage;
   const std::size_t without_loop = is_voltage_test ? test_.motor : none;
@@ -316,8 +318,8 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_.enabled = true;
 }
 
-/// The energy, speed and change limits of the rendered force do not apply to a test. The test stops on over-speed, or
-/// if the host is silent. The pulse of the test also stops when it has used the energy reserve.
+/// The energy, speed and change limits of the rendered force do not apply to a motor test. The test stops if the arm is
+/// too fast or the host is silent. The test pulse also stops when it has exchanged the energy of the reserve.
 void Controller::follow_test(protocol::Watches found, const Settings& settings) {
   constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
   if ((found & ends) != 0) {
@@ -326,22 +328,22 @@ void Controller::follow_test(protocol::Watches found, const Settings& settings) 
     return;
   }
   --test_.remaining_periods;
-  // The back EMF's part of the electrical power becomes motion. Energy from the hand counts too, because the signs of
-  // motor and encoder may still be wrong. Test pulses serve to determine these signs.
+  // The product of back EMF and current is the mechanical power. Energy from the hand also counts, because the signs of
+  // motor and encoder may still be wrong. Test pulses are used to determine these signs.
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
   test_.moved_J += std::fabs(back_emf_V * current_A_[test_.motor]) * protocol::servo_period_s;
   if (test_.moved_J > settings.energy.reserve_J) test_.rest();
 }
 
-/// Checks the joint of this period. Without a reference the joint angle is meaningless, but in these states the fault
-/// is not watched.
+/// Compares the angle of this period's joint with the inkwell. Without a reference the joint angle is meaningless, but
+/// no state without a reference watches this fault.
 void Controller::watch_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);
 }
 
-// A lowered current limit applies to the references immediately. The current follows with the delay of the loop, and
-// with the delay of the winding where the voltage is limited.
+// A lowered current limit applies to the references immediately. The current follows with the delay of the current
+// loop. If the voltage is limited, the current follows with the delay of the winding.
 void Controller::follow_over_current(const Settings& settings) {
   const float limit_A = settings.limits.over_current_A[turn_];
   over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
@@ -353,7 +355,7 @@ float Controller::test_limit_A(const Settings& settings) const {
                                settings.motors.ampere_per_Nm[test_.motor]);
 }
 
-// The resistance is unknown before the test, so the current limit is checked in each period.
+// The motor resistance is unknown before a voltage test, so the current limit is checked in each period.
 float Controller::test_voltage_V(const Settings& settings) const {
   return std::fabs(current_A_[test_.motor]) > test_limit_A(settings) ? 0.0f : test_.value();
 }
@@ -366,7 +368,7 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .dead_time_part = board_.dead_time_part});
   for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
-    // The bound is at least the pulse current, independent of the motor limits.
+    // The over-current bound exceeds the pulse current even if the motor limit is lower.
     over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
   }
   over_current_for_A_ = {};                       // restarts follow_over_current()
@@ -381,7 +383,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
     watch_inkwell_switch(settings);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
-  // Force and torques need no separate check: the references include them for all motors in use.
+  // Force and torques need no separate check, because the current references of all motors in use depend on them.
   const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
   protocol::Watches found =
@@ -413,7 +415,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::risen, force_gain_ == 1.0f);
   note(Event::landed, force_gain_ == 0.0f);
   note(Event::held_back, limits_ != 0);
-  // These faults void the reference even while another fault is active, and clearing that fault does not restore the
+  // These faults void the reference even while another fault is active. Clearing the other fault does not restore the
   // reference.
   if ((found & protocol::voiding_watches) != 0 && reference_.valid) [[unlikely]]
     forget(reference_, (found & watch(Fault::inkwell_implausible)) != 0);
@@ -433,7 +435,7 @@ void Controller::change_state(const Supervisor& next) {
   if (next == before) return;
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   if (force_is_on_) off_zero_periods_ = 0;
-  // A state change switches the bridges off in the period of the decision, not one period later.
+  // A state change switches the bridges off in the same period, not one period later.
   if (!(force_was_on && force_is_on_)) {
     drive_ = {};
     force_sources_ = 0;

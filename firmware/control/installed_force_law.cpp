@@ -1,5 +1,5 @@
-// Includes the force law file and adapts its struct to the firmware. Assertions with messages check the requirements on
-// a law.
+// Includes the force law file and adapts the force law to the firmware. Assertions with messages check the requirements
+// on a force law.
 #include <control/installed_force_law.hpp>
 
 #include <bit>
@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-// Defined by the build: INKWELL_FORCE_LAW_FILE, and INKWELL_FORCE_LAW, the file name without its suffix.
+// The build defines INKWELL_FORCE_LAW_FILE. The build also defines INKWELL_FORCE_LAW, the file name without its suffix.
 #include INKWELL_FORCE_LAW_FILE
 
 namespace inkwell::force_laws {
@@ -66,7 +66,7 @@ constexpr auto signal_rows() {
     return std::array<ForceSignal<typename Law::Signals>, 0>{};
 }
 
-/// Whether each member of the struct is a float with one row.
+/// Whether each member of the struct is a float and has one row.
 template <class Values, class Rows>
 constexpr bool fit_rows(const Rows& rows) {
   if constexpr (std::is_empty_v<Values>) {
@@ -106,7 +106,7 @@ constexpr bool have_sound_ranges(const Rows& rows) {
   return true;
 }
 
-/// Replaces an invalid law in the rest of this file, so that the compiler shows only the assertion message.
+/// Replaces an invalid force law in the rest of this file, so that the compiler shows only the assertion message.
 struct NoLaw {
   [[maybe_unused]] static constexpr std::string_view help = "";
   struct Parameters {};
@@ -160,7 +160,7 @@ static_assert(have_names_of_their_own(signals, protocol::signal_table),
 #define INKWELL_TEXT(name) INKWELL_TEXT_OF(name)
 constexpr std::string_view law_name = INKWELL_TEXT(INKWELL_FORCE_LAW);
 
-/// Writes a report, or only counts its bytes.
+/// Writes a report, or only counts the bytes of the report.
 struct ReportWriter {
   std::byte* to;
   std::size_t size = 0;
@@ -234,7 +234,7 @@ INKWELL_IN_FLASH constinit const InstalledForceLaw installed_force_law = []() {
 
 namespace {
 
-/// The compiler unrolls this expansion: no loop and no member pointer remains.
+/// The compiler expands this function without a loop and without member pointers.
 template <std::size_t count, class Do>
 void for_each_place(Do&& run) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (run(std::integral_constant<std::size_t, i>{}), ...); }
@@ -246,7 +246,7 @@ void for_each_place(Do&& run) {
 extern const std::size_t force_law_signal_count = signals.size();
 
 void reset_force_law(ForceLawMemory& memory) {
-  // The state is copied byte by byte, because the library functions for copying are in flash.
+  // The state is copied byte by byte, because memcpy is in flash.
   static constexpr State as_new{};
   const auto* from = reinterpret_cast<const std::byte*>(&as_new);
   for (std::size_t i = 0; i < sizeof as_new; ++i) memory.state[i] = from[i];

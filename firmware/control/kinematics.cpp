@@ -18,12 +18,12 @@ LinkDirections link_directions(const Triple& joint_rad, const Arm& arm) {
           sine_cosine(relative_to_rad + joint_rad[2] + arm.elbow_offset_rad)};
 }
 
-/// Direction with forward, side and up components, in workspace axes.
+/// Converts the forward, side and up components of a direction to workspace axes.
 Vector3 in_workspace(Frame frame, float forward, float side, float up) {
   return frame == Frame::paper ? Vector3{forward, side, up} : Vector3{-side, up, forward};
 }
 
-/// Point in the arm plane relative to the shoulder, in workspace axes.
+/// Converts a point in the arm plane, relative to the shoulder, to workspace axes.
 Vector3 from_plane(Frame frame, const SineCosine& waist, float reach_m, float height_m) {
   return in_workspace(frame, reach_m * waist.cosine, reach_m * waist.sine, height_m);
 }
@@ -40,7 +40,7 @@ Pose forward_kinematics(const Triple& joint_rad, const Arm& arm) {
   const SineCosine& waist = direction.waist;
 
   const Vector3 along_waist = in_workspace(arm.frame, -reach_m * waist.sine, reach_m * waist.cosine, 0.0f);
-  // A link that rotates in its plane moves its end perpendicular to itself.
+  // The end of a rotating link moves perpendicular to the link.
   const Vector3 along_link_2 = from_plane(arm.frame, waist, -height_2_m, reach_2_m);
   const Vector3 along_link_3 = from_plane(arm.frame, waist, -height_3_m, reach_3_m);
   const bool link_2_carries_link_3 = arm.transmission == Transmission::serial;

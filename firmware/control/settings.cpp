@@ -36,7 +36,7 @@ EncoderScale encoders(const ParameterSet& set) {
   const Triple reversed = set.of_each(Parameter::encoder_1_reversed);
   EncoderScale scale{{}, set.of_each(Parameter::inkwell_joint_1_rad), 0};
   constexpr float farthest_rad = 100.0f * protocol::servo_period_s;
-  float farthest_counts = 15.0f;  // a coarse encoder may dither
+  float farthest_counts = 15.0f;  // tolerates the dither of a coarse encoder
   for (std::size_t i = 0; i < 3; ++i) {
     const float counts_per_rad = counts_per_turn[i] * ratio[i] / turn_rad;
     scale.rad_per_count[i] = sign(reversed[i]) * turn_rad / (counts_per_turn[i] * ratio[i]);
@@ -109,8 +109,8 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set, const Triple& ampere_per_N) {
-  // The bound is above the current limit and above the sensor noise. Where the board cannot measure this current, the
-  // lower bound of the board applies (BoardLimits).
+  // The bound is above the current limit and above the sensor noise. If the board cannot measure this current, the
+  // lower bound in BoardLimits applies.
   constexpr float over_current_minimum_A = 0.5f;
   // Margin of the joint limits for lost counts and elastic stops.
   constexpr float joint_margin_rad = 0.35f;
@@ -148,11 +148,11 @@ ProgramForceLimits program_force(const ParameterSet& set) {
           periods_in(set[Parameter::program_force_expiry_s])};
 }
 
-/// A jump fades at 4 % of the force limit per millisecond, which is too slow for a noticeable kick. A jump of the full
-/// limit takes 25 ms.
+/// A force jump fades at 4 % of the force limit per millisecond, which is too slow for a noticeable kick. A jump as
+/// large as the force limit fades in 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
-/// Change of the force gain in one period. A ramp of less than a period is a step.
+/// Change of the force gain in one period. A ramp time of less than one period results in a step.
 float ramp_per_period(float ramp_s) {
   return ramp_s > protocol::servo_period_s ? protocol::servo_period_s / ramp_s : 1.0f;
 }

@@ -8,7 +8,7 @@ namespace inkwell::control {
 
 namespace {
 
-/// Plane for an unused entry: every point is in its free space.
+/// Plane for an unused entry. Every point is in the free space of this plane.
 constexpr Plane nowhere{.normal = {}, .offset_m = -1.0f};
 
 float height_m(const Plane& plane, const Vector3& probe_m) { return dot(plane.normal, probe_m) - plane.offset_m; }
@@ -77,7 +77,8 @@ void TouchedShapes::list_alive() {
 
 Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_per_s) {
   const Vector3 probe_m = probe;  // local copy that stays in registers during stores
-  // Most planes are not touched. The signs are collected without branches, and touched planes are processed afterwards.
+  // Most planes are not touched. The loop collects the signs without branches, and touched planes are processed
+  // afterwards.
   std::uint32_t behind = 0;
   for (std::size_t i = 0; i < planes_.size(); ++i)
     behind |= std::bit_cast<std::uint32_t>(height_m(planes_[i], probe_m)) >> 31 << i;
@@ -95,7 +96,7 @@ Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_p
     const Sphere& sphere = shapes_->sphere;
     const Vector3 out_m = probe_m - sphere.centre_m;
     const float squared_m2 = dot(out_m, out_m);
-    // At the center the direction out of the sphere is undefined.
+    // At the center of the sphere, the outward direction is undefined.
     constexpr float smallest_squared_m2 = 1e-14f;
     if (squared_m2 < sphere.radius_squared_m2 && squared_m2 > smallest_squared_m2) {
       const float per_distance = reciprocal_square_root(squared_m2);

@@ -17,10 +17,10 @@ using protocol::Way;
 /// Local copy, because a table in a header may be in flash.
 constexpr auto ways = protocol::way_table;
 
-/// Tables indexed by state, so that an interrupt reads one entry of each.
+/// Row of a table indexed by state, so that an interrupt reads only one row.
 struct OfState {
   Watches watched = 0;
-  protocol::Events rest = 0;  ///< values of the `moved_by` events at which every transition is closed
+  protocol::Events rest = 0;  ///< values of the `moved_by` events for which every transition is closed
   protocol::Events moved_by = 0;
   const Way* ways_begin = nullptr;
   const Way* ways_end = nullptr;
@@ -36,8 +36,8 @@ constexpr auto of_state = []() {
       if (way.from != state) continue;
       if (here.ways_begin == nullptr) here.ways_begin = &way;
       here.ways_end = &way + 1;
-      // One missing or excluded event closes a transition. The last event in the list is used, because it is the
-      // rarest.
+      // A single missing or excluded event closes a transition. The last event in the list is used, because it is the
+      // rarest event.
       const protocol::Events key = std::bit_floor(way.needs != 0 ? way.needs : way.unless);
       here.moved_by |= key;
       if (way.needs == 0) here.rest |= key;
@@ -59,7 +59,7 @@ constexpr auto faults = []() {
   return result;
 }();
 
-/// Watch that prevents a fault from being cleared, indexed by fault code.
+/// For each fault code, the check that prevents the user from clearing the fault.
 constexpr auto hindrance = []() {
   std::array<Watches, protocol::fault_code_end> result{};
   for (const auto& row : protocol::watch_table)

@@ -7,7 +7,7 @@ namespace inkwell::control {
 
 namespace {
 
-/// Each Newton step squares the relative error. A seed within 6 % needs three steps to reach float precision.
+/// Each Newton step squares the relative error. With a seed error of up to 6 %, three steps reach float precision.
 constexpr int newton_steps = 3;
 
 /// sin(r) = r + r^3 P(r^2) and cos(r) = 1 - r^2 / 2 + r^4 Q(r^2) for |r| <= pi/4. The coefficients are minimax fits
@@ -26,7 +26,8 @@ float cosine_near_zero(float r) {
 
 SineCosine sine_cosine(float angle_rad) {
   constexpr float quarters_per_rad = 0.6366197724f;
-  // pi/2 in two parts. The first part has few bits, so that its product with the number of quarters is exact.
+  // pi/2 in two parts. The first part has few significant bits, so that its product with the number of quarter turns is
+  // exact.
   constexpr float quarter_high_rad = 1.5703125f;
   constexpr float quarter_low_rad = 4.838267949e-4f;
 
@@ -45,14 +46,14 @@ SineCosine sine_cosine(float angle_rad) {
 }
 
 float reciprocal(float value) {
-  // Negates the exponent in the bit pattern. The constant balances the seed error over a mantissa, 5.1 %.
+  // Negates the exponent in the bit pattern. The constant balances the seed error over all mantissas, at most 5.1 %.
   float estimate = std::bit_cast<float>(0x7EF31000u - std::bit_cast<std::uint32_t>(value));
   for (int i = 0; i < newton_steps; ++i) estimate *= 2.0f - value * estimate;
   return estimate;
 }
 
 float reciprocal_square_root(float value) {
-  // Halves and negates the exponent in the bit pattern. The seed is within 3.5 %.
+  // Halves and negates the exponent in the bit pattern. The seed error is at most 3.5 %.
   float estimate = std::bit_cast<float>(0x5F376400u - (std::bit_cast<std::uint32_t>(value) >> 1));
   const float half = 0.5f * value;
   for (int i = 0; i < newton_steps; ++i) estimate *= 1.5f - half * estimate * estimate;

@@ -8,11 +8,12 @@ namespace inkwell::control {
 
 namespace {
 
-/// Farther than any arm moves within `rest_periods`. The bound keeps the products below within 32 bits.
+/// Larger than the motion of any arm within `rest_periods`. With this bound, the following products need at most 32
+/// bits.
 constexpr std::int32_t farthest_counts = 65'536;
 static_assert(2LL * (farthest_counts + 1) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
 
-/// Slope as a fraction: half counts divided by periods. Cross-multiplication compares fractions exactly and without
+/// Slope as a fraction of half counts and periods. Cross-multiplication compares fractions exactly and without
 /// division.
 struct Slope {
   std::int32_t half_counts;
@@ -21,8 +22,9 @@ struct Slope {
 
 bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
-/// Slope of the longest useful window whose line passes all of its edges within the tolerance.
-// Not inlined: the code after the call would be duplicated for each exit of the function.
+/// Returns the slope of the longest useful window whose line passes all edges of the window within the tolerance.
+// The function is not inlined, because the compiler would duplicate the code after the call for each exit of the
+// function.
 [[gnu::noinline]] Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
   const float speed = estimate.counts_per_period;
   const std::int32_t tolerance = speed > -0.5f && speed < 0.5f ? 1 : 2;  // half counts
@@ -59,7 +61,7 @@ void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
   if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
 }
 
-/// Bounds the speed to one count in the time without an edge. Called in each period without an edge.
+/// Limits the speed to one count in the time without an edge. Called in each period without an edge.
 void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   if (silent_periods >= SpeedEstimate::rest_periods) {
     estimate.remembered = 0;
@@ -67,8 +69,8 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
     estimate.counts_per_period = 0.0f;
     return;
   }
-  // The speed falls in steps of 1/16 instead of a little in every period, because an unchanged value is cheap to
-  // stream.
+  // The speed falls in steps of 1/16 instead of continuously, because the scope transmits an unchanged value with few
+  // bytes.
   constexpr float step = 1.0f + 1.0f / 16.0f;
   const float speed = estimate.counts_per_period;
   const auto silent = static_cast<float>(silent_periods);

@@ -6,15 +6,16 @@
 // VDDA, so the reading falls as VDDA rises.
 //
 // Accuracy (STM32F405 data sheet, "Embedded internal reference voltage" and "ADC characteristics"):
-// - VREFINT is between 1.18 V and 1.24 V over all parts, which is 2.5 % around 1.21 V.
-// - The manufacturer measures VREFINT of each part at 3.3 V within 10 mV (0.3 %).
-// - A temperature from -40 C to 105 C changes VREFINT by 3 mV (0.25 %).
+// - VREFINT is between 1.18 V and 1.24 V for all chips (1.21 V with a tolerance of 2.5 %).
+// - The manufacturer measures VREFINT of each chip with a VDDA of 3.3 V, which has an error of 10 mV (0.3 %).
+// - Between -40 C and 105 C, VREFINT changes by 3 mV (0.25 %).
 // - The converter error is at most 5 counts of 1500 (0.3 %).
 //
-// The last three errors add up to less than 1 %. A 3.3 V regulator stays within 3 %. The bound of 5 % exceeds the sum
-// of both errors. Amplifiers and potentiometers still work with a supply error of 5 %.
+// The last three errors of this list add up to less than 1 %. The error of a 3.3 V regulator is at most 3 %. The bound
+// of 5 % exceeds the sum of measurement error and regulator error. Amplifiers and potentiometers still work with a
+// supply error of 5 %.
 //
-// Integer arithmetic only: with floats in the main loop, every interrupt would save the floating-point registers.
+// The check uses only integers. If the main loop used floats, every interrupt would save the floating-point registers.
 #pragma once
 
 #include <cstdint>
@@ -31,12 +32,12 @@ constexpr std::uint16_t counts_at_nominal(float volts) {
 }
 
 struct AnalogSupply {
-  /// Range over all parts, from the data sheet.
+  /// Range for all chips, from the data sheet.
   static constexpr std::uint16_t minimum_counts = counts_at_nominal(1.18f), typical_counts = counts_at_nominal(1.21f),
                                  maximum_counts = counts_at_nominal(1.24f);
   /// Largest error of the manufacturer's measurement: 1 %.
   static constexpr std::uint16_t calibration_error_counts = typical_counts / 100;
-  /// Consecutive wrong readings that are tolerated. A shorter disturbance ends before a current loop follows it.
+  /// Consecutive wrong readings that are tolerated. A current loop does not follow a shorter disturbance.
   static constexpr std::uint32_t bearable_looks = 12;
 
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA
@@ -44,9 +45,9 @@ struct AnalogSupply {
   std::uint32_t wrong_looks = 0;
 };
 
-/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. An impossible value was never
-/// written or was lost. For an impossible value the typical value is used, and the tolerance is increased by the spread
-/// between parts.
+/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. If this value is out of range, it
+/// was never written or was lost. In this case the typical value is used, and the tolerance is increased by the spread
+/// between chips.
 constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
   constexpr auto bearable_per_mille = static_cast<std::int32_t>(1000.0f * protocol::analog_supply_bearable + 0.5f);
   constexpr std::int32_t spread_per_mille =

@@ -1,13 +1,13 @@
 // Electrical braking of a moving arm after a fault has switched the force off.
 //
 // With all low sides on, the motors are shorted and act as dampers. The back EMF of each motor drives a current through
-// its resistance, and this current opposes the motion. The energy becomes heat. When the brake releases the motors for
-// a period, the motors return a little energy to the supply. The brake needs no controller, so braking works after most
-// faults. The brake is not used if a bridge or a current measurement may be faulty.
+// its resistance, and this current opposes the motion. The kinetic energy becomes heat. When the brake releases the
+// motors for a period, the motors return a little energy to the supply. Braking needs no current control, so it works
+// after most faults. The brake is not used if a bridge or a current measurement may be faulty.
 //
-// A damper resists more the faster a hand moves the arm. The motors are therefore released in each control period in
-// which a current exceeds the current of the force limit. For gentle braking the bound is a part of the current of the
-// force limit. After a release, the currents decay within some microseconds and need a period or more to rise again.
+// The force of a damper increases with the speed of the arm. The motors are therefore released in each control period
+// in which a motor current exceeds the current at the force limit. Gentle braking uses a lower current bound. After a
+// release, the currents decay within some microseconds and need a period or more to rise again.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@
 namespace inkwell::control {
 
 struct Brake {
-  /// Below this speed the arm coasts: the heaviest described arm then has a kinetic energy of less than 1 mJ.
+  /// Below this speed the arm coasts. The kinetic energy of the heaviest arm in boards/arms is then less than 1 mJ.
   static constexpr float speed_m_per_s = 0.1f;
   static constexpr std::uint32_t duration_maximum_periods = periods_in(0.5f);
-  /// Part of Limits::brake_A. For an Omni at its usual limit, one motor then resists with an average of 0.3 to 0.6 N up
-  /// to 2 m/s. At 3 m/s the motor resists with 1.1 N (computed).
+  /// Current bound of gentle braking, as a part of Limits::brake_A. With the usual force limit of an Omni, one motor
+  /// brakes with an average of 0.3 to 0.6 N at up to 2 m/s, and with 1.1 N at 3 m/s (computed).
   static constexpr float gentle_part = 0.15f;
 
   std::uint32_t remaining_periods = 0;
@@ -38,8 +38,8 @@ constexpr bool may_brake(protocol::Watches found) {
   return (found & protocol::watches([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
 }
 
-/// Call this function once per control period, also in the first period of braking. `speed_squared_m2_per_s2` is that
-/// of the probe. `found` comes from the supervisor.
+/// Call this function once per control period, also in the first period of braking. `speed_squared_m2_per_s2` is the
+/// squared probe speed. `found` comes from the supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found);
 
 /// Whether the motors are shorted in this period. `limit_A` is Limits::brake_A. A current that is not a number releases

@@ -22,7 +22,8 @@ struct BridgePins {
 };
 
 struct BridgeWire {
-  /// Consecutive wrong readings that are tolerated. A wire settles within 1 us; a single reading may hit a spike.
+  /// Consecutive wrong readings that are tolerated. A wire settles within 1 us, but a single reading may coincide with
+  /// a spike.
   static constexpr std::uint32_t bearable_looks = 1;
 
   std::uint32_t wrong_looks = 0;

@@ -19,9 +19,10 @@ constexpr std::uint32_t periods_in(float time_s) {
 /// Mean reading of the current sensors while the bridges are off.
 struct CurrentOffsets {
   static constexpr std::uint32_t duration_periods = periods_in(0.1f);
-  /// An amplifier with a 1 % reference and its offset stays within 0.1 A. A larger offset means a broken sensor.
+  /// A healthy amplifier with a 1 % reference has an offset below 0.1 A. An offset above this bound indicates a broken
+  /// sensor.
   static constexpr float plausible_A = 0.25f;
-  /// Longer than the current decay in a winding after its bridge was switched off.
+  /// Waiting time, longer than the decay of a winding current after the bridge is switched off.
   static constexpr std::uint32_t patience_periods = periods_in(0.01f);
 
   Triple sum_A{};
@@ -37,11 +38,12 @@ struct CurrentOffsets {
 
 // ---- supply --------------------------------------------------------------------------------------------
 
-/// First-order low-pass of 1.6 ms, and the reciprocal that converts volts to duty cycles.
+/// First-order low-pass filter with a time constant of 1.6 ms. The reciprocal of its output converts volts to duty
+/// cycles.
 struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
-  /// Lower bound of the voltage, so that the reciprocal is finite without a supply. The bound is far below any voltage
-  /// at which the bridges may be on.
+  /// Lower bound of the voltage, so that the reciprocal is finite if the supply is off. The bound is far below any
+  /// voltage at which the bridges may be on.
   static constexpr float floor_V = 1.0f;
   static constexpr std::uint32_t stale_periods = periods_in(protocol::samples_stale_s);
 
@@ -54,7 +56,7 @@ void filter_supply(SupplyFilter& filter, float sample_V);
 
 // ---- switches ------------------------------------------------------------------------------------------
 
-/// Accepts a switch level that has not changed for 5 ms. The switches are filtered separately and take turns.
+/// Accepts a switch level that has not changed for 5 ms. Each control period filters one of the switches.
 struct SwitchFilter {
   static constexpr std::uint32_t settle_periods = periods_in(0.005f);
   static constexpr std::size_t count = protocol::switch_count;
@@ -68,30 +70,31 @@ void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
 
 // ---- inkwell -------------------------------------------------------------------------------------------
 
-/// Encoder counts in the inkwell, from which joint angles are measured.
+/// Encoder counts while the stylus is in the inkwell. Joint angles are computed relative to these counts.
 struct InkwellReference {
   static constexpr std::uint32_t still_periods = periods_in(0.1f);
   /// Largest encoder dither of a stationary arm.
   static constexpr std::int32_t still_counts = 1;
   /// Beyond this distance from the inkwell, the stylus cannot close the inkwell switch. The switch closes shortly
-  /// before the stylus rests. The debouncing accepts an opened switch 5 ms late when a hand pulls the stylus out.
+  /// before the stylus is at rest. When a hand pulls the stylus out, debouncing reports the open switch 5 ms late.
   static constexpr float play_m = 0.02f;
 
-  std::array<std::int32_t, 3> counts{};       ///< encoder counts in the inkwell, since power-on
+  std::array<std::int32_t, 3> counts{};       ///< encoder counts since power-on, with the stylus in the inkwell
   std::array<std::int32_t, 3> rest_counts{};  ///< encoder counts at the last rest position of the arm
   std::uint32_t rested_periods = 0;
   bool valid = false;
 };
 
-/// Requires the stylus to be inserted again. With `switch_in_doubt` the switch must first be read as open.
+/// Requires the stylus to be inserted again. If `switch_in_doubt` is true, the switch must first be read as open.
 constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
   reference.counts = {};
   reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;
   reference.valid = false;
 }
 
-/// Stores the present counts as the inkwell reference after the switch has been closed and the arm stationary for 0.1
-/// s. Each insertion of the stylus stores one reference. Returns true in the period in which the reference is stored.
+/// Stores the present counts as the inkwell reference after the switch has been closed and the arm has been stationary
+/// for 0.1 s. Each insertion of the stylus stores one reference. Returns true in the period in which the reference is
+/// stored.
 bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
                       bool inkwell_closed);
 

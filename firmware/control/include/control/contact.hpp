@@ -29,7 +29,7 @@ struct Force {
 /// Clamps the probe to the free space on each axis: an edge or a corner is contact on two or three axes.
 Contact find_contact(const Vector3& probe_m, const Box& box);
 
-/// k d + c d' along one axis, signed. `penetration_m` points out of the wall.
+/// Signed wall force along one axis: k d + c d'. `penetration_m` points out of the wall.
 constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall wall) {
   if (penetration_m == 0.0f) return 0.0f;
   const float force_N = wall.stiffness_N_per_m * penetration_m - wall.damping_Ns_per_m * velocity_m_per_s;
@@ -37,8 +37,9 @@ constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall w
   return pulls ? 0.0f : force_N;
 }
 
-/// F = k d e + c d' e on each axis in contact, where d' is the rate of the penetration. A wall never pulls: while the
-/// probe leaves, the force of an axis is zero if the damper force exceeds the spring force.
+/// F = k d e + c d' e on each axis in contact, with the penetration d, its rate d' and the unit normal e. A wall never
+/// pulls the probe: the force on an axis is zero if the damper force would exceed the spring force while the probe
+/// leaves the wall.
 constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, Wall wall) {
   const Vector3& out_m = contact.penetration_m;
   return {axis_force_N(out_m.x, velocity_m_per_s.x, wall), axis_force_N(out_m.y, velocity_m_per_s.y, wall),

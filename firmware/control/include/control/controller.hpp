@@ -24,9 +24,9 @@
 
 namespace inkwell::control {
 
-/// All functions that change the state run in the control interrupt. The order of the functions is settings_changed /
-/// carry_out / host_alive / drive / replace_shapes / leave_for_update / raise, self-test, step, finish. Only the
-/// constructor, raise and start_warm are called before that interrupt is enabled.
+/// All functions that change the state run in the control interrupt. The call order is settings_changed / carry_out /
+/// host_alive / drive / replace_shapes / leave_for_update / raise, self-test, step, finish. Only the constructor, raise
+/// and start_warm are called before the control interrupt is enabled.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
@@ -70,8 +70,7 @@ class Controller {
   /// Call this function when the settings have changed. Walls, force law, shapes and force limit blend over to the new
   /// settings; motor current limits apply immediately.
   void settings_changed() { world_changed_ = true; }
-  /// Executes a command in the next step. The link has validated the command. A command counts as a sign of life of the
-  /// host.
+  /// Executes a command in the next step. The link has validated the command. A command also resets the host timeout.
   [[gnu::cold]] void carry_out(const protocol::CommandReport& command);
   /// Resets the host timeout. Call this function for every output report.
   void host_alive() { host_silence_periods_ = 0; }
@@ -96,8 +95,8 @@ class Controller {
   /// Number of self-tests since boot.
   std::uint32_t self_tests() const { return self_tests_; }
 
-  /// Writes the signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of
-  /// the previous period.
+  /// Writes the signals of the last step. Before finish(), the cycle counts of the last stage and of the whole
+  /// interrupt are those of the previous period.
   void write_signals(protocol::SignalValues& signals) const;
   protocol::SignalValues signals() const {
     protocol::SignalValues signals;
@@ -184,7 +183,7 @@ class Controller {
 
   // Results of this period, in path order.
   std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-on
-  std::uint32_t jump_bits_ = 0;                   ///< not 0 if an encoder moved faster than an arm can
+  std::uint32_t jump_bits_ = 0;                   ///< not 0 if an encoder moved faster than an arm can move
   std::array<std::int32_t, 3> counts_since_inkwell_{};
   Triple current_A_{};
   Probe probe_;  ///< input of the force law

@@ -1,8 +1,8 @@
 // Current control of one motor: PI controller with anti-windup (paper, section 3.5, after Eq. 15).
 //
-// The controller zero R/L cancels the electrical pole of the motor. For this, the integral gain is R times and the
-// proportional gain L times the desired bandwidth. The integral uses the trapezoidal rule. At 50 us and L/R = 109 us,
-// either rectangular rule would move the discrete zero away from the pole.
+// The controller zero at R/L cancels the electrical pole of the motor. The integral gain is therefore R times the
+// desired bandwidth, and the proportional gain is L times this bandwidth. The integral uses the trapezoidal rule. At 50
+// us and L/R = 109 us, either rectangular rule would move the discrete zero away from the pole.
 #pragma once
 
 #include <algorithm>
@@ -34,9 +34,9 @@ struct VoltageRange {
   float least_V, most_V;
 };
 
-/// Voltage range, within +-bound_V, that a motor needs for currents up to +-`most_A`. `back_emf_V` is its approximate
-/// back EMF, and `bridge_V` is the voltage drop of its bridge. The range always contains 0 V, so that a wrong speed
-/// cannot drive the motor.
+/// Voltage range, within +-bound_V, that a motor needs for currents up to +-`most_A`. `back_emf_V` is the approximate
+/// back EMF of the motor, and `bridge_V` is the voltage drop of the bridge. The range always contains 0 V, so that a
+/// wrong speed value cannot drive the motor.
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =
@@ -45,8 +45,8 @@ inline VoltageRange voltage_range(float most_A, const Resistance& resistance, fl
           std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
 }
 
-/// Computes the voltage for the next period, within `range`. While the voltage is at a bound, the integral does not
-/// grow further towards this bound.
+/// Computes the voltage for the next period, within `range`. While the voltage is at a bound of the range, the integral
+/// does not change towards this bound.
 CurrentLoopStep regulate(const CurrentLoop& loop, float reference_A, float current_A, const CurrentLoopGains& gains,
                          const VoltageRange& range);
 

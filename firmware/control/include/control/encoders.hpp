@@ -10,8 +10,8 @@
 namespace inkwell::control {
 
 /// Extends a wrapping 16-bit or 32-bit timer: returns the count nearest to `unwrapped` that agrees with `timer_count`
-/// in the timer's bits. Valid while less than half the timer range passes between two calls. For 16 bits and 50 us,
-/// this limit is 100 times the speed of the fastest arm.
+/// in the timer's bits. The result is valid if the timer changes by less than half its range between two calls. For 16
+/// bits and 50 us, this limit corresponds to 100 times the speed of the fastest arm.
 template <class TimerCount>
 constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   static_assert(std::is_unsigned_v<TimerCount> && sizeof(TimerCount) <= 4);
@@ -20,7 +20,8 @@ constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(unwrapped) + static_cast<std::uint32_t>(step));
 }
 
-/// Not 0 if an encoder moved by `jump_counts` (EncoderScale) or more. The backward bound is one count higher.
+/// Returns a value other than 0 if an encoder moved by `jump_counts` (EncoderScale) or more. For backward motion the
+/// bound is one count higher.
 constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const std::array<std::int32_t, 3>& now,
                               std::uint32_t jump_counts) {
   std::uint32_t all = 0;
@@ -32,12 +33,12 @@ constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const s
 struct EncoderScale {
   Triple rad_per_count;  ///< negative if the encoder counts down as its joint turns forward
   Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
-  /// Smallest change per control period that a joint cannot cause: at least 100 rad/s. A power of two, so that one test
-  /// covers all three encoders.
+  /// Smallest count change per control period that a joint cannot cause, equivalent to at least 100 rad/s. The value is
+  /// a power of two, so that one test covers all three encoders.
   std::uint32_t jump_counts;
 };
 
-/// Joint angles for counts since the inkwell (paper, section 3.1).
+/// Joint angles for encoder counts relative to the inkwell reference (paper, section 3.1).
 constexpr Triple joint_angles(const std::array<std::int32_t, 3>& counts_since_inkwell, const EncoderScale& scale) {
   Triple joint_rad{};
   for (std::size_t i = 0; i < 3; ++i)

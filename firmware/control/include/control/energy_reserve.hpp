@@ -1,10 +1,12 @@
-// Passivity observer on the whole device. The observer limits the energy that the arm delivers by reducing the force.
+// Passivity observer for the whole device. The observer reduces the force in order to limit the energy that the arm
+// delivers.
 //
 // Walls, shapes and dampers return less energy than the hand puts into them. A program that pushes along the motion, a
-// wrong force law or an oscillating loop delivers more energy for as long as it runs. The observer integrates the
-// energy that the force delivers over the measured motion of the probe. The method is from Hannaford and Ryu,
-// "Time-domain passivity control of haptic interfaces", 2002. The sum is bounded on both sides. After a long press, the
-// force returns at most the reserve to the hand. A small power may be delivered continuously.
+// wrong force law or an oscillating loop could deliver energy indefinitely. The observer integrates the force over the
+// measured motion of the probe, which results in the delivered energy. The method is from Hannaford and Ryu,
+// "Time-domain passivity control of haptic interfaces", 2002. The remaining energy is bounded on both sides. Even after
+// a long press into a wall, the force delivers at most the reserve to the hand. In addition, a small power may be
+// delivered continuously.
 #pragma once
 
 #include <control/vector.hpp>
@@ -18,8 +20,8 @@ struct EnergyLimits {
 };
 
 struct EnergyReserve {
-  /// Below this part of the reserve, the driving component of the force is reduced. With an empty reserve this
-  /// component is removed.
+  /// Below this part of the reserve, the driving component of the force is reduced. If the reserve is empty, the
+  /// driving component is removed.
   static constexpr float low_part = 0.25f;
   /// Below this speed the motion of the probe has no reliable direction.
   static constexpr float slow_m_per_s = 0.02f;
@@ -28,8 +30,8 @@ struct EnergyReserve {
   Vector3 position_m;  ///< position of the probe in the previous period
 };
 
-/// Advances by one control period. Subtracts the work of `felt_N`, the force of the previous period, on the path to
-/// `position_m`. Adds the energy that may be delivered continuously.
+/// Advances by one control period. Subtracts the work of the previous period's force, `felt_N`, on the path to
+/// `position_m`. Adds the energy that may be delivered in each period.
 void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits);
 
 /// Remaining energy divided by the energy below which the force is reduced.

@@ -18,7 +18,7 @@ class FeltForceLaw {
     return force_N_;
   }
 
-  /// Call this function in each period without the law. The next step then starts from the initial state.
+  /// Call this function in each period in which the law does not run. The law then restarts from its initial state.
   void rest() {
     if (periods_ != 0) reset_force_law(memory_);
     periods_ = 0;

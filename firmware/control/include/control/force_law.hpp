@@ -5,7 +5,8 @@
 //
 //   Parameters, Signals   structs of floats, whose rows are in `parameter_rows` and `signal_rows`; both may be empty
 //   State                 its state between control periods
-//   force_N               the function: force on the hand, called 20 000 times per second while the force is on
+//   force_N               function that returns the force on the hand, called 20 000 times per second while the force
+//   is on
 //
 // A law uses only its arguments, so a test on the PC can run the same code as the control interrupt.
 #pragma once
@@ -25,11 +26,11 @@ namespace inkwell::control {
 /// Input of a force law in each control period.
 struct Probe {
   Vector3 position_m;        ///< workspace axes
-  Vector3 velocity_m_per_s;  ///< from the adaptive window
+  Vector3 velocity_m_per_s;  ///< estimated with the adaptive window
   Triple joint_rad{};
   Triple gimbal_rad{};        ///< yaw, pitch and roll of the stylus; one angle is updated per period
   std::uint8_t switches = 0;  ///< bits of protocol::Switch
-  Contact contact{};          ///< contact with the box walls that the parameters set
+  Contact contact{};          ///< contact with the box walls defined by the parameters
   Wall wall{};                ///< stiffness and damping of these walls
   std::uint32_t periods = 0;  ///< control periods since the law became active with a new state
 

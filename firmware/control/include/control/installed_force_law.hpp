@@ -24,7 +24,8 @@ struct ForceLawMemory {
 
 // ---- control interrupt ----
 
-/// Resets state and signals. Call this function before the first step, and not in the same period as a step.
+/// Resets state and signals. Call this function before the first step. Do not call this function and step_force_law()
+/// in the same period.
 void reset_force_law(ForceLawMemory& memory);
 
 /// Runs one control period of the law. The force on the hand may be infinite or not a number. An output argument needs

@@ -1,12 +1,12 @@
 // Forward kinematics, Jacobian and virtual work of a three-joint arm (paper, Eq. 1 to 6 and 10 to 15).
 //
 // Every supported arm has two links in a vertical plane that joint 1 rotates. phi2 and phi3 are the link directions in
-// this plane. Reach r and height h of the probe relative to the shoulder are
+// this plane. The probe has the following reach r and height h relative to the shoulder:
 //
 //   r = l2 cos(phi2) + l3 cos(phi3)      h = l2 sin(phi2) + l3 sin(phi3)
 //
-// The probe position is  origin + r (cos(q1) forward + sin(q1) side) + h up.  The arms differ in the zero direction of
-// joint 3 (link 2 or the base) and in the workspace axes of forward, side and up.
+// The probe position is origin + r (cos(q1) forward + sin(q1) side) + h up. The arms differ in the zero direction of
+// joint 3 (link 2 or the base). The arms also differ in the workspace axes that represent forward, side and up.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct LinkEnds {
   Vector3 probe_m;
 };
 
-/// Returns probe position and Jacobian for joint angles of a few turns at most.
+/// Returns probe position and Jacobian. The joint angles may be a few turns at most.
 Pose forward_kinematics(const Triple& joint_rad, const Arm& arm);
 
 LinkEnds link_ends(const Triple& joint_rad, const Arm& arm);
@@ -66,12 +66,14 @@ Vector3 probe_velocity(const Jacobian& jacobian, const Triple& joint_speed_rad_p
 /// Joint torques that apply `force_N` to the hand: tau = J^T F, from tau . dq = F . dx.
 Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
 
-/// Sets the torque of joint 2 or 3 (`idle` is 1 or 2) to zero and corrects the torque of the other of these joints. The
-/// result is the nearest force without torque at the idle joint. The resulting force is never larger than the requested
-/// force. Joint 1 is not affected, because it moves the probe perpendicular to the motion of joints 2 and 3.
+/// Sets the torque of an idle link joint to zero and corrects the torque of the other link joint. `idle` is 1 for joint
+/// 2 and 2 for joint 3. The result is the nearest force without torque at the idle joint, and is never larger than the
+/// requested force. The torque of joint 1 does not change, because joint 1 moves the probe perpendicular to the motion
+/// of joints 2 and 3.
 [[gnu::cold]] void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian);
 
-/// Angle between link 3 and link 2, to which the elbow stops refer: joint 3 minus joint 2 on a parallelogram.
+/// Angle between link 3 and link 2, which the elbow stops limit. On a parallelogram this angle is joint 3 minus joint
+/// 2.
 float elbow_rad(const Triple& joint_rad, Transmission transmission);
 
 }  // namespace inkwell::control

@@ -9,11 +9,11 @@
 namespace inkwell::control {
 
 /// Temperature rise of each winding above the room, relative to the steady-state rise at its continuous current. The
-/// rise is the sum of winding above housing (fast) and housing above room (slow). The squared current heats both, and
-/// each cools with a separate time constant. At power-on the motors count as cold. Over any other restart the Warmth of
-/// the motors is retained and does not decay.
+/// rise is the sum of winding above housing (fast) and housing above room (slow). The squared current increases each of
+/// these differences, which decay with separate time constants. At power-on the motors count as cold. After any other
+/// restart, the Warmth of the motors is unchanged.
 struct MotorHeat {
-  /// Squares are summed over this many readings, because the heat of one reading is below the resolution of a float.
+  /// Number of readings whose squares are summed, because the heat of one reading is below the resolution of a float.
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
@@ -24,8 +24,8 @@ struct MotorHeat {
   std::uint32_t readings = 0;  ///< number of readings in each sum
 };
 
-/// Part of MotorHeat that is retained over a restart. The struct has no initial values, because start-up does not clear
-/// its memory.
+/// Part of MotorHeat that is retained across a restart. The struct has no initial values, because start-up does not
+/// clear its memory.
 struct Warmth {
   Triple heat, housing;
   std::uint32_t too_hot;  ///< 0 or 1
@@ -33,12 +33,12 @@ struct Warmth {
 
 struct HeatScale {
   Triple per_square_sum;     ///< converts a sum of squares to the steady-state heat
-  float winding_part;        ///< part of the total rise; the rest is the housing's part
-  float winding_per_update;  ///< part of the distance to its steady state that the winding covers in one update
+  float winding_part;        ///< part of the total rise in the winding; the rest is in the housing
+  float winding_per_update;  ///< part of the difference from the steady state that decays in one update of the winding
   float housing_per_update;
 };
 
-/// Runs one control period. The motors take turns: `motor` is 0, 1, 2, 0 and so on.
+/// Runs one control period for one motor. Successive calls use `motor` 0, 1, 2, 0 and so on.
 void update_heat(MotorHeat& motors, std::size_t motor, float current_A, const HeatScale& scale);
 
 }  // namespace inkwell::control

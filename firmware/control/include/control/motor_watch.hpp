@@ -3,12 +3,12 @@
 // The motor equation is u = R i + k w: the voltage is resistance times current plus back EMF. The voltage is the
 // command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
 // be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
-// explain. An open motor and a stuck bridge leg have the same effect. The force is then undefined. A voltage that is
-// too small for its current indicates shorted turns or a current reading that is too large.
+// explain. An open motor and a stuck bridge leg have the same effect. In all these cases the force is undefined. A
+// voltage that is too small for its current indicates shorted turns or a current reading that is too large.
 //
 // Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
 // of a healthy motor are integrated over time, which results in a flux. The equation neglects the inductance, which
-// adds at most L di to this flux. A large difference is detected sooner than a small one.
+// adds at most L di to this flux. A large difference is detected sooner than a small difference.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct MotorModel {
   Triple back_emf_Vs_per_rad;
 };
 
-/// Voltage drop of a bridge, always against the current. At small currents the bridge may instead add this voltage.
+/// Voltage drop of a bridge, which opposes the current. At small currents the bridge may add this voltage instead.
 struct BridgeLoss {
   float measured_V;  ///< from the self-test, including brushes; 0 if unknown
   float most_V;      ///< from the dead time of the bridge
@@ -45,17 +45,16 @@ struct MeasuredMotors {
 
 /// Assumed resistance of a motor.
 struct Resistance {
-  /// Tolerated excess of a measured motor. The tolerance covers an error of 50 K in the heat model since the
-  /// measurement.
+  /// Tolerated excess resistance of a measured motor. The tolerance covers an error of 50 K in the heat model.
   static constexpr float bearable_more_if_measured = 0.2f;
-  /// Tolerated excess without a measurement. Copper that is 100 K hotter has 39 % more resistance; switches and shunt
-  /// add 4 %.
+  /// Tolerated excess resistance without a measurement. Copper that is 100 K hotter has 39 % more resistance. Switches
+  /// and shunt add 4 %.
   static constexpr float bearable_more_else = 0.43f;
-  /// Part of the tolerance that the voltage range of a current loop includes: 5 % for a measured motor. The resistance
-  /// of a healthy motor may be higher, depending on angle or heat. A healthy motor above this tolerance gets less
+  /// Part of the tolerance that the voltage range of a current loop includes: 5 % of the resistance of a measured
+  /// motor. The resistance of a healthy motor may be higher, depending on angle or heat. This motor then gets less
   /// current at the force limit, and no fault is raised.
   static constexpr float room_part = 0.25f;
-  /// Increase of copper resistance at the steady-state rise of the continuous current, 100 K.
+  /// Increase of copper resistance at a temperature rise of 100 K, the steady-state rise at the continuous current.
   static constexpr float part_per_heat = 0.39f;
 
   float value_ohm;
@@ -66,7 +65,7 @@ struct Resistance {
   /// `warmer` is the heat gained since the measurement.
   static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
     if (!(measured_ohm > 0.0f)) return {parameter_ohm, bearable_more_else};
-    // A motor that has cooled since the measurement keeps the measured resistance. After a restart, the heat at the
+    // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat at the
     // measurement may have been overestimated.
     const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
     return {measured_ohm + measured_ohm * more, bearable_more_if_measured};
@@ -74,21 +73,21 @@ struct Resistance {
 };
 
 struct MotorWatch {
-  /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. Short effects need no tolerance
-  /// here, because the flux tolerance covers them. Examples are the voltage of a current change, and the speed of a
-  /// stopping arm, which is measured 1 ms late.
+  /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. The flux tolerance covers short
+  /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
+  /// arm stops.
   static constexpr float bearable_V = 0.3f;
-  /// Above this value, a current keeps its sign during the whole PWM period, including ripple. The bridge drop then
+  /// Above this value, a current does not change its sign during a PWM period, despite its ripple. The bridge drop then
   /// does not depend on the current.
   static constexpr float steady_A = 0.3f;
-  /// A motor that was measured 100 K hotter has 28 % less resistance.
+  /// A motor that has cooled by 100 K since its measurement has 28 % less resistance.
   static constexpr float bearable_less_resistance = 0.28f;
   /// Magnets that are 100 K hotter are 20 % weaker.
   static constexpr float bearable_part_of_back_emf = 0.25f;
   /// A motor of 0.24 mH needs 1.2 mVs to change its current from one limit to the other.
   static constexpr float bearable_flux_Vs = 0.003f;
 
-  /// The motors take turns, so each reading represents three periods.
+  /// Each period checks one motor, so each reading represents three periods.
   static constexpr float bearable_sum_V = bearable_flux_Vs / (3.0f * protocol::servo_period_s);
 
   Triple beyond_V{};       ///< sum of the voltages beyond the tolerance, per motor; 0 while its bridge is off
@@ -108,7 +107,8 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const float left_V = voltage_V - ohmic_V - back_emf_V;
   const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance = is_more ? resistance.bearable_more : MotorWatch::bearable_less_resistance;
-  // The bridge drop only opposes the current. If the voltage is too small, the drop therefore reduces the tolerance.
+  // The bridge drop opposes the current. If the voltage is too small for its current, the drop therefore reduces the
+  // tolerance.
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
   return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
@@ -124,8 +124,8 @@ inline void rest(MotorWatch& watch) {
   watch.voltage_V = 0.0f;
 }
 
-/// Completes the period. fits() checks `motor`, 0..2, next. `voltage_V` is the bridge voltage of this motor until then,
-/// and `loss` is its bridge drop.
+/// Completes the period. The next call of fits() checks `motor`, 0..2. Until then, `voltage_V` is the bridge voltage of
+/// this motor, and `loss` is its bridge drop.
 inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;

@@ -18,13 +18,13 @@ struct ForceTarget {
 
 struct ProgramForceLimits {
   float force_limit_N;           ///< bound of a report's magnitude
-  float change_N_per_period;     ///< bound of the force change, as a vector
+  float change_N_per_period;     ///< bound of the magnitude of the force change
   float periods_per_N;           ///< 1 / change_N_per_period
   std::uint32_t expiry_periods;  ///< time without a report after which the force fades
 };
 
-/// Part of the rendered force that comes from a program. This force moves towards the newest report and fades if no
-/// other report comes.
+/// Part of the rendered force that comes from a program. This force changes towards the newest report and fades if no
+/// other report arrives.
 struct ProgramForce {
   /// Duration of the fade after the last report has expired: 10 ms.
   static constexpr std::uint32_t fade_periods = protocol::servo_rate_Hz / 100;
@@ -43,8 +43,8 @@ struct ProgramForce {
 };
 
 /// Starts a linear transition to a new report. The transition lasts for the program's interval, or longer if the force
-/// would change too fast. A force above the limit keeps its direction. Returns whether the report came more than 1 ms
-/// late.
+/// would change too fast. A force above the limit is reduced to the limit and keeps its direction. Returns whether the
+/// report arrived more than 1 ms late.
 [[gnu::cold]] bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
 
 /// Advances by one control period. Without reports the force fades and the program is no longer a force source.

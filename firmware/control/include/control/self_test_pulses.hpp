@@ -1,4 +1,4 @@
-// Small voltage pulses, one motor after the other, for the self-test of motors, bridges and shunts.
+// Small voltage pulses for the self-test of motors, bridges and shunts. The pulses drive one motor after another.
 //
 //   high    +--+
 //   low  +--+  |
@@ -20,13 +20,13 @@
 
 namespace inkwell::control {
 
-/// Measurements of the pulses. The main loop evaluates these measurements.
+/// Measurements during the pulses, which the main loop evaluates.
 struct PulseRound {
   static constexpr std::size_t levels = 4;  ///< low, high, -high, -low
   struct Motor {
-    std::array<Triple, levels> current_A{};  ///< mean at each level, of all three sensors
+    std::array<Triple, levels> current_A{};  ///< mean of each of the three sensors at each level
     float low_V = 0.0f, high_V = 0.0f;
-    std::int32_t moved_counts = 0;  ///< motion of its encoder, from the first level to the last
+    std::int32_t moved_counts = 0;  ///< motion of the motor's encoder during the four levels
     bool takes_part = false;
   };
   std::array<Motor, 3> motors{};
@@ -50,13 +50,14 @@ class SelfTestPulses {
   static constexpr std::uint32_t mean_periods = 8;
   static constexpr std::uint32_t rest_periods = 10;
   static constexpr std::uint32_t round_periods = 3 * (PulseRound::levels * level_periods + rest_periods);
-  /// Current at the high level according to the motor resistance: 1.4 N at the hand for 1 ms. The low level has
+  /// Expected current at the high level, which applies 1.4 N to the hand for 1 ms. The current at the low level is
   /// `low_part` of this current.
   static constexpr float high_A = 0.7f, low_part = 0.4f;
-  /// Smallest pulse current, also for motors with a lower limit. A smaller current does not reveal the resistance, and
-  /// every motor tolerates this current for 1 ms.
+  /// Smallest pulse current, even for motors with a lower limit. A smaller current would not reveal the resistance.
+  /// Every motor tolerates this current for 1 ms.
   static constexpr float high_minimum_A = 0.3f;
-  /// Over-current bound during the pulses. The bound includes the back EMF and the effect of the other motors' pulses.
+  /// Over-current bound during the pulses. The bound includes the effects of the back EMF and of the other motors'
+  /// pulses.
   static constexpr float bearable_A = 1.5f * high_A;
   /// Voltage bound for windings with a higher resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
@@ -73,7 +74,7 @@ class SelfTestPulses {
   [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
                             const PulseScale& scale);
 
-  /// Complete after a started round has finished.
+  /// Measurements, which are complete after the round has finished.
   const PulseRound& round() const { return round_; }
 
  private:

@@ -27,12 +27,12 @@ struct GimbalCurve {
 
 /// Bounds of the supervisor's fault checks.
 struct Limits {
-  Triple joint_minimum_rad;  ///< third entry: elbow, relative to link 2 on every arm
+  Triple joint_minimum_rad;  ///< third entry: elbow angle relative to link 2, on every arm
   Triple joint_maximum_rad;
-  Triple over_current_A;   ///< bound of a measured current, after the current had time to fall
-  Triple moving_A;         ///< current change that must move the encoder; otherwise the encoder is stuck
-  Triple brake_A;          ///< current of the force limit; braking motors are released above this current
-  float inkwell_play_rad;  ///< angle from the inkwell, beyond which the stylus cannot close its switch
+  Triple over_current_A;   ///< bound of a measured current, after the time in which the current falls
+  Triple moving_A;         ///< current change that turns a joint; if the encoder does not change, it is stuck
+  Triple brake_A;          ///< current at the force limit; braking motors are released above this current
+  float inkwell_play_rad;  ///< joint angle from the inkwell, beyond which the stylus cannot close the inkwell switch
   float speed_limit_squared_m2_per_s2;
   std::uint32_t host_timeout_periods;
 };
@@ -49,7 +49,7 @@ struct Settings {
   ProgramForceLimits program_force;
   float ramp_per_period;     ///< rise of the force gain per control period
   float landing_per_period;  ///< fall of the force gain per control period in a regular stop
-  float change_squared_N2;   ///< square of the largest force change per period, from any cause
+  float change_squared_N2;   ///< square of the largest force change per period
   EnergyLimits energy;
   SpeedLimit speed;
   Motors motors;
@@ -59,7 +59,8 @@ struct Settings {
   Limits limits;
 };
 
-/// Converts a validated set of parameters to settings. The conversion divides and is slow: for the main loop only.
+/// Converts a validated set of parameters to settings. The conversion contains slow divisions, so only the main loop
+/// calls it.
 Settings prepare(const protocol::ParameterSet& parameters);
 
 }  // namespace inkwell::control

@@ -36,13 +36,14 @@ struct Sphere {
 /// Set of shapes, prepared outside the interrupt. Shape 0 is the sphere, 1 to 8 are the planes.
 struct Shapes {
   static constexpr std::size_t maximum = 1 + protocol::shape_planes_maximum;
-  /// Life of a shape that does not expire.
+  /// Value of `life_periods` for a shape that does not expire.
   static constexpr std::uint32_t lasting = 0xFFFFFFFFu;
 
   Sphere sphere{};
   std::array<Plane, protocol::shape_planes_maximum> planes{};
   std::array<Surface, maximum> surfaces{};
-  std::array<std::uint32_t, maximum> life_periods{};  ///< life from the activation of the set; 0 for an unused shape
+  /// Time from the activation of the set to the expiry of each shape; 0 for an unused shape.
+  std::array<std::uint32_t, maximum> life_periods{};
 };
 
 /// Point of a touched shape to which friction binds the probe.
@@ -51,9 +52,10 @@ struct Grip {
   bool slides = false;
 };
 
-/// Normal spring and damper, which never pull, and stick-slip friction (Salisbury et al., "Haptic rendering:
-/// programming touch interaction with virtual objects", I3D 1995). `depth_m` is the depth of the probe below the
-/// surface. With `is_new` the probe was above the surface in the previous period, and the grip starts at the probe.
+/// Force of a normal spring and damper, which never pulls, and stick-slip friction (Salisbury et al., "Haptic
+/// rendering: programming touch interaction with virtual objects", I3D 1995). `depth_m` is the depth of the probe below
+/// the surface. If `is_new` is true, the probe was above the surface in the previous period, and the grip starts at the
+/// probe.
 Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float depth_m, const Vector3& probe_m,
                         const Vector3& velocity_m_per_s, Grip& grip, bool is_new);
 
@@ -78,7 +80,7 @@ class TouchedShapes {
   std::uint32_t next_end_periods_ = 0;  ///< age of the next expiry; 0 for none
   bool sphere_lives_ = false;
   bool any_plane_lives_ = false;
-  std::array<Plane, protocol::shape_planes_maximum> planes_{};  ///< an expired plane is out of reach
+  std::array<Plane, protocol::shape_planes_maximum> planes_{};  ///< an expired plane is outside the reach of the probe
   std::array<Grip, Shapes::maximum> grips_{};                   ///< indexed by shape number
   std::uint32_t touched_ = 0;  ///< shapes touched in the previous period, one bit per shape number
 };

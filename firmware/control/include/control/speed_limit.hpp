@@ -1,12 +1,12 @@
-// Reduces the driving component of the force near the speed limit; the force can still brake and hold. Neither a
-// program nor a wall can therefore accelerate the arm to the fault over_speed; a hand can.
+// Reduces the driving component of the force near the speed limit. The force can still brake the arm. Neither a program
+// nor a wall can therefore cause the fault over_speed, but a hand can.
 #pragma once
 
 namespace inkwell::control {
 
 struct SpeedLimit {
   float from_squared_m2_per_s2;  ///< square of the speed above which the force is reduced
-  float per_squared_m2_per_s2;   ///< 1 / increase of the square until the driving component is zero
+  float per_squared_m2_per_s2;  ///< 1 / (squared speed at which the driving component is zero - from_squared_m2_per_s2)
 };
 
 inline bool is_near(float speed_squared_m2_per_s2, const SpeedLimit& limit) {

@@ -1,26 +1,27 @@
-// Detects an encoder that does not change although the current of its motor does.
+// Detects an encoder that does not change although the current of its motor changes.
 //
-// The encoder is the only sensor of a joint angle, so a stuck encoder looks like a held joint. A held joint, however,
-// is never rigid: a change of motor torque turns it slightly, because cables, links, stops and hands are elastic. The
-// stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten counts. Friction holds a joint as
-// long as the force changes by less than twice the friction, 0.5 N on an Omni.
+// The encoder is the only sensor of a joint angle, so a stuck encoder has the same readings as a blocked joint. A
+// blocked joint, however, is never rigid. A change of motor torque turns the joint slightly, because cables, links,
+// stops and hands are elastic. The stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten
+// counts. Friction blocks a joint if the force changes by less than twice the friction, 0.5 N on an Omni.
 //
 // A change of 1.5 N at the end of the longer link must move the encoder by more than one count. An arm with twice the
-// friction and twice the stiffness of an Omni still moves more. An encoder with one dead wire also moves by one count
-// in either direction. On a slow arm, the changes of such an encoder are too rare for control/encoder_wire.hpp to
-// detect.
+// friction and twice the stiffness of an Omni still moves more than one count. The count of an encoder with one dead
+// wire also changes by at most one. On a slow arm, these changes are too rare for the check in
+// control/encoder_wire.hpp.
 //
-// A healthy joint occasionally does not move at one such change. A hand may slide along a wall or press into it at an
-// angle, and balance the change of the wall force. Friction then holds the joint. In one hour of random use on the
-// virtual board, no standstill of a healthy joint had more than two changes of 1 N. No standstill had more than one
-// change of 2 N. The fault is raised after three changes of 1.5 N: press, release and press again, or an increase of
-// 4.5 N.
+// A healthy joint occasionally does not move when the force changes by 1.5 N. A hand that slides along a wall or
+// presses into a wall at an angle may balance the change of the wall force. Friction then blocks the joint. In one hour
+// of random use on the virtual board, no standstill of a healthy joint contained more than two changes of 1 N or more
+// than one change of 2 N. The fault is raised after three changes of 1.5 N: press, release and press again, or an
+// increase of 4.5 N.
 //
-// A reversing arm is stationary for a moment while the force of a wall may rise: 30 ms and 0.5 A were observed. Changes
-// therefore count only after the joint has been stationary for 0.1 s. The current is low-pass filtered over about 10
-// ms, so a force that alternates too fast for the arm has no effect on the filtered current.
+// An arm that reverses its motion is stationary for a moment, while the force of a wall may rise. A time of 30 ms and a
+// change of 0.5 A were observed. Current changes therefore count only after the joint has been stationary for 0.1 s.
+// The current is low-pass filtered over about 10 ms, so a force that alternates too fast for the arm has no effect on
+// the filtered current.
 //
-// Only the inkwell is more rigid. While the stylus is in the inkwell, nothing is compared.
+// The inkwell is too rigid for this check, so the check is inactive while the stylus is in the inkwell.
 #pragma once
 
 #include <algorithm>
@@ -36,19 +37,20 @@ struct StuckEncoder {
   static constexpr unsigned bearable_changes = 2;
   static constexpr std::uint32_t bearable_counts = 1;
   static constexpr std::uint32_t settle_periods = periods_in(0.1f);
-  /// Filter weight of a new reading. There is at most one reading in three periods: a low-pass of 9.6 ms.
+  /// Filter weight of a new reading. With one reading in three periods, the time constant of this low-pass filter is
+  /// 9.6 ms.
   static constexpr float weight = 1.0f / 64.0f;
 
   std::int32_t counts = 0;          ///< count at which the encoder is stationary
   std::uint32_t since_periods = 0;  ///< start of the standstill
-  float current_A = 0.0f;           ///< filtered current of its motor
-  float least_A = 0.0f;             ///< least current since the joint settled, or since the last change
+  float current_A = 0.0f;           ///< filtered motor current
+  float least_A = 0.0f;             ///< least filtered current since the joint settled or since the last counted change
   float most_A = 0.0f;
-  unsigned changes = 0;  ///< number of changes in this standstill
+  unsigned changes = 0;  ///< number of current changes in this standstill
 };
 
 /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current changes
-/// of more than `moving_A` while the encoder was stationary. With `held`, the joint may be stationary for another
+/// of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be stationary for another
 /// reason, and the standstill restarts.
 inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
                      float moving_A) {

@@ -1,4 +1,4 @@
-// State machine: one step through the tables of protocol/supervision.hpp.
+// State machine that applies the tables of protocol/supervision.hpp in each control period.
 #pragma once
 
 #include <protocol/supervision.hpp>
@@ -17,10 +17,11 @@ struct Supervisor {
   bool operator==(const Supervisor&) const = default;
 };
 
-/// Fast check for most periods: true if no fault is found and no transition is open. False means undecided.
+/// Fast check, which is sufficient in most periods. Returns true if no fault is found and no transition is open. After
+/// false, advance() must decide.
 bool surely_stays(protocol::State state, const Situation& situation);
 
-/// Returns the state of the next period. This function adds `Event::cause`.
+/// Returns the state of the next period. This function itself determines `Event::cause`.
 [[gnu::cold]] Supervisor advance(const Supervisor& supervisor, const Situation& situation);
 
 }  // namespace inkwell::control

@@ -1,18 +1,18 @@
-// Detects an oscillating bridge supply: a worn bulk capacitor, a loose plug, or a supply that is unstable or has lost a
-// diode.
+// Detects an oscillating bridge supply. Causes are a worn bulk capacitor, a loose plug, an unstable power supply or a
+// failed rectifier diode.
 //
 // The frequency of an oscillation distinguishes a fault from normal operation; the amplitude does not. A step, a sag or
-// a spike exceeds the bound at most twice, at its start and at its return. The slow mean then follows. A hand that
-// swings the arm reverses the motor power ten times per second. A program or a force law can alternate a force faster,
-// but with less energy per cycle. The largest force, 8 N, moves 45 g back and forth at 40 Hz with at most 1.1 m/s or 27
-// mJ. This energy raises the voltage of 2200 uF from 18 V by 0.7 V; at 100 Hz the rise is 0.1 V. The losses in the
-// motor resistance, another 41 W, lower the supply by 0.3 V. Together these changes are half of the bound in either
-// direction. A test on the simulated board checks this sum.
+// a spike exceeds the bound at most twice: at its start and at its end. The slow mean then follows the voltage. A hand
+// that swings the arm reverses the motor power ten times per second. A program or a force law can reverse a force more
+// often, but with less energy per cycle. The largest force, 8 N, moves 45 g back and forth at 40 Hz with at most 1.1
+// m/s, a kinetic energy of 27 mJ. This energy raises the voltage of a 2200 uF capacitor at 18 V by 0.7 V; at 100 Hz the
+// rise is 0.1 V. The losses in the motor resistance, another 41 W, lower the supply voltage by 0.3 V. The sum of these
+// changes is half of the bound. A test on the simulated board checks this sum.
 //
-// The reading passes through a divider with a capacitor, a low-pass of 0.9 ms. The low-pass leaves 98 % of the
-// amplitude at 35 Hz and 87 % at 100 Hz.
+// The voltage divider and its capacitor form a low-pass filter with a time constant of 0.9 ms. The filter passes 98 %
+// of the amplitude at 35 Hz and 87 % at 100 Hz.
 //
-// Integer arithmetic only: with floats in the main loop, every interrupt would save the floating-point registers.
+// The check uses only integers. If the main loop used floats, every interrupt would save the floating-point registers.
 #pragma once
 
 #include <algorithm>
@@ -34,13 +34,13 @@ struct SupplyRipple {
 
   std::int32_t bearable_counts;   ///< protocol::supply_ripple_V in converter counts, in either direction from the mean
   std::int32_t mean_counts = -1;  ///< mean times mean_periods; below 0 before the first reading
-  bool above = false, below = false;  ///< side of the last excursion beyond the bound
+  bool above = false, below = false;  ///< whether the last excursion was above or below the bounds
   std::uint32_t looked_at_periods = 0;
   std::array<std::uint32_t, alternations> changed_at_periods{};  ///< ring of the newest side changes
   std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
 };
 
-/// Checks one reading at period `now_periods`. Period numbers may be skipped, and they wrap. Returns true while
+/// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true while the last
 /// `alternations` side changes are within `within_periods`.
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
   if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;

@@ -13,26 +13,26 @@
 
 namespace inkwell::control {
 
-/// Active pulse: `amplitude`, then zero for the same time, so that recordings include the decay.
+/// Active pulse: `amplitude` for `pulse_periods`, then zero for the same time, so that recordings include the decay.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
   Quantity quantity = Quantity::current;
   std::uint8_t motor = 0;               ///< index 0..2
   float amplitude = 0.0f;               ///< A or V
-  std::uint32_t pulse_periods = 0;      ///< length of the pulse, and of the rest after it
+  std::uint32_t pulse_periods = 0;      ///< length of the pulse and of the following rest
   std::uint32_t remaining_periods = 0;  ///< remaining time of pulse and rest; 0 when no test runs
   float moved_J = 0.0f;                 ///< energy exchanged between motor and arm so far, as a magnitude
 
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
-  /// Stops the pulse but not its rest: the host has to wait before the next pulse.
+  /// Stops the pulse. The rest remains, so that the host has to wait before the next pulse.
   void rest() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
   /// Current or voltage of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };
 
-/// Returns the pulse of a command. The pulse is empty for a motor that does not exist or a time that is not positive.
+/// Returns the pulse of a command. The pulse is empty if the motor does not exist or the time is not positive.
 constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPulse::Quantity quantity) {
   if (wanted.motor < 1 || wanted.motor > 3 || !(wanted.duration_s > 0.0f)) return {};
   const float duration_s =
@@ -41,9 +41,10 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
   return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
 }
 
-/// Current of a motor, 0..2, that applies `force_limit_N` to a hand that holds the probe in this pose. The force of a
+/// Current of a motor, 0..2, that applies `force_limit_N` to a hand that fixes the probe in this pose. The force of a
 /// single motor is perpendicular to the probe motions of the other two joints. The force is the torque divided by the
-/// component of the joint's Jacobian column in this direction. Returns 0 if the pose has no such direction.
+/// component of the joint's Jacobian column in this perpendicular direction. Returns 0 if the pose has no such
+/// direction.
 inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
   const std::size_t next = motor == 2 ? 0 : motor + 1, last = motor == 0 ? 2 : motor - 1;
   const Vector3 across = cross(jacobian.column[next], jacobian.column[last]);

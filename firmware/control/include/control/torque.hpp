@@ -14,10 +14,10 @@ namespace inkwell::control {
 struct Motors {
   Triple ampere_per_Nm;    ///< 1 / (gear ratio * torque constant), negative for a reversed motor
   Triple current_limit_A;  ///< bound of each reference; a motor with limit 0 is not used
-  Triple ampere_per_heat;  ///< reduction of the limit per unit of MotorHeat::beyond
+  Triple ampere_per_heat;  ///< reduction of the current limit per unit of MotorHeat::beyond
   /// Current for 1 N at the end of the longer link.
   Triple ampere_per_N;
-  std::uint32_t idle = 0;  ///< 1 or 2 if only this link motor is not used, otherwise 0
+  std::uint32_t idle = 0;  ///< index (1 or 2) of the only link motor that is not used, otherwise 0
 
   float allowed_A(std::size_t motor, const Triple& heat_beyond) const {
     return std::max(0.0f, current_limit_A[motor] - ampere_per_heat[motor] * heat_beyond[motor]);
@@ -27,7 +27,7 @@ struct Motors {
 struct CurrentReferences {
   Triple reference_A{};
   bool held_by_current = false;  ///< reduced by a current limit
-  bool held_by_heat = false;     ///< reduced by the lower limit of a hot motor
+  bool held_by_heat = false;     ///< reduced by the lower current limit of a hot motor
 };
 
 /// Allowed part of the requested current.
@@ -35,8 +35,8 @@ struct CurrentReferences {
   return allowed_A * reciprocal_square_root(asked_A * asked_A);
 }
 
-/// Returns the currents for the joint torques. If a motor exceeds its allowed current, which falls with `heat_beyond`,
-/// all three are scaled down together. The force then keeps its direction.
+/// Returns the currents for the joint torques. If a motor would exceed its allowed current, all three currents are
+/// scaled down together, so that the force keeps its direction. The allowed current falls with `heat_beyond`.
 inline CurrentReferences current_references(const Triple& torque_Nm, const Motors& motors, const Triple& heat_beyond) {
   CurrentReferences references;
   float part = 1.0f;

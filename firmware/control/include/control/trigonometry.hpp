@@ -8,7 +8,7 @@ struct SineCosine {
   float cosine;
 };
 
-/// Absolute error at most 1.2e-7 for |angle| up to 20 rad.
+/// The absolute error is at most 1.2e-7 for |angle| up to 20 rad.
 SineCosine sine_cosine(float angle_rad);
 
 /// 1 / value for a positive normal value below 1e37; relative error at most 2e-7.
