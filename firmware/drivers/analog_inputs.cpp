@@ -18,15 +18,15 @@ using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 /// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
-/// Sampling time of a channel: the code in ADC_SMPRx and its cycles. The fast shunt amplifiers keep the reset value of
-/// 3 cycles.
+/// Sampling time of a channel: code for ADC_SMPRx and number of cycles. The channels of the fast shunt amplifiers use
+/// the reset value of 3 cycles.
 struct Sampling {
   std::uint32_t code, cycles;
   constexpr float time_s() const { return static_cast<float>(cycles) / board::adc_Hz; }
   /// Cycles including the conversion.
   constexpr std::uint32_t whole_cycles() const { return cycles + 12; }
 };
-/// Potentiometers and supply divider are slow sources, but a capacitor at the pin supplies the charge of the sampling
+/// Potentiometers and supply divider have a high output resistance, but a capacitor at the pin charges the sampling
 /// capacitor.
 constexpr Sampling wiper_sampling{0b011, 56}, supply_sampling = wiper_sampling;
 /// The internal reference needs 10 us (data sheet, "Embedded internal reference voltage").
@@ -41,9 +41,9 @@ static_assert(static_cast<float>(3 * wiper_sampling.whole_cycles() + supply_samp
                   0.8f / board::servo_rate_Hz,
               "the slow conversions must be over when the next injected ones come");
 
-/// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may have the voltage of
-/// the previous channel. This charge must change the capacitor at the pin by less than half a step. Sampling must last
-/// ten time constants of the switch.
+/// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may still have the
+/// voltage of the previous channel. The resulting charge must change the voltage at the pin by less than half a
+/// converter step. Sampling must last ten time constants of the sampling switch.
 constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
 constexpr bool is_settled(const Sampling& sampling, float filter_F) {
   return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
@@ -52,8 +52,8 @@ static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
                   is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// Slow channels in conversion order. The supply comes last: it leaves the sampling capacitor near mid-range, as a
-/// motor current does.
+/// Slow channels in conversion order. The supply is the last channel, because its voltage is near mid-range, like that
+/// of a motor current.
 struct SlowChannel {
   std::uint32_t channel;
   Sampling sampling;
@@ -64,7 +64,8 @@ constexpr SlowChannel slow_sequence[slow_channels] = {{board::facts.gimbal[0].ch
                                                       {reference_channel, reference_sampling},
                                                       {board::facts.supply.channel, supply_sampling}};
 
-/// Sampling times of the ten channels from `first` on. SMPR2 contains channels 0 to 9, SMPR1 contains the others.
+/// Sampling times of the ten channels from `first` on. SMPR2 contains channels 0 to 9, and SMPR1 contains the higher
+/// channels.
 constexpr std::uint32_t sampling_from(std::uint32_t first) {
   std::uint32_t bits = 0;
   for (const auto& [channel, sampling] : slow_sequence)
@@ -72,13 +73,13 @@ constexpr std::uint32_t sampling_from(std::uint32_t first) {
   return bits;
 }
 
-/// ADC_CR2 of ADC1 from arm() on. SWSTART starts the slow conversions.
+/// Value of ADC_CR2 for ADC1 after arm(). SWSTART starts the slow conversions.
 constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
                                      ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
-  // A sequence of one channel, the default after a reset, uses the last channel field.
+  // A sequence of one channel, the default after a reset, uses only the last channel field.
   Converter::JSQR::write(typename Converter::JSQR::JSQ4(input.channel));
 }
 
@@ -106,7 +107,7 @@ constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFC
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;
 
-/// Sets up the stream from its first transfer. The stream must be disabled.
+/// Sets up the DMA stream so that it starts with the first transfer. The stream must be disabled.
 INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
   DMA2::LIFCR::write(flags_of_stream);
@@ -120,8 +121,8 @@ INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destin
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-/// Periods without a complete sequence after which the sequence is restarted. A late control interrupt causes one such
-/// period.
+/// Number of periods without a complete sequence after which the sequence is restarted. A late control interrupt causes
+/// one period without a complete sequence.
 constexpr std::uint32_t patience_periods = 4;
 
 }  // namespace
@@ -142,7 +143,8 @@ void AnalogInputs::start() {
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
-  // The reference needs 10 us to start, which pass before arm() (data sheet, "Embedded internal reference voltage").
+  // The reference needs 10 us to start (data sheet, "Embedded internal reference voltage"). This time elapses before
+  // arm().
   ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
   set_up_injected<ADC1>(board::facts.motor_current[0]);
   set_up_injected<ADC2>(board::facts.motor_current[1]);
@@ -158,8 +160,8 @@ void AnalogInputs::arm() {
   InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
-// All three converters start together, so all have finished when ADC1 interrupts. Only a broken converter has no
-// result.
+// All three converters start together, so all converters have finished when ADC1 raises its interrupt. Only a broken
+// converter has no result.
 INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
   bool are_new = true;
   const std::array current_A{take_current_A<ADC1>(are_new), take_current_A<ADC2>(are_new),
@@ -170,8 +172,8 @@ INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   if (slow_stopped_) return set_up_slow();
   if (!DMA2::LISR::TCIF0::is_set()) {
-    // After a late control interrupt the sequence may still be running. A restart in its middle would shift all later
-    // results by one position. A converter overrun or a transfer error stops the sequence permanently.
+    // After a late control interrupt the sequence may still be running. A restart in the middle of a sequence would
+    // shift all later results by one position. A converter overrun or a transfer error stops the sequence permanently.
     if (++slow_age_periods_ % patience_periods == 0) stop_slow();
     return;
   }
@@ -180,9 +182,9 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
-// Stops the conversions as RM0090 describes under "Overrun detection". The recovery takes two periods without a wait in
-// the interrupt. A disabled stream first finishes its transfer. With DMA requests disabled, no old request remains when
-// the stream starts again.
+// Stops the conversions as RM0090 describes under "Overrun detection". The recovery takes two periods, so that the
+// interrupt does not have to wait. A stream finishes its current transfer before it is disabled. DMA requests are also
+// disabled, so that no old request remains when the stream restarts.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);
   DMA2::S0CR::write(0);
@@ -193,7 +195,7 @@ INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   ++slow_age_periods_;
   slow_stopped_ = false;
   set_up_memory_access(slow_.data());
-  // An unread result would make the first new result an overrun.
+  // If a result stayed unread, the first new result would cause an overrun.
   ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }

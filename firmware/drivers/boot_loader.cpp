@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t mark = 0x64667521;
 
-/// Memory is undefined after power-on, so the mark is stored twice.
+/// The memory is undefined after power-on, so the request is stored twice.
 struct Wish {
   std::uint32_t mark;
   std::uint32_t inverted;
@@ -17,8 +17,8 @@ struct Wish {
 
 [[gnu::noinit]] Wish wish;
 
-/// Address of the boot loader. The boot loader starts like every image, with its stack pointer and its first
-/// instruction.
+/// Address of the boot loader. The boot loader begins, like every image, with its stack pointer and the address of its
+/// first instruction.
 constexpr std::uint32_t system_memory = 0x1FFF'0000;
 
 }  // namespace

@@ -23,7 +23,8 @@ using Hold = DigitalInput<Bridges, board::facts.bridge_hold>;
 constexpr std::uint32_t trigger_on_enable = 0b001;
 constexpr std::uint32_t trigger_on_update = 0b010;
 
-/// Sets up a timer with outputs off and its counter stopped at 0. Compare values are written before the outputs are on.
+/// Sets up a timer with outputs off and its counter stopped at 0. Compare values are written before the outputs are
+/// switched on.
 template <class Timer>
 void set_up() {
   constexpr std::uint32_t centre_aligned = 0b01;
@@ -36,13 +37,13 @@ void set_up() {
   Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
   Timer::BDTR::write(outputs_off);
   Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
-  // This event also loads the repetition counter, so updates are counted from here. The repetition value is odd and the
-  // counter starts upward from 0. The update is therefore at every sixth turning point, at the bottom (RM0090,
-  // "Repetition counter").
+  // This event also loads the repetition counter, so updates are counted from this event. The repetition value is odd
+  // and the counter starts upward from 0. The update therefore occurs at every sixth counter reversal, when the counter
+  // is 0 (RM0090, "Repetition counter").
   Timer::EGR::write(typename Timer::EGR::UG(1));
 }
 
-/// The bridge is a template argument, so that no channel table is read.
+/// The bridge number is a template argument, so that no channel table is read.
 template <std::size_t bridge>
 void write_legs(const LegCompares& legs) {
   constexpr unsigned place = board::facts.bridges[bridge].channel - 1u;
@@ -50,7 +51,7 @@ void write_legs(const LegCompares& legs) {
   TIM8::CCR::write(place, legs.leg_b);
 }
 
-/// All legs A are on one port and all legs B on another, so one access reads three legs.
+/// All legs A are connected to one port and all legs B to another port, so one access reads three legs.
 template <board::Pin first, board::Pin second, board::Pin third>
 bool any_is_high() {
   static_assert(first.port == second.port && first.port == third.port);
@@ -58,9 +59,9 @@ bool any_is_high() {
   return (DigitalInput<Bridges, first>::read_port() & pins) != 0;
 }
 
-/// Starts both counters together: TIM8 waits for the trigger output of TIM1, its internal trigger 0 (RM0090, "TIMx
-/// internal trigger connection"). The trigger arrives about two cycles late, which separates the legs of a bridge by 12
-/// ns. The dead times of the bridges are several times longer.
+/// Starts both counters together. TIM8 waits for the trigger output of TIM1, which is internal trigger 0 of TIM8
+/// (RM0090, "TIMx internal trigger connection"). The trigger arrives about two cycles late, so leg B of a bridge
+/// switches 12 ns later than leg A. The dead times of the bridges are several times longer.
 void start_together() {
   constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
@@ -80,7 +81,7 @@ void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {
-  // A PWM of 60 kHz does not need fast edges, and slow edges disturb the shunt amplifiers less. The pull-downs keep the
+  // PWM at 60 kHz does not need fast edges, and slow edges disturb the shunt amplifiers less. The pull-downs keep the
   // legs low if the timer does not drive them.
   connect<Bridges, board::facts.bridges[0].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_a>(Pull::down, Speed::medium);
@@ -88,7 +89,8 @@ void connect_pins() {
   connect<Bridges, board::facts.bridges[0].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[2].leg_b>(Pull::down, Speed::medium);
-  // Open drain: the board has a strong pull-up. This pull-up only prevents floating on a bench without bridges.
+  // The open-drain fault wire has a strong pull-up on the board. The pull-up of the chip only prevents a floating wire
+  // if no bridges are connected.
   connect<Bridges, board::facts.bridge_fault_tim1>(Pull::up, Speed::low);
   connect<Bridges, board::facts.bridge_fault_tim8>(Pull::up, Speed::low);
 }
@@ -100,8 +102,8 @@ void Bridges::start() {
   Heartbeat::start();
   Hold::start(Pull::down);  // defines the level if the wire is broken
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
-  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors.
-  // Whether the outputs also become idle must be checked on the bench (the board's README.md, "First power-up").
+  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors. A
+  // bench check must show whether the outputs also become idle (README.md of the board, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 

@@ -11,7 +11,7 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-/// 0.1 s in cycles of the internal oscillator, which runs while the crystal and the PLL start.
+/// Time limit of 0.1 s, in cycles of the internal oscillator, which runs while the crystal and the PLL start.
 constexpr std::uint32_t start_cycles = internal_oscillator_Hz / 10;
 
 /// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
@@ -56,7 +56,7 @@ bool start_clocks() {
   RCC::CR::modify(RCC::CR::PLLON(1));
   if (!wait_for(start_cycles, [] { return RCC::CR::PLLRDY::is_set(); })) return false;
 
-  // Wait states and bus dividers change before the frequency, so that no part ever exceeds its limit.
+  // Wait states and bus dividers change before the frequency, so that no part of the chip exceeds its frequency limit.
   FLASH::ACR::write(FLASH::ACR::LATENCY(board::flash_wait_states), FLASH::ACR::PRFTEN(1), FLASH::ACR::ICEN(1),
                     FLASH::ACR::DCEN(1));
   if (!wait_for(start_cycles, [] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;

@@ -10,7 +10,7 @@ namespace {
 using IWDG = RegistersOf<IndependentWatchdog, registers::IWDG>;
 
 constexpr std::uint32_t key_start = 0xCCCC, key_unlock = 0x5555, key_feed = 0xAAAA;
-constexpr std::uint32_t divider = 4;  // the reset value; only a reset stops the watchdog
+constexpr std::uint32_t divider = 4;  // the reset value, because only a reset stops the watchdog
 constexpr std::uint32_t reload =
     IndependentWatchdog::oscillator_Hz / divider * IndependentWatchdog::timeout_ms / 1000 - 1;
 
@@ -19,12 +19,13 @@ constexpr std::uint32_t reload =
 bool IndependentWatchdog::start() {
   using Freeze = registers::DBG::DBGMCU_APB1_FZ;
   Freeze::modify(Freeze::DBG_IWDG_STOP(1));
-  // Starting the watchdog first starts its oscillator. Without the oscillator, the new values would never take effect.
+  // The watchdog is started first, because this also starts its oscillator. Without the oscillator, new register values
+  // would never take effect.
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);
   IWDG::RLR::write(IWDG::RLR::RL(reload));
-  // The update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains, which is also
-  // safe.
+  // A register update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains, which is
+  // also safe.
   const bool is_taken = wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; });
   feed();
   return is_taken && IWDG::RLR::read() == reload;

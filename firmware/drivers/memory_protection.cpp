@@ -21,7 +21,8 @@ struct Region {
 constexpr std::uint32_t bits_of_2_KB = 11, bits_of_16_KB = 14, bits_of_32_KB = 15, bits_of_128_KB = 17,
                         bits_of_1_MB = 20, bits_of_32_MB = 25, bits_of_128_MB = 27;
 
-/// Of overlapping regions the last one applies. The default memory map applies elsewhere (RM0090, "Memory map").
+/// If regions overlap, the last region applies. The default memory map applies outside the regions (RM0090, "Memory
+/// map").
 constexpr Region regions[] = {
     {0x0000'0000, bits_of_128_MB, Use::none, false},  // alias of the flash
     {0x0800'0000, bits_of_128_MB, Use::none, false},  // up to the stack

@@ -11,7 +11,8 @@ using Flash = RegistersOf<ParameterFlash, registers::FLASH_PROGRAMMING>;
 constexpr std::uint32_t first_key = 0x4567'0123, second_key = 0xCDEF'89AB;
 constexpr std::uint32_t flash_base = 0x0800'0000, sector_bytes = 0x4000;
 constexpr std::uint32_t by_words = 2;  // PSIZE, for a supply of 2.7 V or more
-/// Longer than the slowest chip needs. This time passes only if the flash is broken.
+/// Time limit, which is longer than the time that the slowest chip needs. The limit is reached only if the flash is
+/// broken.
 constexpr std::uint32_t patience_cycles = 2 * board::processor_Hz;
 
 void unlock() {
@@ -27,7 +28,8 @@ bool finish() {
   return ended;
 }
 
-/// Old contents may be in the data cache (RM0090, "Flash memory erase sequences"). The cache is reset while it is off.
+/// Old contents may be in the data cache (RM0090, "Flash memory erase sequences"). The cache can be reset only while it
+/// is off.
 void forget_cached_data() {
   using ACR = registers::FLASH::ACR;
   ACR::modify(ACR::DCEN(0));

@@ -1,5 +1,5 @@
 // Dial with detents around an axis of the workspace. The probe turns about the axis and snaps from notch to notch. The
-// present notch changes only well after its boundary, so that the dial does not chatter between two notches.
+// notch changes only well beyond its boundary, so that the dial does not chatter between two notches.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -45,7 +45,7 @@ struct detent_dial {
     const Vector3 along{-y_m / radius_m, x_m / radius_m, 0.0f};
 
     state.way_m += protocol::servo_period_s * dot(along, probe.velocity_m_per_s);
-    const float change_at_m = 0.6f * parameters.notch_m;  // half a notch would chatter
+    const float change_at_m = 0.6f * parameters.notch_m;  // half a notch would cause chatter
     const float step = state.way_m > change_at_m ? 1.0f : state.way_m < -change_at_m ? -1.0f : 0.0f;
     state.passed_notches += step;
     state.way_m -= step * parameters.notch_m;

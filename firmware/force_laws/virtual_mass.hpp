@@ -1,6 +1,6 @@
-// C code as a force law. MATLAB Coder, Simulink and Octave users have a step function with structs. This file passes
-// the probe to the function and adds rows for its parameters and outputs. The file generated_code/virtual_mass.c is
-// unchanged.
+// Force law that runs a C step function with structs, in the form that MATLAB Coder, Simulink and Octave users write.
+// This file passes the probe to the step function and adds rows for the parameters and outputs of the function. The
+// file generated_code/virtual_mass.c needs no changes.
 #pragma once
 
 #include <cmath>  // headers of the C code must be included here, outside the namespace

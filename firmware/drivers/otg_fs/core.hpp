@@ -16,7 +16,7 @@ using Device = RegistersOf<OtgFs, registers::OTG_FS_DEVICE>;
 using Power = RegistersOf<OtgFs, registers::OTG_FS_PWRCLK>;
 using UsbSupply = DigitalInput<OtgFs, board::facts.usb_supply>;
 
-/// The core answers within one packet time, 50 us, or never.
+/// Time limit for an answer of the core. The core answers within one packet time, 50 us.
 inline constexpr std::uint32_t core_answer_cycles = board::processor_Hz / 1'000'000 * 60;
 
 }  // namespace inkwell::drivers

@@ -31,8 +31,9 @@ inline constexpr std::uint32_t hid_words = 16;
 inline constexpr std::uint32_t control_start = receive_words;
 inline constexpr std::uint32_t hid_start = control_start + control_words;
 inline constexpr std::uint32_t scope_start = hid_start + hid_words;
-/// RM0090, section 34.17.6. Only the last packet of a transfer is shorter than the others, and a transfer begins when
-/// the previous one has left the FIFO. The bound on words is therefore also a bound on packets.
+/// Largest number of packets in a FIFO (RM0090, section 34.17.6). Only the last packet of a transfer may be short, and
+/// a transfer starts after the previous transfer has left the FIFO. The bound on words is therefore also a bound on
+/// packets.
 inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
 inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;
 inline constexpr std::uint32_t scope_words = packets_in_fifo_maximum * packet_words;

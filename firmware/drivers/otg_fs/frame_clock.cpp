@@ -16,9 +16,10 @@ constexpr std::uint32_t cycles_per_count = board::processor_Hz / board::timer_ap
 static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
 
 constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
-/// Ten times the allowed difference between host and board (USB 2.0, section 7.1.11; the crystal is more accurate).
+/// Ten times the allowed frequency difference between host and board (USB 2.0, section 7.1.11). The crystal of the
+/// board is more accurate.
 constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
-/// Time without a start of frame after which the bus counts as silent: 3 ms, when a suspend begins.
+/// Time without a start of frame after which the bus counts as silent. This time is 3 ms, as for a USB suspend.
 constexpr std::uint32_t silence = 3 * nominal_length;
 
 }  // namespace
@@ -47,8 +48,8 @@ void FrameClock::note_capture() {
 std::optional<usb::BusFrame> FrameClock::newest() {
   if (TIM2::SR::CC1IF::is_set()) note_capture();
   if (!is_known_) return std::nullopt;
-  // The two reads are repeated if an interrupt separates them. The control interrupt cannot separate the reads twice in
-  // succession.
+  // The two reads are repeated if an interrupt occurs between them. The control interrupt cannot occur between the
+  // reads twice in succession.
   constexpr std::uint32_t both_reads_cycles = 60;
   constexpr int tries = 4;
   std::uint32_t cycles = 0, count = 0;

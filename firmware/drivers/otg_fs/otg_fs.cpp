@@ -25,8 +25,8 @@ constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 /// PKTSTS of a word in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// The words of one packet are written without other accesses to the core in between. An access in between was observed
-/// to corrupt the packet and its endpoint. No interrupt handler accesses the core.
+/// No other access to the core may occur between the words of a packet. Such an access was observed to corrupt the
+/// packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
   std::size_t left = packet.size();
@@ -42,7 +42,8 @@ void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   }
 }
 
-/// Reads a packet of `size` bytes from the receive FIFO and stores the part that fits into `target`.
+/// Reads a packet of `size` bytes from the receive FIFO into `target`. If `target` is shorter, the remaining bytes are
+/// discarded.
 void read_packet(std::span<std::byte> target, std::size_t size) {
   for (std::size_t i = 0; i < size; i += 4) {
     const std::uint32_t word = Fifo::DFIFO::read(0);
@@ -51,8 +52,8 @@ void read_packet(std::span<std::byte> target, std::size_t size) {
   }
 }
 
-/// A transfer may complete while its control register is changed. If EPENA was read as one and is written back, the
-/// write starts another transfer.
+/// A transfer may complete between the read and the write of its control register. If EPENA was read as one and were
+/// written back, the write would start another transfer.
 template <class Control, class... Fields>
 void change(unsigned endpoint, Fields... fields) {
   Control::modify(endpoint, typename Control::EPENA(0), fields...);
@@ -76,9 +77,9 @@ bool OtgFs::next_event(Event& event) {
     event.length = 0;
     return true;
   }
-  // The end of a reset (ENUMDNE) needs no action. There is one speed, and after a reset the core accepts packets of 64
-  // bytes on endpoint 0. Sent packets are reported before received ones, because the host continues only after it has
-  // the packet.
+  // The end of a bus reset (ENUMDNE) needs no action. The device has only one speed, and after a reset the core accepts
+  // packets of 64 bytes on endpoint 0. Sent packets are reported before received packets, because the host continues a
+  // request only after it has received the sent packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event)) return true;
   answer_control();
   return false;
@@ -92,8 +93,9 @@ void OtgFs::follow_cable() {
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
 }
 
-// The core itself only deactivates the endpoints. The endpoints stay enabled, and old packets may be in the receive
-// FIFO. An OUT endpoint may stay enabled with NAK set; begin_receive() continues with it.
+// On a bus reset the core itself only deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old
+// packets may be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. begin_receive() supports this
+// state.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
@@ -126,7 +128,7 @@ bool OtgFs::next_sent(Event& event) {
 }
 
 bool OtgFs::next_received(Event& event) {
-  // At most three SETUP packets, their end, and an OUT packet with its end can be in the FIFO.
+  // The FIFO contains at most three SETUP packets with their setup-done word, and an OUT packet with its out-done word.
   constexpr int words_at_once = 8;
   for (int i = 0; i < words_at_once && Core::GINTSTS::RXFLVL::is_set(); ++i)
     if (take_received_word(event)) return true;
@@ -146,12 +148,12 @@ bool OtgFs::take_received_word(Event& event) {
       pass_on_setup(event);
       return true;
     case setup_done:
-      // Only now it is certain that no other SETUP packet follows, and only now NAK may be cleared again.
+      // After the setup-done word, no other SETUP packet follows, and NAK may be cleared again.
       if (!setup_waits_) return false;
       pass_on_setup(event);
       return true;
     case out_data:
-      if (endpoint >= out_endpoints) {  // the core was observed to report endpoints that it does not have
+      if (endpoint >= out_endpoints) {  // the core was observed to report nonexistent endpoints
         read_packet({}, size);
         return false;
       }
@@ -191,7 +193,7 @@ bool OtgFs::next_suspend_or_resume(Event& event) {
 
 // ---- transfers ---------------------------------------------------------------------------------------
 
-// DAD was observed to read back wrong, so the whole register is written.
+// DAD was observed to read back incorrectly, so the whole register is written.
 void OtgFs::set_address(std::uint8_t address) {
   constexpr std::uint32_t full_speed_internal_phy = 3;
   Device::DCFG::write(Device::DCFG::DSPD(full_speed_internal_phy), Device::DCFG::DAD(address));
@@ -219,7 +221,7 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   }
 }
 
-// A SETUP packet makes this answer stale. Endpoint 0 is not changed until the end of its stage. If NAK is cleared
+// A SETUP packet makes this answer stale. Endpoint 0 is not changed until the end of the SETUP stage. If NAK is cleared
 // before the setup-done word is read, this word is lost. Any word in the receive FIFO may belong to a SETUP packet.
 void OtgFs::answer_control() {
   const bool sends = control_send_waits_;
@@ -227,13 +229,13 @@ void OtgFs::answer_control() {
 }
 
 // A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. The write then opens
-// the endpoint for the data stage of a request to which this answer does not belong. Interrupts are disabled to keep
-// this gap short, and a second check detects a packet that arrived in it. NAK is set again before the host's next token
+// the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check and
+// write short. A second check detects a packet that arrived in this time. NAK is set again before the host's next token
 // ends, which is at least 4 us after the SETUP packet.
 //
-// Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before the write or after it. If the
-// packet arrived before the write, the write has removed its setup-done word. If the packet arrived after the write,
-// its setup-done word follows as usual.
+// Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. If the packet
+// arrived before the write, the write has removed its setup-done word. If the packet arrived after the write, its
+// setup-done word follows as usual.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;
@@ -281,15 +283,16 @@ void OtgFs::begin_receive(unsigned endpoint) {
   } else if (!Control::EPENA::from(Control::read(endpoint))) {
     Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
-    return;  // the packet is in the receive FIFO, and its reader calls receive() again
+    return;  // the packet is in the receive FIFO; receive() is called again after the packet has been read
   }
-  // Otherwise the endpoint was stalled or reopened, and its size is still set.
+  // If the endpoint was stalled or reopened, its size is still set.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// NAK is set on every OUT endpoint. Removing the words ends the transfers, and their packets are lost.
+// When this function is called, NAK is set on every OUT endpoint. Removing the words completes the transfers, and their
+// packets are lost.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());

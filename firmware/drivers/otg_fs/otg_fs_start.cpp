@@ -24,7 +24,7 @@ bool reset_core() {
   if (!wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;
   Core::GRSTCTL::modify(Core::GRSTCTL::CSRST(1));
   if (!wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::CSRST::is_set(); })) return false;
-  // The clock domain of the PHY needs three of its clocks, 11 processor cycles, before the next access.
+  // Before the next access, the PHY clock domain needs three PHY clocks, 11 processor cycles.
   wait(32);
   return wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); });
 }
@@ -44,11 +44,13 @@ bool OtgFs::start() {
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
   wait(mode_change_cycles);
 
-  // PA9 drives a bridge, so the core cannot sense VBUS there and assumes that it is present. D+ would rise, so the soft
-  // disconnect comes first. The function follow_cable() ends the soft disconnect.
+  // PA9 drives a bridge, so the core cannot sense VBUS at this pin and is configured to assume VBUS. The soft
+  // disconnect is set first, because the core would otherwise pull up D+. The function follow_cable() clears the soft
+  // disconnect.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
-  // A core reset does not restart the PHY clock after a suspend in the boot loader (RM0090, GRSTCTL: CSRST).
+  // If a suspend in the boot loader stopped the PHY clock, a core reset does not restart this clock (RM0090, GRSTCTL:
+  // CSRST).
   Power::PCGCCTL::write(0);
   set_address(0);
   fifo_memory::lay_out();

@@ -1,11 +1,11 @@
-// All analog inputs. All analog inputs share one driver, because ADC1 has two of the roles:
+// Driver of all analog inputs. ADC1 has two of the following roles, so the inputs cannot have separate drivers:
 //
 //   motor currents      ADC1, ADC2, ADC3 together, injected by the update of TIM1; ADC1 interrupts at their end
 //   gimbal, supply and  regular sequence of ADC1, started in every control period, stored by DMA2 stream 0
 //   internal reference
 //
-// The middle of the sampling window is at most 0.2 us after the update. In this time, at 1 A, the resistance changes
-// the current of the smallest motor by 2 mA, one ADC step. The sampling instant therefore needs no correction.
+// The middle of the sampling window is at most 0.2 us after the update. In this time, the winding resistance changes a
+// current of 1 A in the smallest motor by 2 mA, one ADC step. The sampling instant therefore needs no correction.
 #pragma once
 
 #include <array>
@@ -32,14 +32,14 @@ class AnalogInputs {
                                      pin(board::facts.gimbal[2]),
                                      pin(board::facts.supply)};
 
-  /// Call this function before TIM1 runs: the converters miss a trigger that comes before their clocks.
+  /// Call this function before TIM1 runs, because the converters miss a trigger that occurs before their clocks run.
   void start_clocks();
 
   /// Connects the pins and sets up the sequences.
   void start();
 
-  /// Switches the converters on and enables their trigger from TIM1. Call this function well before an update. All
-  /// three converters are then accurate and respond to the same first update.
+  /// Switches the converters on and enables their trigger from TIM1. Call this function well before an update, so that
+  /// all three converters are accurate and respond to the same first update.
   void arm();
 
   struct Currents {
@@ -50,17 +50,17 @@ class AnalogInputs {
   Currents take_currents();
 
   /// Starts the conversion of gimbal, supply and reference, which takes 36 us. Call this function once per control
-  /// period. If no more conversions complete, the function sets up converter and stream again.
+  /// period. If conversions no longer complete, the function sets up converter and stream again.
   void start_slow_conversions();
 
-  /// Voltage of the gimbal potentiometers divided by their supply, 0..1.
+  /// Wiper voltages of the gimbal potentiometers relative to their supply, 0..1.
   std::array<float, 3> gimbal_ratio() const;
   float supply_V() const;
-  /// Converter counts, for code in which floats are too expensive.
+  /// Converter counts of the bridge supply, for code in which floats are too slow.
   std::uint16_t supply_counts() const { return slow_[4]; }
   /// Converter counts of the internal reference; 0 before its first measurement.
   std::uint16_t reference_counts() const { return slow_[3]; }
-  /// The manufacturer's reading of this reference at a VDDA of 3.3 V; 65535 if it was erased.
+  /// The manufacturer's reading of the internal reference at a VDDA of 3.3 V; 65535 if this reading was erased.
   static std::uint16_t calibrated_reference_counts();
   /// Control periods without a new measurement of gimbal and supply; 0 or 1 in normal operation.
   std::uint32_t slow_age_periods() const { return slow_age_periods_; }
@@ -69,10 +69,11 @@ class AnalogInputs {
   void stop_slow();
   void set_up_slow();
 
-  /// Gimbal, internal reference, supply. Written by the DMA controller, which reaches only the main RAM.
+  /// Readings of gimbal, internal reference and supply. The DMA controller writes these readings and can access only
+  /// the main RAM.
   std::array<volatile std::uint16_t, 5> slow_{};
   std::uint32_t slow_age_periods_ = 0;
-  bool slow_stopped_ = true;  ///< to be set up in the next period, at start-up or after an error
+  bool slow_stopped_ = true;  ///< stopped, at start-up or after an error; set up in the next period
 };
 
 }  // namespace inkwell::drivers

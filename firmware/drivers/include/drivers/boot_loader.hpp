@@ -1,4 +1,4 @@
-// Boot loader in the chip's system memory (AN2606). USB DFU is one of its interfaces for writing the flash.
+// Boot loader in the chip's system memory (AN2606), which can write the flash through USB DFU and other interfaces.
 #pragma once
 
 namespace inkwell::drivers {
@@ -9,7 +9,7 @@ namespace inkwell::drivers {
 /// Whether the previous run stopped with start_boot_loader(). Only the first call returns true.
 bool take_boot_loader_wish();
 
-/// For start-up, while clocks and peripherals are in their reset state.
+/// Enters the boot loader. Call this function during start-up, while clocks and peripherals are in their reset state.
 extern "C" [[noreturn]] void enter_boot_loader();
 
 }  // namespace inkwell::drivers

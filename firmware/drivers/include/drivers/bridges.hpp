@@ -1,4 +1,4 @@
-// The three motor bridges: TIM1 drives legs A, TIM8 legs B, synchronized and center-aligned.
+// The three motor bridges. TIM1 drives legs A and TIM8 drives legs B, synchronized and center-aligned.
 //
 // Counter and events of both timers in one control period (three PWM periods):
 //
@@ -8,7 +8,7 @@
 //       |                 |
 //       update            update: preloaded compare values of all six legs become active, ADCs sample
 //
-// The update is at a turning point, in the middle of a zero vector, where the ripple current crosses its mean.
+// The update occurs at a counter reversal, in the middle of a zero vector, when the ripple current crosses its mean.
 #pragma once
 
 #include <array>
@@ -31,13 +31,14 @@ class Bridges {
   /// Sets up both timers and starts them with all outputs off. From then on the update triggers the ADCs.
   void start();
 
-  /// Preloads zero voltage for all motors, which applies if the control interrupt does not finish in time.
+  /// Preloads zero voltage for all motors. The motors get zero voltage if the control interrupt does not finish in
+  /// time.
   void write_neutral();
 
   /// Preloads duty cycles of -1..1, which become active at the next update.
   void write(const std::array<float, 3>& duty);
 
-  /// Preloads all low sides on: the back EMF of a turning motor then brakes it.
+  /// Preloads the brake state, in which all low sides are on and the back EMF brakes the motors.
   void write_brake();
 
   /// Switches the bridges on. The function has no effect while the bridges are on, so that a fault is not cleared by
@@ -50,9 +51,9 @@ class Bridges {
   /// Whether the fault wire is low, or has been low since the bridges were enabled.
   bool fault() const;
 
-  /// Whether the fault wire follows the internal pulls at the pin of TIM1 or TIM8. The wire then reaches neither the
-  /// bridges nor its pull-up. Call this function while the bridges are off. The function disables interrupts for 8 us,
-  /// because an interrupt could read the pull-down as a fault.
+  /// Whether the fault wire follows the internal pull resistors at the pin of TIM1 or TIM8. In this case the pin is
+  /// connected neither to the bridges nor to the external pull-up. Call this function while the bridges are off. The
+  /// function disables interrupts for 8 us, because an interrupt could interpret the low level as a fault.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
   /// Levels of the enable wire, the heartbeat wire, the monostable output and the leg wires at the chip's pins. Other
@@ -64,11 +65,11 @@ class Bridges {
   /// State that the control interrupt has set.
   bool are_on() const { return enabled_; }
 
-  /// Whether an update occurred after the last begin_period(). True at the end of the control interrupt means that the
-  /// interrupt took longer than its period.
+  /// Whether an update occurred after the last begin_period(). If this function returns true at the end of the control
+  /// interrupt, the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   /// Raises the heartbeat if the bridges are on. The bridges may then stay on for `bridge_hold_s`. Returns true if the
-  /// bridges should be on but were switched off: the previous heartbeat came too long ago, or did not reach the
+  /// bridges should be on but were switched off, because the previous heartbeat was too long ago or did not reach the
   /// bridges.
   [[nodiscard]] bool begin_period();
   /// Lowers the heartbeat, so that the next period can raise it.

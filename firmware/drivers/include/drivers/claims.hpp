@@ -4,9 +4,9 @@
 //    public:
 //     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), ...};
 //
-// A driver must claim a peripheral to access its registers and start its clock. A driver must also claim the pins that
-// it sets up and the interrupts that it enables. The application's PartsList does not compile if two drivers claim the
-// same resource.
+// A driver can access the registers of a peripheral and start its clock only if it claims this peripheral. A driver
+// must also claim the pins that it sets up and the interrupts that it enables. The application's PartsList does not
+// compile if two drivers claim the same resource.
 #pragma once
 
 // To add a driver:
@@ -104,7 +104,7 @@ struct Claimed : Behind<Peripheral> {
 /// Registers of a peripheral that the driver claims.
 template <class Driver, class Peripheral>
 using RegistersOf = typename detail::Claimed<Driver, Peripheral, peripheral<Peripheral>()>::Registers;
-/// Registers of the controller of a stream that the driver claims.
+/// DMA controller registers of a stream that the driver claims.
 template <class Driver, class Controller, std::uint32_t number>
 using RegistersOfStream = typename detail::Claimed<Driver, Controller, stream<Controller, number>()>::Registers;
 

@@ -5,15 +5,15 @@
 
 namespace inkwell::drivers {
 
-/// Clock of the processor before start_clocks(), and after a start_clocks() that failed (RM0090, HSI).
+/// Processor clock before start_clocks(), and after start_clocks() has failed (RM0090, HSI).
 inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 
-/// Switches the processor from the internal 16 MHz oscillator to the board's clocks, and the flash accelerator on. The
-/// crystal is supervised from then on: if it stops, the chip raises the non-maskable interrupt. Returns false if the
-/// crystal or the PLL does not start within 0.1 s; the chip then stays at 16 MHz.
+/// Switches the processor from the internal 16 MHz oscillator to the board's clocks and enables the flash accelerator.
+/// If the crystal stops later, the chip raises the non-maskable interrupt. Returns false if the crystal or the PLL does
+/// not start within 0.1 s. In this case the processor clock remains at 16 MHz.
 [[nodiscard]] bool start_clocks();
 
-/// Whether the crystal oscillates. After a start_clocks() that failed, the chip still tries to start the crystal.
+/// Whether the crystal oscillates. After start_clocks() has failed, the chip still tries to start the crystal.
 bool crystal_swings();
 
 }  // namespace inkwell::drivers

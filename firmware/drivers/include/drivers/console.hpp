@@ -1,4 +1,4 @@
-// Some lines of text after each boot, on USART2 at 115200 8N1, for use on the bench before USB works.
+// Console on USART2, at 115200 8N1, for bench use before USB works. The firmware prints a few lines after each boot.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace inkwell::drivers {
 
-/// The console waits about 0.1 ms for each sent character, so only start-up uses it.
+/// The console waits about 0.1 ms for each character, so only start-up code uses the console.
 class Console {
  public:
   static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::facts.console_transmit)};
 
-  /// Call this function again when the clock of the bus has changed.
+  /// Call this function again when the bus clock has changed.
   void start(std::uint32_t bus_Hz);
   void write(std::string_view text);
   void write_hexadecimal(std::uint32_t word);

@@ -1,5 +1,5 @@
-// Cycle counter of the processor (ARMv7-M, DWT). The counter measures the stages of the control interrupt and limits
-// every wait of the drivers.
+// Cycle counter of the processor (ARMv7-M, DWT). The counter is used to measure the stages of the control interrupt,
+// and to limit the waiting times in the drivers.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ template <class Condition>
 [[nodiscard]] bool wait_for(std::uint32_t limit_cycles, Condition condition) {
   const std::uint32_t from = CycleCounter::now();
   while (!condition())
-    if (CycleCounter::now() - from > limit_cycles) return condition();  // an interrupt may have used the time
+    if (CycleCounter::now() - from > limit_cycles) return condition();  // an interrupt may have used up the time
   return true;
 }
 

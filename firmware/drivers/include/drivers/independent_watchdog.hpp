@@ -1,4 +1,4 @@
-// Independent watchdog (RM0090, chapter IWDG): resets the chip unless it is fed.
+// Independent watchdog (RM0090, chapter IWDG), which resets the chip if the firmware stops feeding the watchdog.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ class IndependentWatchdog {
   static constexpr float shortest_timeout_s =
       1e-3f * timeout_ms * static_cast<float>(oscillator_Hz) / static_cast<float>(fastest_oscillator_Hz);
 
-  /// Starts the watchdog, which then cannot be stopped. The watchdog expires after 20 ms, or 14 to 38 ms over the
-  /// spread of its oscillator. The watchdog pauses while a debugger halts the processor. Returns false if the watchdog
-  /// did not accept the timeout, because its oscillator does not run.
+  /// Starts the watchdog, which then cannot be stopped. The nominal timeout is 20 ms. With the tolerance of the
+  /// watchdog oscillator, the timeout is 14 to 38 ms. The watchdog pauses while a debugger halts the processor. Returns
+  /// false if the watchdog did not accept the timeout, because its oscillator does not run.
   bool start();
 
   void feed();

@@ -1,4 +1,4 @@
-// Lines of the interrupt controller, each for one driver (PM0214, chapter NVIC).
+// Lines of the interrupt controller. Each line belongs to one driver (PM0214, chapter NVIC).
 #pragma once
 
 #include <drivers/claims.hpp>
@@ -6,7 +6,8 @@
 
 namespace inkwell::drivers {
 
-/// Disables interrupts during its lifetime: some microseconds, or a sleep that an interrupt ends.
+/// Disables interrupts during the lifetime of this object. The lifetime may be a few microseconds, or a sleep that a
+/// pending interrupt ends.
 class InterruptsHeld {
  public:
   InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }
@@ -16,7 +17,8 @@ class InterruptsHeld {
 };
 
 /// Last statement of every handler. Without this statement, a handler may return while a store is in progress. The
-/// processor may then clear a newly arrived interrupt and run another one instead (erratum 838869 of the Cortex-M4).
+/// processor may then clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the
+/// Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
 /// Handler that runs after all interrupts have been served, before the program continues (PendSV: ARMv7-M, B1.5.6).
@@ -29,7 +31,7 @@ struct CallBehindInterrupts {
   static void ask() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
 };
 
-/// Interrupt line of a driver. No interrupt preempts another one, and faults preempt all of them.
+/// Interrupt line of a driver. No interrupt preempts another interrupt. Faults preempt all interrupts.
 template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {

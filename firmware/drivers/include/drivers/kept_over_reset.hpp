@@ -1,4 +1,4 @@
-// Data from one run for the next run, in memory that start-up does not clear.
+// Stores data for the next run, in memory that start-up does not clear.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class KeptOverReset {
   }
 
  private:
-  /// The check value changes if any single bit changes, and if words are exchanged.
+  /// The check value changes if a single bit changes or if words are exchanged.
   static std::uint32_t check_of(const Facts& facts) {
     std::uint32_t check = 0x696E6B77;
     for (std::size_t i = 0; i < sizeof facts; i += sizeof(std::uint32_t)) {

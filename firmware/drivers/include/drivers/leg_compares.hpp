@@ -14,9 +14,9 @@ struct LegCompares {
   bool operator==(const LegCompares&) const = default;
 };
 
-/// The duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The motor voltage depends on the difference of the
-/// legs, so the difference is rounded: it has steps of 1 / pwm_top. The duty cycle is limited to the board's limit. A
-/// value that is not a number results in zero voltage.
+/// For a duty cycle u, the duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The motor voltage depends on the
+/// difference of the leg compares, so this difference is rounded, with steps of 1 / pwm_top. The duty cycle is limited
+/// to the board's limit. A duty cycle that is not a number results in zero voltage.
 constexpr LegCompares leg_compares(float duty) {
   constexpr float limit = board::duty_limit;
   const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;
@@ -28,7 +28,7 @@ constexpr LegCompares leg_compares(float duty) {
 }
 
 inline constexpr LegCompares neutral_legs = leg_compares(0.0f);
-inline constexpr LegCompares low_legs{0, 0};  ///< both low sides are on throughout
+inline constexpr LegCompares low_legs{0, 0};  ///< both low sides are on during the whole period
 
 static_assert(neutral_legs == LegCompares{board::pwm_top / 2, board::pwm_top / 2});
 static_assert(leg_compares(0.5f) == LegCompares{board::pwm_top * 3 / 4, board::pwm_top / 4});

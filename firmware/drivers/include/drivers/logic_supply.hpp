@@ -21,19 +21,19 @@ class LogicSupply {
     PWR::CR::modify(PWR::CR::PLS(falls_at_2_92_V), PWR::CR::PVDE(1));
   }
 
-  /// Enables the interrupt for a supply that falls too low.
+  /// Enables the interrupt that occurs when the supply becomes too low.
   static void arm() {
     Lines::RTSR::write(detector);  // the detector output is high while the supply is low
     Lines::IMR::write(detector);
     InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
-  /// Whether the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The sensor references fall
-  /// with the supply.
+  /// Whether the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The reference voltages of
+  /// the sensors fall with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// Call this function in the interrupt. Returns false if the supply is no longer low, as after an edge of a newly
-  /// enabled detector.
+  /// Call this function in the interrupt. Returns false if the supply is no longer low, for example after an edge that
+  /// the start of the detector caused.
   INKWELL_INTERRUPT static bool has_fallen() {
     Lines::PR::write(detector);
     return is_low();

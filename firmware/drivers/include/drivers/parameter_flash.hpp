@@ -1,6 +1,7 @@
-// Erases and programs the flash sectors for parameters. Each fetch and each read of the flash waits during this time,
-// including fetches of this code. Programming stops the main loop for 16 us per word, or 100 us on the slowest chip.
-// Erasing stops it for 0.25 s per sector, or 0.5 s on the slowest chip. Interrupts run from RAM and continue.
+// Erases and programs the flash sectors for parameters. During programming and erasing, every fetch and every read of
+// the flash waits, including fetches of this code. Programming stops the main loop for 16 us per word, or 100 us on the
+// slowest chip. Erasing stops the main loop for 0.25 s per sector, or 0.5 s on the slowest chip. Interrupts run from
+// RAM and continue.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ class ParameterFlash {
 
   /// Programs an erased word. Returns false if the word does not read as `value` afterwards.
   [[nodiscard]] bool program(volatile std::uint32_t* place, std::uint32_t value);
-  /// Erases the sector of 16 KB that starts at `begin`.
+  /// Erases the 16 KB sector that starts at `begin`.
   void erase(const volatile std::uint32_t* begin);
 };
 

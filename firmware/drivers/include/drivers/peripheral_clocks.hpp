@@ -1,4 +1,4 @@
-// Peripheral clocks (RM0090, RCC): a peripheral does nothing before its driver has started its clock.
+// Peripheral clocks (RM0090, RCC). A peripheral is inactive until its driver starts the peripheral clock.
 #pragma once
 
 #include <drivers/claims.hpp>
@@ -33,7 +33,7 @@ template <class Peripheral>
 void start_clock() {
   using Enable = typename ClockOf<Peripheral>::Enable;
   Enable::Owner::modify(Enable(1));
-  // Erratum "Delay after an RCC peripheral clock enabling": read back before the first access.
+  // The read delays the first access (erratum "Delay after an RCC peripheral clock enabling").
   static_cast<void>(Enable::Owner::read());
 }
 
@@ -46,7 +46,7 @@ void start_clocks_of() {
   (detail::start_clock<Peripherals>(), ...);
 }
 
-/// Starts the clock of the controller of a stream that the driver claims.
+/// Starts the DMA controller clock for a stream that the driver claims.
 template <class Driver, class Controller, std::uint32_t number>
 void start_clock_of_stream() {
   require_claim<Driver, stream<Controller, number>()>();

@@ -36,7 +36,7 @@ struct Port<'C'> {
 template <board::Pin pin>
 using Registers = typename Port<pin.port>::Registers;
 
-/// Field of a pin in a register that has one field of `width` bits for each pin.
+/// Field of one pin in a register that has a field of `width` bits for each pin.
 template <class Register, board::Pin pin, unsigned width>
 using PinField = registers::Field<Register, pin.number % (32 / width) * width, width>;
 
@@ -51,11 +51,11 @@ void configure(Mode mode, Pull pull, Speed speed) {
 
 }  // namespace detail
 
-/// Enables the port clocks. Call this function before anything else in this file.
+/// Enables the port clocks. Call this function before all other functions in this file.
 inline void start_pins() {
   using Enable = registers::RCC::AHB1ENR;
   Enable::modify(Enable::GPIOAEN(1), Enable::GPIOBEN(1), Enable::GPIOCEN(1));
-  // Erratum "Delay after an RCC peripheral clock enabling": read back before the first access.
+  // The read delays the first access (erratum "Delay after an RCC peripheral clock enabling").
   static_cast<void>(Enable::read());
 }
 
@@ -67,14 +67,14 @@ void connect(Pull pull, Speed speed) {
   detail::configure<Driver, wiring.pin>(detail::Mode::alternate, pull, speed);
 }
 
-/// Disconnects a pin from its digital circuits, for an ADC.
+/// Disconnects an ADC input pin from the digital circuits of the port.
 template <class Driver, board::AnalogInput input>
 void connect_analog() {
   detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
 }
 
-/// Whether the level of a pin with a pull-up follows its internal pulls, so that nothing else drives the pin. A pull of
-/// about 40 kOhm has `settle_cycles` to charge the capacitance at the pin.
+/// Whether the level of a pin with a pull-up follows its internal pull resistors. In this case no circuit drives the
+/// pin. A pull resistor of about 40 kOhm charges the capacitance at the pin within `settle_cycles`.
 template <class Driver, board::Pin number>
 bool follows_pulls(std::uint32_t settle_cycles) {
   require_claim<Driver, pin(number)>();
@@ -99,7 +99,7 @@ struct DigitalInput {
 
 template <class Driver, board::Pin pin>
 struct DigitalOutput {
-  /// The pin is low from its first moment as an output.
+  /// The level is set first, so that the pin is low as soon as it is an output.
   static void start() {
     set_low();
     detail::configure<Driver, pin>(detail::Mode::output, Pull::none, Speed::low);

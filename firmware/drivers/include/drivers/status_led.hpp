@@ -8,7 +8,7 @@
 namespace inkwell::drivers {
 
 enum class LedPattern : std::uint8_t {
-  slow_blink,  ///< once per second: waits for the inkwell
+  slow_blink,  ///< once per second: waits for the stylus in the inkwell
   steady,      ///< pose is valid
   fast_blink,  ///< five times per second: fault
 };

@@ -1,11 +1,11 @@
-// Buttons and inkwell switch: contacts to ground, with pull-ups in the chip.
+// Buttons and inkwell switch, which are contacts to ground with pull-ups in the chip.
 #pragma once
 
 #include <drivers/pins.hpp>
 
 namespace inkwell::drivers {
 
-/// True is closed. The contacts bounce, so a caller that polls them must debounce them.
+/// A closed contact is true. The contacts bounce, so the caller must debounce them.
 struct SwitchContacts {
   bool button_1;
   bool button_2;

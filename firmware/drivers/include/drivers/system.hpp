@@ -1,4 +1,4 @@
-// Functions of the chip as a whole: reset and its cause, sleep, identity.
+// Chip functions: reset, reset cause, sleep, identity.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@ namespace inkwell::drivers {
 struct ResetCause {
   std::uint32_t flags;
   bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
-  /// The supply fell below its brown-out level and rose again. Power-on sets this flag too.
+  /// Whether the supply fell below its brown-out level and rose again. Power-on also sets this flag, so power-on is
+  /// excluded.
   bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 
-/// Reads the cause of the last reset and clears it, so that the next cause is reported alone.
+/// Reads and clears the flags of the last reset, so that the next reset is reported alone.
 inline ResetCause take_reset_cause() {
   const ResetCause cause{registers::RCC::CSR::read()};
   registers::RCC::CSR::modify(registers::RCC::CSR::RMVF(1));
@@ -50,8 +51,9 @@ inline std::array<char, 24> unique_identifier() {
   return digits;
 }
 
-/// Sleeps until an interrupt has been served, unless there is work already. Interrupts are disabled during the check,
-/// and a pending interrupt ends the sleep immediately. An interrupt between check and sleep therefore cannot be missed.
+/// Sleeps until an interrupt has been served. Returns without a sleep if work is already pending. Interrupts are
+/// disabled during the check, and a pending interrupt ends the sleep immediately. An interrupt between check and sleep
+/// therefore cannot be missed.
 template <class Question>
 void sleep_unless(Question is_something_to_do) {
   const InterruptsHeld held;

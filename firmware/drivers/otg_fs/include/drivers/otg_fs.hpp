@@ -1,12 +1,13 @@
-// The OTG_FS core in device mode as the port of the USB device (RM0090, chapter OTG_FS).
+// USB device port that uses the OTG_FS core in device mode (RM0090, chapter OTG_FS).
 //
 //   drivers::OtgFs port;
 //   usb::Device device{port, link, identity};
 //   port.start();
 //   for (;;) { device.poll(); ... }
 //
-// All work is done in poll(), and the core has no interrupt. The control interrupt wakes the main loop every 50 us, the
-// time of a packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 % of the time.
+// All work is done in poll(), and the driver uses no USB interrupt. The control interrupt wakes the main loop every 50
+// us, the duration of one packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 %
+// of the time.
 #pragma once
 
 #include <array>
@@ -35,8 +36,8 @@ class OtgFs final : public usb::Port {
   /// `frames` is the initial count of bus frames.
   constexpr explicit OtgFs(std::uint32_t frames = 0) : frame_clock_(frames) {}
 
-  /// Sets up pins, clock and core, which takes 26 ms. Later next_event() connects the pull-up of D+ while the cable
-  /// supplies VBUS. The 48 MHz clock must already run (clocks.hpp). Returns false if the core does not answer.
+  /// Sets up pins, clock and core, which takes 26 ms. After start(), next_event() connects the D+ pull-up while the
+  /// cable supplies VBUS. The 48 MHz clock must already run (clocks.hpp). Returns false if the core does not answer.
   [[nodiscard]] bool start();
 
   bool next_event(usb::Event& event) override;
@@ -55,7 +56,7 @@ class OtgFs final : public usb::Port {
   static constexpr unsigned out_endpoints = 2;  ///< 0 control, 1 HID
 
   struct InTransfer {
-    std::span<const std::byte> remaining{};  ///< not yet in the FIFO
+    std::span<const std::byte> remaining{};  ///< bytes that are not yet in the FIFO
     bool running = false;
   };
   struct OutPacket {
@@ -71,12 +72,12 @@ class OtgFs final : public usb::Port {
   void pass_on_setup(usb::Event& event);
   bool next_suspend_or_resume(usb::Event& event);
   void answer_control();
-  /// Returns false while a SETUP packet makes the answer stale, or may make it stale.
+  /// Returns false if a SETUP packet has made, or may have made, the answer stale.
   bool arm_control();
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
-  /// Returns false if no transfer was running, or if the host has received it.
+  /// Returns false if no transfer was in progress or if the host has received the whole transfer.
   bool stop_in(unsigned endpoint);
   void empty_receive_fifo();
 
@@ -87,8 +88,9 @@ class OtgFs final : public usb::Port {
   bool control_send_waits_ = false;
   bool control_receive_waits_ = false;
   bool control_stall_waits_ = false;
-  bool setup_waits_ = false;         ///< `setup_` has been read, but the end of its stage has not
-  bool setup_done_is_lost_ = false;  ///< lost because NAK was cleared just after the SETUP packet arrived
+  bool setup_waits_ = false;  ///< `setup_` has been read, but not the end of the SETUP stage
+  /// The setup-done word is lost, because NAK was cleared directly after the SETUP packet had arrived.
+  bool setup_done_is_lost_ = false;
   bool pulled_up_ = false;
   bool suspended_ = false;
 };
