@@ -37,18 +37,19 @@ std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
 
 bool is_sound(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
 
-/// First number of the rows from the fault on. Rows before the fault have smaller numbers.
+/// Number of the first row from the fault on. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
 
 /// Returns the number of the next row before the fault. After 24 days without a fault the number decreases by a
-/// multiple of the ring size, so that each row keeps its slot. A reset within the next 100 ms loses the rows before the
-/// decrease.
+/// multiple of the ring size, so that each row keeps its slot. If a reset occurs within 100 ms after the decrease, the
+/// rows before the decrease are lost.
 std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
   const auto size = static_cast<std::uint32_t>(ring_size);
   return number + 1 < first_number_from_fault - size ? number + 1 : size + (number + 1) % size;
 }
 
-/// Compiler barrier. If a reset interrupts the writes, later writes are not in memory without the earlier ones.
+/// Compiler barrier. If a reset interrupts a sequence of writes, no later write is in memory without the earlier
+/// writes.
 void in_this_order() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
 void write(BlackBoxPlace& place, std::uint32_t number, const Sample& sample) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t erased = 0xFFFF'FFFF;
 constexpr std::uint32_t sector_magic = 0x5357'4B49, record_magic = 0x5257'4B49;  // "IKWS", "IKWR"
 constexpr std::size_t sector_head_words = 5;
-/// Space reserved in each sector for erase records. Each start whose erase is interrupted uses one.
+/// Space reserved in each sector for erase records. Each interrupted erase uses one erase record.
 constexpr std::size_t words_for_notes = 8 * record_words(1);
 
 /// CRC-32 of IEEE 802.3, without the final inversion.

@@ -50,7 +50,7 @@ Limits limits(std::size_t index) {
   return {id_of(index), false, false, range.minimum, range.maximum};
 }
 
-/// Binary search, because the ids of the table rise.
+/// Uses binary search, because the table is sorted by id.
 std::optional<std::size_t> find(std::uint16_t id) {
   if (id >= protocol::force_law_first_id) {
     const std::size_t index = parameter_count + id - protocol::force_law_first_id;

@@ -11,7 +11,7 @@ bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
-// A new set does not replace a damaged one, because that would hide the damage from the background watch.
+// A new set does not replace a damaged set, because the replacement would hide the damage from the background watch.
 control::Settings* ParameterStore::place_of_next() { return values_.is_intact() ? settings_.next() : nullptr; }
 
 void ParameterStore::offer(control::Settings& place, const protocol::ParameterSet& set) {

@@ -136,7 +136,8 @@ bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of
     return false;
   }
   const std::uint32_t sequence = word_at(report, offsetof(protocol::ForceReport, sequence));
-  // Another program starts with another sequence. Only a gap in a continued sequence counts as lost.
+  // Another program starts with another sequence number. A gap above this bound is therefore not counted as lost
+  // reports.
   constexpr std::uint32_t longest_gap = 1000;
   if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)
     forces_lost_ += sequence - *newest_sequence_ - 1;

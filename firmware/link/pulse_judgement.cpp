@@ -19,7 +19,7 @@ struct Expected {
   float dead_V;
 };
 
-/// Resistance from the pulses of one sign. The result is limited to the largest reported resistance.
+/// Resistance from the pulses of one current sign. The result is limited to the largest reported resistance.
 float resistance_ohm(const PulseRound::Motor& motor, float low_A, float high_A, float shown_maximum_ohm) {
   const float step_V = motor.high_V - motor.low_V;
   const float step_A = high_A - low_A;
@@ -55,7 +55,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
     return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
   // Voltage loss extrapolated to zero current. A back EMF raises the current of one sign and lowers the current of the
-  // other, so it cancels out.
+  // other sign, so its effect cancels out.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
   const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&
@@ -65,7 +65,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
           is_kept ? 0.5f * (forward_ohm + backward_ohm) : 0.0f};
 }
 
-/// Evaluates the pulses of one motor in the sensors of the other motors.
+/// Evaluates the currents that the pulses of one motor cause in the sensors of the other motors.
 Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
   if (!motor.takes_part) return {Result::no_part};
   float foreign_A = 0.0f;

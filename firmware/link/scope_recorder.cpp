@@ -16,8 +16,8 @@ std::int16_t to_steps(float value, float steps_per_unit) {
   return static_cast<std::int16_t>(static_cast<std::int32_t>(steps + 32768.5f) - 32768);
 }
 
-/// Initial value of `previous_` in each frame. It differs from every signal: a signaling NaN is not the result of any
-/// computation, and it is not a sign-extended 16-bit integer.
+/// Initial value of `previous_` in each frame. This value differs from every signal. It is a signaling NaN, which no
+/// computation returns, and is not a sign-extended 16-bit integer.
 constexpr std::uint32_t bits_of_no_value = 0x7F80'0001;
 
 template <class Value>
@@ -76,7 +76,7 @@ void ScopeRecorder::release() {
   shown_.reset();
 }
 
-/// Periods of a frame are consecutive. Skipped samples therefore end the current frame.
+/// The periods of a frame are consecutive. If samples are skipped, the current frame is therefore finished.
 void ScopeRecorder::skip_overwritten(std::uint32_t recorded) {
   if (sample_count_ != 0) finish_frame();
   samples_dropped_ += recorded - SampleRing::readable - packed_;
@@ -96,8 +96,8 @@ void ScopeRecorder::pack_oldest() {
     finish_frame();
 }
 
-// Both functions process the plan run by run. The loop over floats, which takes most of the recording time, then has no
-// branch for the encoding.
+// Both write functions process the plan run by run. The loop over floats, which needs most of the recording time, then
+// has no branch for the encoding.
 
 void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;

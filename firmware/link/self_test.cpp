@@ -13,7 +13,7 @@ constexpr Item looked_at_wires[] = {Item::encoder_1_a,       Item::encoder_1_b, 
                                     Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
                                     Item::bridge_fault_tim1, Item::bridge_fault_tim8};
 
-/// First item that every self-test repeats. Items before it are tested only at start-up.
+/// First item that every self-test repeats. Earlier items are tested only at start-up.
 constexpr Item first_of_each_test = Item::current_offsets;
 
 constexpr std::uint32_t orders = 4;
@@ -67,7 +67,7 @@ void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) 
   phase_ = Phase::wires;
 }
 
-/// Measures the sensor offsets. The samples are relative to the offsets at start-up, so these are added again.
+/// Measures the sensor offsets. The samples are relative to the offsets at start-up, so the start-up offsets are added.
 void SelfTest::note_offsets() {
   const std::uint32_t recorded = samples_.recorded();
   float largest_A = 0.0f;

@@ -16,7 +16,7 @@ using protocol::StoreResult;
 
 namespace {
 
-/// The name of the force law follows the header of its report.
+/// In the force law report, the name of the force law follows the header.
 std::uint32_t own_force_law_hash() {
   const auto* name =
       reinterpret_cast<const char*>(control::installed_force_law.report) + sizeof(protocol::ForceLawReport);
@@ -114,8 +114,8 @@ void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std:
   if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
 }
 
-// The flash then has either an incomplete record, which is ignored, or a factory reset, which the next start carries
-// out.
+// The flash then contains either an incomplete record, which is ignored, or a factory reset, which the next start
+// executes.
 void StoredParameters::give_up() {
   wanted_ = Wanted::nothing;
   is_writing_ = is_resetting_ = false;

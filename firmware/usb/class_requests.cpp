@@ -62,7 +62,7 @@ Answer Device::hid_request(const SetupPacket& setup) {
       return is_accepted ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
-      idle_rates_[setup.index] = setup.value_high();  // not used: every report is new, so there is no idle time
+      idle_rates_[setup.index] = setup.value_high();  // stored but not used, because every report contains new data
       return Answer::done();
     }
   }
@@ -165,8 +165,8 @@ bool Device::may_store() const {
 }
 
 // DFU 1.1, section 5.1 and appendix A.2. The state changes from idle to detaching after the status stage. A detach
-// request while the hand feels a force has no effect, because it would remove the force without the user's consent. Its
-// status stage still succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
+// request while the force is on is refused, because it would remove the force without the user's consent. The status
+// stage of a refused request succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
   constexpr std::byte no_error{0}, vendor_error{0x0B};

@@ -24,7 +24,7 @@ void ControlEndpoint::setup(std::span<const std::byte> packet) {
     case Answer::Kind::stall: stall(); break;
     case Answer::Kind::done: send_status(); break;
     case Answer::Kind::send:
-      // Without a data stage the status stage is IN, for either direction bit.
+      // If there is no data stage, the status stage is IN, independent of the direction bit.
       if (setup_.length == 0)
         send_status();
       else
@@ -68,8 +68,8 @@ void ControlEndpoint::sent() {
 
 void ControlEndpoint::begin_data_in(const Answer& answer) {
   const std::size_t size = std::min<std::size_t>(std::max(answer.data.size(), answer.padded_size), setup_.length);
-  // A short packet ends a transfer that is shorter than wLength. It is empty if the length is a multiple of 64 (USB
-  // 2.0, section 8.5.3.2).
+  // A short packet ends a transfer that is shorter than wLength. The short packet is empty if the length is a multiple
+  // of 64 (USB 2.0, section 8.5.3.2).
   end_with_empty_packet_ = size < setup_.length && size % packet_size_maximum == 0;
   remaining_ = answer.data.first(std::min(answer.data.size(), size));
   zeros_ = size - remaining_.size();

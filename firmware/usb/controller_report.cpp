@@ -4,7 +4,7 @@ namespace inkwell::usb {
 
 namespace {
 
-/// Rounds to the nearest step and limits to the range. NaN becomes the upper limit.
+/// Rounds to the nearest step and limits the result to the range. NaN becomes the upper limit.
 std::int16_t steps(float value, float per_unit) {
   const float wanted = value * per_unit;
   const float bounded = wanted < protocol::controller_steps_maximum ? wanted : protocol::controller_steps_maximum;

@@ -48,7 +48,7 @@ constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8
 
 // ---- HID report descriptor (HID 1.11, section 6.2.2) -----------------------------------------------
 //
-// Every report is an array of bytes on a vendor usage page. protocol/reports.hpp defines their meaning.
+// Every report is an array of bytes on a vendor usage page. protocol/reports.hpp defines the meaning of the bytes.
 
 constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
 constexpr std::uint8_t data_variable_absolute = 0x02;
@@ -120,7 +120,7 @@ constexpr auto controller_report_descriptor = join(
 
 /// Version 2.01 announces a binary object store.
 constexpr std::size_t usb_version = 0x0201;
-/// Position of bcdDevice in the device descriptor. device_descriptor() sets it, because it is the firmware version.
+/// Position of bcdDevice in the device descriptor. device_descriptor() writes the firmware version to this position.
 constexpr std::size_t device_version_at = 12;
 
 constexpr auto device =
@@ -175,7 +175,7 @@ constexpr auto interfaces =
 
 constexpr std::size_t configuration_size = 9 + interfaces.size();
 constexpr std::uint8_t self_powered = 0xC0;
-constexpr std::uint8_t bus_current_2mA = 0;  ///< none, because the board has a separate supply, also for its logic
+constexpr std::uint8_t bus_current_2mA = 0;  ///< 0, because board and logic have a separate supply
 
 constexpr auto configuration =
     join(bytes(9, type(DescriptorType::configuration), low(configuration_size), high(configuration_size),
@@ -220,8 +220,8 @@ constexpr auto microsoft_set = []() {
 
 // ---- Binary object store (USB 2.0 ECN "Link Power Management", USB 3.2 section 9.6.2) ------------------
 
-/// Mandatory for a device of version 2.01. No attribute is set, because the device does not support link power
-/// management.
+/// This capability is mandatory for a device of version 2.01. No attribute is set, because the device does not support
+/// link power management.
 constexpr auto usb_2_0_extension = bytes(7, type(DescriptorType::device_capability), 2, 0, 0, 0, 0);
 
 /// Platform capability with the UUID of the Microsoft OS 2.0 descriptors.

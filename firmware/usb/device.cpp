@@ -12,25 +12,27 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// More events than the bus can produce in 50 us, so that no event is delayed, but bounded.
+/// Bound of the events in one poll. The bus produces fewer events in 50 us, so no event is delayed.
 constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // indices in endpoints_
 
-/// Time to cancel a report on its endpoint and to load a newer report. This time must not contain a control interrupt
-/// or a start of frame. Otherwise the host might poll while no report is loaded.
+/// Time to cancel a report on its endpoint and to load a newer report. Without this time before the next control
+/// interrupt and the next start of frame, the host might poll while no report is loaded.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// Time in which the main loop, which also fills the scope FIFO, finds a new pose and loads it. The lead before the
-/// start of frame is one period, the longest interrupt and this time. A pose of the next period would be too late.
+/// Time in which the main loop detects and loads a new pose, while it also fills the scope FIFO. The final pose is
+/// sampled at most one control period, the longest interrupt and this time before the start of frame. A pose of the
+/// next period would be too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// Additional lead of the spare pose, which the final pose replaces. If the main loop is delayed at that moment, the
-/// host still reads a pose. The longest delay is a transaction of all parameters: 0.3 ms including control interrupts.
+/// Additional lead of the spare pose, which the final pose replaces. If the main loop is delayed before the
+/// replacement, the host reads the spare pose. The longest delay is a transaction of all parameters: 0.3 ms including
+/// control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
-/// Number of consecutive unread reports (0.1 s) after which the host counts as not polling. Its unread reports then do
-/// not count as dropped.
+/// Number of consecutive unread reports (0.1 s) after which the host counts as not polling. Unread reports then do not
+/// count as dropped.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
 
 constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
@@ -105,7 +107,7 @@ void Device::handle(const Event& event) {
 void Device::bus_reset() {
   for (Endpoint& endpoint : endpoints_) endpoint.busy = endpoint.halted = false;
   scope_frame_open_ = scope_wants_end_ = false;
-  configuration_ = 0;  // before host_gone(), because only endpoint 0 is open
+  configuration_ = 0;  // set before host_gone(), because only endpoint 0 is open
   idle_rates_ = {};
   detach_asked_ = detach_was_refused_ = false;
   link_.update_asked.store(false);
@@ -189,8 +191,9 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may poll directly after each start of frame. The pose is therefore loaded once per bus frame, near its end:
-// the first pose whose successor would be too late. A spare pose is loaded earlier, in case the main loop is delayed.
+// The host may poll directly after each start of frame. The pose is therefore loaded once per bus frame, near the end
+// of the frame. The loaded pose is the first pose whose successor would be too late. A spare pose is loaded earlier, in
+// case the main loop is delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
@@ -226,7 +229,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// From the bus frame before the next poll on, the report is replaced in every bus frame. It is then as new as the pose.
+// Starting with the bus frame before the next poll, the controller report is replaced in every bus frame. This report
+// is then as recent as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;

@@ -148,7 +148,7 @@ Answer Device::get_descriptor(const SetupPacket& setup) {
     case DescriptorType::device: return Answer::send(device_descriptor(control_.buffer(), identity_.firmware_version));
     case DescriptorType::configuration: return Answer::send(configuration_descriptor());
     case DescriptorType::binary_object_store: return Answer::send(binary_object_store());
-    default: return Answer::stall();  // including a device qualifier, because the device has no high speed
+    default: return Answer::stall();  // also for a device qualifier, because the device does not support high speed
   }
 }
 

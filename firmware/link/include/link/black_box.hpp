@@ -26,7 +26,7 @@ struct BlackBoxNotes {
   std::uint32_t tables_hash;  ///< hash of the tables that define the rows; with another hash all data is ignored
   Cause cause;                ///< a black box exists if the checksum of this member matches
   /// Number of rows before the fault. Only the newest rows are in the ring. number_after() decreases the number before
-  /// it wraps.
+  /// the number wraps.
   std::uint32_t rows_written;
   std::uint32_t rows_added;  ///< number of rows from the fault on
 };
@@ -43,12 +43,12 @@ struct BlackBoxMemory {
   std::array<BlackBoxPlace, from_fault> line;
 };
 
-/// Main loop only, because the control interrupt has no time for it. The main loop reads the sample ring, records one
-/// sample in twenty, and finds the fault and its period. Rows can be missing if the main loop is late. The periods of
-/// the rows then show the gap.
+/// Only the main loop uses the black box, because the control interrupt has no spare time. The main loop reads the
+/// sample ring, records one sample in twenty, and detects the fault and its period. Rows can be missing if the main
+/// loop is late. The period numbers of the rows then show the gap.
 class BlackBox {
  public:
-  /// Does not read `memory` before start().
+  /// The constructor does not read `memory`.
   template <std::size_t before, std::size_t from_fault>
   BlackBox(const SampleRing& samples, BlackBoxMemory<before, from_fault>& memory)
       : samples_(samples),
@@ -57,16 +57,17 @@ class BlackBox {
         line_(memory.line),
         followed_(samples.recorded()) {}
 
-  /// Reads the rows of the previous run. Call it once, before the control interrupt starts. `raised` is the fault that
-  /// this start will raise for the end of the previous run, or `none`. `crash` is the crash record of that run.
+  /// Reads the rows of the previous run. Call this function once, before the control interrupt starts. `raised` is the
+  /// fault that start-up will raise for the end of the previous run, or `none`. `crash` is the crash record of that
+  /// run.
   void start(protocol::Fault raised, const protocol::CrashFacts& crash);
 
-  /// Records the samples since the last call. Call it in every pass of the main loop.
+  /// Records the samples since the last call. Call this function in every pass of the main loop.
   void follow();
 
   protocol::BlackBoxReport report() const;
-  /// Selects the first row of the next rows() from a BlackBoxRequest. An invalid request changes only the result in
-  /// rows(). Bytes after the request are ignored.
+  /// Selects the first row that rows() returns, according to a BlackBoxRequest. An invalid request changes only the
+  /// request result in rows(). Bytes after the request are ignored.
   void select_rows(std::span<const std::byte> request);
   protocol::BlackBoxRowsReport rows() const;
 

@@ -19,7 +19,7 @@ std::optional<protocol::CommandReport> whole_command(std::span<const std::byte> 
 /// True if command, signals, motor, amplitude and duration are within the protocol's ranges.
 bool is_valid(const protocol::CommandReport& command);
 
-/// Returns the command in an output report if the report is complete and the command valid.
+/// Returns the command in an output report if the report is complete and the command is valid.
 std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
 
 /// Queue from the main loop to the control interrupt, which removes one command per control period.
@@ -32,7 +32,7 @@ class CommandQueue {
   /// True if the queue is not full.
   bool has_room() const { return pushed_.load() - taken_.load() != capacity; }
 
-  /// Queues a decoded command and records a sign of life. Returns false if the queue is full.
+  /// Queues a decoded command and records a sign of life of the host. Returns false if the queue is full.
   [[nodiscard]] bool push(const protocol::CommandReport& command);
 
   /// Records a sign of life without a command.
@@ -43,11 +43,11 @@ class CommandQueue {
   /// True if the interrupt has removed the command after which pushed() returned this number.
   bool was_taken(std::uint32_t pushed) const { return static_cast<std::int32_t>(taken_.load() - pushed) >= 0; }
 
-  /// True if such a command is in the queue.
+  /// True if a command of this kind is in the queue.
   bool waiting(protocol::Command command) const;
 
-  /// Call this when the connection to the host is lost. It discards the queued commands. The next take() returns a stop
-  /// command that the interrupt can distinguish from a stop command of a user.
+  /// Discards the queued commands. Call this function when the connection to the host is lost. The next take() returns
+  /// a stop command that the interrupt can distinguish from a stop command of the host.
   void host_gone();
 
   // ---- control interrupt ----

@@ -12,22 +12,22 @@ namespace inkwell::link {
 /// Claim of at most one program. Main loop only.
 class DriverClaim {
  public:
-  /// Carries out a ClaimReport. Returns true if the report ended the current claim by release or takeover. A report
-  /// that is too short, or has another version, an unknown operation or claim 0, has no effect.
+  /// Executes a ClaimReport. Returns true if the report ended the current claim by release or takeover. A report has no
+  /// effect if it is too short, or if its version, its operation or its claim is invalid.
   bool accept(std::span<const std::byte> report, std::uint32_t now_periods);
 
-  /// True if a request with this claim is permitted: the claim is the driver's, or there is no driver.
+  /// True if a request with this claim is permitted. The claim must belong to the driver, or there must be no driver.
   bool permits(std::uint32_t claim) const { return claim_ == 0 || claim == claim_; }
   void count_refusal() { ++refused_; }
   bool is_held() const { return claim_ != 0; }
-  /// True if the claim is the driver's.
+  /// True if the claim belongs to the driver.
   bool is_held_by(std::uint32_t claim) const { return claim != 0 && claim == claim_; }
 
-  /// Counts the seconds since the program became the driver. Call it at least once per second.
+  /// Counts the seconds since the program became the driver. Call this function at least once per second.
   void pass_time(std::uint32_t now_periods);
   /// Records a sign of life of the driver.
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
-  /// True if the claim has expired. Call it more often than the period counter wraps.
+  /// True if the claim has expired. Call this function at least once before the period counter wraps.
   bool has_expired(std::uint32_t now_periods) const;
   /// Ends the claim. No program drives the arm afterwards.
   void end();

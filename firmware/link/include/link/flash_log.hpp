@@ -1,14 +1,16 @@
-// Log of records in two flash sectors. The newest complete record is the valid one. A power loss during any write or
-// erase leaves either the previous record or the new record valid.
+// Log of records in two flash sectors. The newest complete record is valid. A power loss during any write or erase
+// leaves either the previous record or the new record valid.
 //
 // A sector begins with five words: magic, sequence number, its erase count, the erase count of the other sector, and
-// their CRC. Records follow. A record has a header of seven words (RecordHead), its payload, and the CRC of both. The
-// CRC is written last. A record with a wrong CRC is skipped, and its space is lost until the sector is erased.
+// the CRC of these words. The records follow this sector header. A record consists of a header of seven words
+// (RecordHead), a payload, and the CRC of header and payload. The CRC is written last. A record with a wrong CRC is
+// skipped, and its space is lost until the sector is erased.
 //
-// While the board runs, words are only programmed. New records go to the sector of the newest record. When this sector
-// is full, they go to the other sector if it is erased. Only start() erases, and at most one sector: the next sector to
-// be written, if it has other content. Before the erase, start() writes an erase record to the other sector. An
-// interrupted erase is therefore repeated and counted, even if the sector already reads as erased.
+// After start-up, words are programmed but no sector is erased. New records are written to the sector of the newest
+// record. When this sector is full, new records are written to the other sector if that sector is erased. Only start()
+// erases a sector: the sector that will be written next, if it is not empty. Before the erase, start() writes an erase
+// record to the other sector. An interrupted erase is therefore repeated and counted, even if the sector already reads
+// as erased.
 #pragma once
 
 #include <array>
@@ -21,7 +23,7 @@
 
 namespace inkwell::link {
 
-/// The two sectors.
+/// Memory of the log: two flash sectors.
 class FlashMemory {
  public:
   virtual std::span<const std::uint32_t> sector(std::size_t number) const = 0;
@@ -40,7 +42,7 @@ struct RecordHead {
   std::uint32_t magic;
   std::uint16_t schema;
   std::uint16_t kind;     ///< RecordKind
-  std::uint32_t number;   ///< increases by one per record over the life of the board
+  std::uint32_t number;   ///< record number, counted over the life of the board
   std::uint32_t payload;  ///< in words
   std::uint32_t firmware_version;
   std::uint32_t parameter_table_hash;
@@ -59,7 +61,7 @@ class FlashLog {
   };
   enum class Progress : std::uint8_t { under_way, done, failed };
 
-  /// Reads both sectors. Erases one sector if the next record may need it and it has other content.
+  /// Reads both sectors. Erases one sector if the next record may need this sector and the sector is not empty.
   void start(FlashMemory& memory);
 
   /// Returns the newest complete record that is not an erase record.
@@ -67,7 +69,7 @@ class FlashLog {
   /// Number of records over the life of the board.
   std::uint32_t records_written() const { return last_number_; }
   const std::array<std::uint32_t, protocol::store_sectors>& erases() const { return erases_; }
-  /// Returns the number of records of this payload that fit without an erase.
+  /// Returns the number of records with this payload that can be written without an erase.
   std::size_t room(std::size_t payload) const;
 
   /// Starts writing a record. `head` needs all members except magic, number and payload. Returns false if there is no
@@ -80,7 +82,7 @@ class FlashLog {
   struct Sector {
     bool is_begun = false;  ///< the sector header is valid
     std::uint32_t order = 0;
-    std::size_t end = 0;  ///< first word after which all words are erased
+    std::size_t end = 0;  ///< index of the first word from which on all words are erased
   };
 
   void scan(std::size_t number);

@@ -9,7 +9,8 @@
 
 namespace inkwell::link {
 
-/// Returns a checksum. It is different for values that differ in one bit, and for most others.
+/// Returns a checksum. Values that differ in one bit have different checksums, and most other values also have
+/// different checksums.
 template <class T>
 std::uint32_t sum_of(const T& value) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof value % sizeof(std::uint32_t) == 0);
@@ -23,7 +24,7 @@ std::uint32_t sum_of(const T& value) {
   return sum;
 }
 
-/// A value with its checksum. A copy keeps the checksum, so a damaged value remains detectable.
+/// A value with its checksum. A copy has the same checksum, so a damaged value remains detectable.
 template <class T>
 class Guarded {
  public:

@@ -20,14 +20,14 @@ class Handover {
 
   /// Returns the slot for the next value, or null while the interrupt has not accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &places_[used_ ^ 1u]; }
-  /// True if a value has been offered and not accepted. Otherwise used() does not change.
+  /// True if a value has been offered but not yet accepted. While this function returns false, used() does not change.
   bool is_offered() const { return offered_.load(); }
   /// Offers the value in next() to the interrupt.
   void offer() { offered_.store(true); }
 
   // ---- control interrupt ----
 
-  /// Swaps the slots if a value was offered. Returns true if it swapped.
+  /// Swaps the slots if a value was offered. Returns true if the slots were swapped.
   bool take() {
     if (!offered_.load()) return false;
     used_ ^= 1u;

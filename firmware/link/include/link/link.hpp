@@ -1,6 +1,7 @@
 // Data exchange between the main loop and the control interrupt.
 //
-// Each part has one producer and one consumer and never blocks the interrupt. In a control period:
+// Each member has one producer and one consumer and never blocks the interrupt. The interrupt makes these calls in each
+// control period:
 //
 //   if (link.parameters.take(periods)) controller.settings_changed()
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
@@ -16,8 +17,8 @@
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
-// The size is about 13 KB, mostly for the samples. The object is in the core-coupled memory. Scope frames and black-box
-// rows are accessed only by the main loop and are in other memory.
+// The link has about 13 KB, mostly samples, and is in the core-coupled memory. Only the main loop accesses scope frames
+// and black-box rows, so they are in other memory.
 #pragma once
 
 #include <cstdint>

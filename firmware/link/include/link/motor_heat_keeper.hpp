@@ -10,17 +10,17 @@
 namespace inkwell::link {
 
 /// The object is in memory that start-up does not clear, so it has no constructor. The content of this memory is
-/// undefined after power-on. A restart may also interrupt a write at any word. Of the two slots, one is always
-/// complete.
+/// undefined after power-on. A restart may also interrupt a write at any word, so two slots are written alternately.
+/// One of the slots is always complete.
 class MotorHeatKeeper {
  public:
   /// Largest stored heat.
   static constexpr float most = 4.0f;
 
-  /// Returns the last heat of the previous run. Call it before anything else. After power-on, or without a valid slot,
-  /// it returns nothing.
+  /// Returns the last motor heat of the previous run. Returns nothing after power-on, or if no slot is valid. Call this
+  /// function before all other functions of this class.
   std::optional<control::Warmth> start(bool power_has_come);
-  /// Stores the heat in the older slot.
+  /// Stores the motor heat in the older slot.
   void leave(const control::Warmth& warmth);
 
  private:

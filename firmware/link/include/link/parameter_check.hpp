@@ -24,7 +24,7 @@ class StoredSet {
  public:
   StoredSet() : set_(image_defaults()) {}
   void put(std::size_t index, float value);
-  /// Call this after the last put(). If two bounds contradict each other, both are replaced by their defaults.
+  /// Replaces two bounds by their defaults if they contradict each other. Call this function after the last put().
   void make_consistent();
   /// Number of values replaced by their default.
   std::uint16_t refused() const { return refused_; }
@@ -56,10 +56,10 @@ struct ParameterCheck {
   protocol::ParameterSet set{};
 };
 
-/// Applies a ParametersReport to `current` and checks the result as a whole.
+/// Applies a ParametersReport to `current` and checks the resulting parameter set as a whole.
 ///
 /// `report` starts at the report id. Bytes after the last entry are ignored, because Windows pads feature reports.
-/// While the force is on, a change of a parameter in the group "arm" is refused. `stored` is the set for
+/// While the force is on, a change of a parameter in the group "arm" is refused. `stored` is the parameter set for
 /// restore_stored, or null.
 ParameterCheck check_transaction(std::span<const std::byte> report, const protocol::ParameterSet& current,
                                  bool force_is_on, const protocol::ParameterSet* stored = nullptr);

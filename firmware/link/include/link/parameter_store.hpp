@@ -1,5 +1,5 @@
-// The parameters. The main loop checks and prepares them. The control interrupt accepts them as a whole at the start of
-// a control period.
+// Parameter sets. The main loop checks and prepares a parameter set. The control interrupt accepts the set as a whole
+// at the start of a control period.
 #pragma once
 
 #include <cstddef>
@@ -15,37 +15,38 @@
 
 namespace inkwell::link {
 
-/// Writes a set of parameters to a ParametersReport. Returns the used bytes of the report.
+/// Writes a set of parameters to a ParametersReport. Returns the number of used bytes in the report.
 std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
                      protocol::ParametersReport& report);
 
-/// Stores the parameters, and hands the settings computed from them over to the interrupt.
+/// Stores the parameters and passes the settings, which are computed from the parameters, to the interrupt.
 class ParameterStore {
  public:
-  /// Starts with the defaults of the table and of the force law.
+  /// Sets the parameters to the defaults of the parameter table and of the force law.
   ParameterStore();
 
-  /// Replaces the defaults by a valid set. Call it before the control interrupt starts.
+  /// Replaces the defaults by a valid set. Call this function before the control interrupt starts.
   void start_with(const protocol::ParameterSet& set);
 
   // ---- main loop ----
 
-  /// Checks a ParametersReport and, if it is valid, offers its settings to the interrupt. A refused report changes only
-  /// result(). `stored` is the set for restore_stored, or null.
+  /// Checks a ParametersReport. If the report is valid, offers its settings to the interrupt. A refused report changes
+  /// only result(). `stored` is the parameter set for restore_stored, or null.
   ///
-  /// Returns `busy` while the interrupt has not accepted the previous transaction. Returns `busy` for every report if a
-  /// bit of a parameter set has flipped. The background watch reports this fault.
+  /// Returns `busy` while the interrupt has not accepted the previous transaction. Also returns `busy` for every report
+  /// if a bit of a parameter set has flipped, which the background watch reports as a fault.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
   /// Refuses a ParametersReport from a program that is not the driver.
   void refuse(std::span<const std::byte> report);
 
-  /// Restores the defaults without a transaction. The force must be off. Returns false without any effect in the cases
-  /// in which accept() returns `busy`.
+  /// Restores the defaults without a transaction. The force must be off. If accept() would return `busy`, returns false
+  /// and has no effect.
   [[nodiscard]] bool restore_defaults();
 
-  /// Writes all parameters of the table, followed by those of the force law. Returns the used bytes of the report.
+  /// Writes all parameters of the table, followed by the parameters of the force law. Returns the number of used bytes
+  /// in the report.
   std::size_t read(protocol::ParametersReport& report) const;
 
   /// Result of the last transaction.
@@ -63,7 +64,8 @@ class ParameterStore {
 
   // ---- control interrupt ----
 
-  /// Applies an offered transaction and returns true if there was one. Call it once at the start of a control period.
+  /// Applies a transaction if one is offered. Returns true if a transaction was applied. Call this function once at the
+  /// start of a control period.
   bool take(std::uint32_t periods) {
     const bool changed = settings_.take();
     if (changed) applied_at_periods_.store(periods);

@@ -1,4 +1,4 @@
-// The newest pose, passed from the control interrupt to the main loop.
+// Passes the newest pose from the control interrupt to the main loop.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class PoseRecorder {
 
   // ---- control interrupt ----
 
-  /// Call this in every period with the length of the longest interrupt known so far: the current or the previous one.
+  /// Call this function in every period with the length of the last finished control interrupt.
   void note_load(std::uint32_t servo_cycles) {
     if (longest_was_taken_.load()) {
       longest_was_taken_.store(false);
@@ -41,7 +41,7 @@ class PoseRecorder {
   /// Writes the newest pose, without sequence and driver parity. Returns false before the first period.
   bool read(protocol::PoseReport& report) const;
 
-  /// Like read(), for a report that is sent. The maximum of the interrupt length restarts.
+  /// Like read(), for a report that is sent. The maximum of the interrupt length is then reset.
   bool take(protocol::PoseReport& report);
 
   /// Records that the report of read() was sent.
@@ -53,7 +53,8 @@ class PoseRecorder {
   /// Number of the newest control period, or 0 before the first period.
   std::uint32_t newest_periods() const;
 
-  /// Cycle counter at the start of the newest pose's control interrupt. Nothing before the first period.
+  /// Cycle counter at the start of the control interrupt that recorded the newest pose. Returns nothing before the
+  /// first period.
   std::optional<std::uint32_t> newest_cycles() const;
 
   /// Converts a cycle counter value to board time. The value must be less than 12 s old. Returns nothing before the

@@ -15,21 +15,21 @@ struct PulseJudgement {
   /// contributes 5 %.
   ///
   /// A winding with half its turns, or a shunt amplifier with twice its gain, is below these limits at any temperature.
-  /// An amplifier with half its gain is above them.
+  /// A shunt amplifier with half its gain is above these limits.
   static constexpr float resistance_minimum_part = 0.78f, resistance_maximum_part = 1.7f;
-  /// Largest reported resistance, relative to the expected resistance. It is reported for a motor without current or
-  /// with a current of the wrong sign.
+  /// Largest reported resistance, relative to the expected resistance. This value is reported for a motor without
+  /// current or with a current of the wrong sign.
   static constexpr float resistance_shown_part = 10.0f;
   /// Largest voltage loss of a bridge, relative to the loss from its dead time.
   static constexpr float dead_time_ratio = 1.8f;
   /// Largest current in another motor's sensor, relative to the motor's own current. Two touching wires share the
   /// current evenly.
   static constexpr float foreign_part = 0.25f;
-  /// Mean back EMF above which a resistance out of its limits does not count as a failure, because the arm moves.
+  /// Mean back EMF above which a resistance outside its limits does not count as a failure, because the arm moves.
   static constexpr float moves_V = 0.15f;
-  /// Stricter limits for a resistance that is stored. Both signs must agree within the factor `kept_apart`, and the
-  /// mean back EMF must be below `rests_V`. A motor that its own pulses accelerate, as in an arm that no hand holds,
-  /// appears to have 5 % more resistance.
+  /// Stricter limits for a resistance that is stored. The resistances for both current signs must agree within the
+  /// factor `kept_apart`, and the mean back EMF must be below `rests_V`. If no hand fixes the arm, the pulses
+  /// accelerate the motor, and its resistance appears to be 5 % higher.
   static constexpr float kept_apart = 1.06f, rests_V = 0.08f;
 
   using Result = protocol::SelfTestResult;
@@ -37,12 +37,13 @@ struct PulseJudgement {
     Result result = Result::not_done;
     float figure = 0.0f;
   };
-  std::array<Found, 3> motors;   ///< ohm, for the sign with the larger error
+  std::array<Found, 3> motors;   ///< resistance in ohm, for the current sign with the larger error
   std::array<Found, 3> bridges;  ///< voltage loss of the bridge in V
-  Found wires;                   ///< largest current in A in a sensor of another motor
-  /// Voltage loss of a bridge that passes, relative to the supply voltage. 0 if the measured loss is negative.
+  Found wires;                   ///< largest current in the sensor of another motor, in A
+  /// Voltage loss of a bridge that passes the test, relative to the supply voltage. The value is 0 if the measured loss
+  /// is negative.
   control::Triple bridge_loss_part;
-  /// Mean resistance of both signs, for a motor that passes and is at rest. Otherwise 0.
+  /// Mean resistance for both current signs, if the motor passes the test and is at rest. Otherwise the value is 0.
   control::Triple resistance_ohm;
 
   bool any(Result result) const;

@@ -1,4 +1,4 @@
-// RAM test by a march: each bit rises and falls, both before and after its neighbors.
+// March test of the RAM. Each bit is set and cleared, both before and after its neighbors.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace inkwell::link {
 
-/// Returns true if the memory retains the pattern. The memory has the pattern afterwards. On a board, `Word` is
+/// Returns true if the memory retains the pattern. The memory contains the pattern afterwards. On a board, `Word` is
 /// volatile.
 template <class Word>
 bool keeps_pattern(std::span<Word> memory) {
@@ -27,7 +27,8 @@ bool keeps_pattern(std::span<Word> memory) {
   return is_sound;
 }
 
-/// Like the function above, but restores the content of the memory. `room` is the buffer and limits the words per step.
+/// Like keeps_pattern(memory), but restores the content of the memory. The size of the buffer `room` limits the words
+/// per step.
 template <class Word>
 bool keeps_pattern(std::span<Word> memory, std::span<std::uint32_t> room) {
   bool is_sound = true;

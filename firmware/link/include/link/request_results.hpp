@@ -10,12 +10,12 @@
 
 namespace inkwell::link {
 
-/// Stores the newest requests with a ticket. Main loop only.
+/// Stores the newest requests that have a ticket. Only the main loop uses this class.
 class RequestResults {
  public:
   explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}
 
-  /// Call this directly after the command has been queued.
+  /// Call this function directly after the command has been queued.
   void note_queued(const protocol::CommandReport& command) {
     note(entry_of(command, protocol::RequestResult::waiting), queue_.pushed());
   }
@@ -26,16 +26,16 @@ class RequestResults {
   void note_shapes(std::uint32_t ticket, protocol::RequestResult result) {
     note({ticket, protocol::ReportId::shapes, {}, result, 0}, 0);
   }
-  /// Erases all results. Call this when the host is gone and the queued commands are discarded.
+  /// Erases all results. Call this function when the host is gone and the queued commands are discarded.
   void forget() { requests_ = {}; }
 
-  /// `state` and `now_periods` are those of the newest control period.
+  /// `state` and `now_periods` are values of the newest control period.
   protocol::RequestResultsReport report(protocol::State state, std::uint32_t now_periods) const;
 
  private:
   struct Noted {
     protocol::RequestResultEntry entry{};
-    std::uint32_t pushed = 0;  ///< CommandQueue::pushed() with this command as the last
+    std::uint32_t pushed = 0;  ///< CommandQueue::pushed() directly after this command was queued
   };
 
   static protocol::RequestResultEntry entry_of(const protocol::CommandReport& command, protocol::RequestResult result) {

@@ -32,7 +32,7 @@ struct Sample {
 /// scope frames and black-box rows from the ring, at separate rates.
 class SampleRing {
  public:
-  /// Number of samples, 1.6 ms. The main loop is busy for less than 1 ms at a time.
+  /// Number of samples, equivalent to 1.6 ms. The main loop is busy for less than 1 ms at a time.
   static constexpr std::uint32_t capacity = 32;
   /// Two slots are never read, because the interrupt may write two samples while the main loop reads one.
   static constexpr std::uint32_t readable = capacity - 2;
@@ -42,21 +42,21 @@ class SampleRing {
 
   // ---- control interrupt ----
 
-  /// Slot for the sample of this period. The sample counts after record().
+  /// Slot for the sample of this period. The sample is valid after record().
   Sample& next() { return samples_[recorded_.load() % capacity]; }
 
-  /// Records the sample in next(). Call it once per control period.
+  /// Records the sample in next(). Call this function once per control period.
   void record() { recorded_.store(recorded_.load() + 1); }
 
   // ---- main loop ----
 
-  /// Number of the next sample. It counts samples since the start and wraps.
+  /// Number of the next sample. Sample numbers are counted from start-up and wrap.
   std::uint32_t recorded() const { return recorded_.load(); }
 
-  /// Returns null before the first sample. The interrupt overwrites the sample 1.6 ms later.
+  /// Returns the newest sample, or null before the first sample. The interrupt overwrites a sample after 1.6 ms.
   const Sample* newest() const {
     const std::uint32_t recorded = recorded_.load();
-    // The flag never returns to false, because the counter returns to the first number when it wraps.
+    // The flag is not reset, because the sample number returns to `first_` when it wraps.
     has_samples_ = has_samples_ || recorded != first_;
     return has_samples_ ? &samples_[(recorded - 1) % capacity] : nullptr;
   }

@@ -1,4 +1,4 @@
-// The scope: selected signals of every control period, in frames for the bulk endpoint.
+// The scope packs selected signals of every control period into frames for the bulk endpoint.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace inkwell::link {
 
-/// Memory for frames. It is large, and only the main loop accesses it.
+/// Memory for frames. This memory is large, and only the main loop accesses it.
 struct ScopeFrames {
   static constexpr std::uint32_t count = 10;
   using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
@@ -21,11 +21,12 @@ struct ScopeFrames {
 };
 
 /// The main loop reads the sample ring and packs the selected signals into frames. If no frame is free, the recorder
-/// drops the oldest frame that is not being sent, and counts its samples. It also counts samples that the main loop
-/// read too late. The interrupt therefore never waits, and the newest data is retained.
+/// drops the oldest frame that is not being sent, and counts its samples. The recorder also counts the samples that the
+/// main loop read too late. The interrupt therefore never waits, and the newest data is retained.
 class ScopeRecorder {
  public:
-  /// Allows a late main loop to catch up. It normally makes one pass per period.
+  /// Largest number of samples per pass. With more than one sample per pass, the recorder can catch up after a delay of
+  /// the main loop.
   static constexpr std::uint32_t samples_per_pack = 4;
 
   /// The recorder uses `frames` exclusively.
@@ -35,7 +36,7 @@ class ScopeRecorder {
   /// frame. A new selection discards the finished frames of the previous selection.
   void select(const protocol::SignalSelection& selection, std::uint8_t token);
 
-  /// Packs the oldest unread samples, at most `samples_per_pack`. Call it in every pass of the main loop.
+  /// Packs the oldest unread samples, at most `samples_per_pack`. Call this function in every pass of the main loop.
   void pack();
 
   /// Returns the oldest finished frame, or an empty span. The frame does not change until release().

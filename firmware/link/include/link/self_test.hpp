@@ -20,22 +20,21 @@ class SelfTest {
   using Item = protocol::SelfTestItem;
   using Result = protocol::SelfTestResult;
 
-  /// A line that follows its pull resistor in this many consecutive checks is not driven. The level of a moving encoder
-  /// can match the pull resistor by chance in fewer checks.
+  /// A wire is not driven if it follows its pull resistor in this number of consecutive checks. In fewer checks, the
+  /// level of a moving encoder could match the pull resistor by chance.
   static constexpr std::uint32_t wire_looks = 8;
   /// Number of failures with the arm at rest after which an item has failed.
   static constexpr std::uint32_t failures_to_believe = 2;
   /// Limits for an arm that moves continuously: number of rounds, and waiting time before each round.
   static constexpr std::uint32_t rounds_maximum = 8;
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
-  /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm, and the hand would
-  /// feel it.
+  /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm perceptibly.
   static constexpr float rest_V = 0.3f;
-  /// Invalid range at each end of a potentiometer track, relative to its length. A working wiper never reaches these
-  /// ends.
+  /// Invalid range at each end of a potentiometer track, relative to the track length. A healthy wiper never enters
+  /// this range.
   static constexpr float gimbal_rail_part = 0.01f;
-  /// The current sensors are read after 1.2 ms, which is twelve time constants of a motor. By then the current of an
-  /// earlier pulse has decayed.
+  /// The current sensors are read after 1.2 ms, which is twelve time constants of a motor. After this time the current
+  /// of an earlier pulse has decayed.
   static constexpr std::uint32_t off_periods = control::periods_in(0.0012f), offset_readings = 16;
 
   explicit SelfTest(const SampleRing& samples) : samples_(samples) {}
@@ -45,12 +44,12 @@ class SelfTest {
   /// Records a result of start-up.
   void note(Item item, bool is_sound, float figure = 0.0f) { note(item, sound(is_sound), figure); }
 
-  /// Returns the wire to be tested, if any. The bridges are off.
+  /// Returns the wire to be tested, if any. The bridges are off during this test.
   std::optional<Item> wanted_wire() const;
   /// Records whether the level of the wire followed the pull resistors of its pin.
   void note_wire(bool follows);
 
-  /// True while follow() is needed. Check it in every pass of the main loop.
+  /// True while follow() must be called. Check this condition in every pass of the main loop.
   bool goes_on() const { return phase_ != Phase::idle || begun_.load() != test_; }
 
   /// Converter readings at the start of the self-test.
@@ -67,7 +66,7 @@ class SelfTest {
 
   // ---- control interrupt ----
 
-  /// Call this after the controller's step while the state is `testing`.
+  /// Call this function after the controller's step while the state is `testing`.
   void exchange(control::Controller& controller);
 
  private:
@@ -100,7 +99,8 @@ class SelfTest {
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
   control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
-  /// Number of the self-test and the order for the interrupt; 0 after the interrupt has carried it out.
+  /// Number of the self-test and the order for the interrupt. The value is 0 after the interrupt has executed the
+  /// order.
   Shared<std::uint32_t> order_{0};
   Shared<std::uint32_t> begun_{0};     ///< number of the current or last self-test of the interrupt
   Shared<bool> round_is_over_{false};  ///< the main loop may read the results until the next order

@@ -10,7 +10,7 @@
 
 namespace inkwell::link {
 
-/// The control interrupt writes it at its end, and the main loop reads it.
+/// The control interrupt writes the status in each period, and the main loop reads the status.
 class ServoStatus {
  public:
   // ---- control interrupt ----

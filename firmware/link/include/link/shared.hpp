@@ -7,9 +7,9 @@ namespace inkwell::link {
 
 /// A word that one side writes and the other side reads, or that one side sets and the other side clears.
 ///
-/// The chip has one core, and the interrupt preempts the main loop but not the reverse. The processor therefore
-/// maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are completed before
-/// it, and accesses after `store` or `load` start after it.
+/// The chip has one core. The interrupt preempts the main loop, but the main loop cannot preempt the interrupt. The
+/// processor therefore maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are
+/// completed before the store. Accesses after `store` or `load` start after this operation.
 ///
 /// No barrier instruction or lock is necessary. `load` followed by `store` is not atomic, so a word must have only one
 /// writer at a time.

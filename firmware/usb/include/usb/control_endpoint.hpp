@@ -59,7 +59,7 @@ class ControlRequests {
 
 class ControlEndpoint {
  public:
-  /// Size of the longest report of which the device uses all bytes.
+  /// Size of the longest report whose bytes are all used by the device.
   static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
   /// A host may pad a written report to the longest feature report. Bytes beyond the buffer are discarded.
   static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);

@@ -1,5 +1,5 @@
 // The board as a USB device. It has a HID interface for poses, commands and parameters, and a vendor interface for the
-// scope. It also has a controller interface and a firmware update interface. main() uses it in this way:
+// scope. It also has a controller interface and a firmware update interface. main() uses the device as follows:
 //
 //   usb::Device device{port, link, identity};
 //   for (;;) { device.poll(); sleep until an interrupt; }
@@ -34,8 +34,8 @@ class Device final : private ControlRequests {
   /// All three arguments must outlive the device. The device is inactive on the bus before the first poll().
   Device(Port& port, link::Link& link, const Identity& identity);
 
-  /// Handles the events of the bus and keeps the endpoints filled. The main loop calls it at least every 50 us. The
-  /// duration is bounded, and a transaction of all parameters takes longest.
+  /// Handles bus events and refills the endpoints. The main loop calls this function at least every 50 us. The duration
+  /// is bounded, and is longest for a transaction of all parameters.
   void poll();
 
   bool configured() const { return configuration_ != 0; }
@@ -67,8 +67,8 @@ class Device final : private ControlRequests {
   bool force_is_on() const;
   /// True if the force is off and no queued command can switch it on.
   bool may_store() const;
-  /// True if a request with this claim is permitted: its program is the driver, or there is no driver. Renews the claim
-  /// of the driver, and counts refusals.
+  /// True if a request with this claim is permitted. Its program must be the driver, or there must be no driver. Renews
+  /// the claim of the driver, and counts refusals.
   bool is_permitted(std::uint32_t claim);
   /// Like is_permitted(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
@@ -85,7 +85,7 @@ class Device final : private ControlRequests {
   void take_report(std::span<const std::byte> report);
   void take_force(std::span<const std::byte> report);
   void take_shapes(std::span<const std::byte> report);
-  /// Returns the command in a report. For an invalid command it returns nothing and records the result.
+  /// Returns the command in a report. If the command is invalid, returns nothing and records the result.
   std::optional<protocol::CommandReport> read_command(std::span<const std::byte> report);
   /// Queues a command. Ignores an empty argument. Returns false if the queue is full.
   bool pass_on(const std::optional<protocol::CommandReport>& command);
@@ -99,7 +99,7 @@ class Device final : private ControlRequests {
   protocol::InformationReport information() const;
   /// `is_known` is 0 while the bus is silent.
   protocol::FrameReport frame_report();
-  /// Only the state is valid before the first control period.
+  /// Before the first control period, only the state in the report is valid.
   protocol::PoseReport newest_pose();
   /// An endpoint other than endpoint 0.
   struct Endpoint {
@@ -141,7 +141,7 @@ class Device final : private ControlRequests {
   bool scope_wants_end_ = false;      ///< an empty packet must end the frame, because its length is a multiple of 64
   std::uint32_t pose_sequence_ = 0;   ///< sequence of the newest report passed to the port
   bool spare_waits_ = false;          ///< the newest report is a spare pose that the host has not read
-  std::uint32_t poses_replaced_ = 0;  ///< number since the host last read a pose
+  std::uint32_t poses_replaced_ = 0;  ///< poses replaced since the host last read a pose
   std::uint32_t poses_dropped_ = 0;
   std::uint32_t controller_taken_at_ = 0;  ///< pose_sequence_ at which the host read the last controller report
   alignas(4) protocol::PoseReport pose_{};

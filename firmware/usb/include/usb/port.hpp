@@ -30,7 +30,7 @@ struct Event {
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
 };
 
-/// A bus frame: 1 ms of the host's clock. Cycles are those of the processor's cycle counter.
+/// A bus frame: 1 ms of the host's clock. Cycles are counts of the processor's cycle counter.
 struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, from the start-of-frame packet
   std::uint32_t count = 0;          ///< bus frames since the port was started
@@ -45,11 +45,11 @@ struct BusFrame {
 /// receive() and stall() have no effect on endpoint 0, because they would answer an older request.
 class Port {
  public:
-  /// Returns the next event in `event`, or false if there is none. Also advances the transfers in progress.
+  /// Writes the next event to `event`. Returns false if there is no event. Also continues the transfers in progress.
   virtual bool next_event(Event& event) = 0;
 
-  /// The device calls this when SET_ADDRESS arrives, before its status stage. The port applies the address at the time
-  /// that its hardware requires.
+  /// The device calls this function when SET_ADDRESS arrives, before the status stage. The port applies the address at
+  /// the time that its hardware requires.
   virtual void set_address(std::uint8_t address) = 0;
 
   /// Opens an endpoint with data toggle 0, without halt and without a transfer. A transfer in progress is canceled
@@ -59,7 +59,7 @@ class Port {
   /// Closes an endpoint. A transfer in progress is canceled without a `sent` event.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
-  /// Answers STALL from now on. On endpoint 0 this applies to both directions, until the next SETUP.
+  /// Answers STALL from now on. Endpoint 0 answers STALL in both directions until the next SETUP.
   virtual void stall(std::uint8_t endpoint_address) = 0;
 
   /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
@@ -70,8 +70,8 @@ class Port {
   /// endpoint 0 a transfer is at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
 
-  /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was none or the host had
-  /// already read it.
+  /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was no transfer or the host had
+  /// already read the transfer.
   virtual bool cancel(std::uint8_t endpoint_address) = 0;
 
   /// Accepts one OUT packet on the endpoint.
