@@ -35,6 +35,7 @@ constexpr Unit units[] = {
 };
 
 // Common unit suffixes that arm descriptions do not use. The empty string represents a key without a unit.
+
 // clang-format off
 constexpr std::string_view foreign_units[] = {
     "", "mm", "cm", "um", "in", "inch", "metre", "metres", "meter", "meters", "deg", "degree", "degrees", "radians",

@@ -12,7 +12,7 @@
 
 namespace inkwell::arms {
 
-/// Properties of the three identical motors that are not parameters.
+/// Motor properties that are not parameters. The three motors are identical.
 struct Motor {
   double inductance_H;
 };
@@ -57,7 +57,7 @@ class DescriptionError : public std::runtime_error {
 ///         requires an integer. Also thrown if a lower bound is not below its upper bound.
 Description read(const std::filesystem::path& file);
 
-/// Reads an arm description from a string. Error messages name the string by `source`.
+/// Reads an arm description from a string. Error messages use `source` as the name of the string.
 Description parse(std::string_view text, const std::string& source);
 
 }  // namespace inkwell::arms

@@ -87,17 +87,17 @@ static_assert(apb1_Hz <= 42'000'000 && apb2_Hz <= 84'000'000);
 static_assert(adc_Hz <= 36'000'000, "limit of the ADC");
 
 // ---- encoders ----------------------------------------------------------------------------------------
-//
+
 // The motors' switching edges couple into the encoder wires. An input filter therefore accepts a level only after
 // `encoder_filter_samples` equal samples. The filter samples once per `encoder_filter_divider` timer cycles (RM0090,
-// TIMx_CCMR1, ICxF). The time between two encoder edges must be longer than the filter time for each arm.
+// TIMx_CCMR1, ICxF). For each arm, the time between two encoder edges must be longer than the filter time.
 
 inline constexpr std::uint32_t encoder_filter_samples = 8, encoder_filter_divider = 4;
 inline constexpr float encoder_filter_s =
     static_cast<float>(encoder_filter_samples * encoder_filter_divider) / timer_apb1_Hz;
 
 // ---- bridges -----------------------------------------------------------------------------------------
-//
+
 // Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
 // u) / 2 and (1 - u) / 2. The motor voltage consists of pulses of one sign at twice pwm_Hz. The current crosses its
 // mean in the middle of each zero vector, where the timers reverse and the ADCs sample. Locked antiphase at the servo
@@ -157,10 +157,10 @@ struct Facts {
   /// stops with this pin high, a monostable disables the bridges. A pull-down on the board keeps the bridges off during
   /// reset and while the boot loader runs. The boot loader must not pull up or drive this pin (AN2606).
   Pin bridge_enable;
-  /// Rises with each control interrupt while the bridges are on, and falls before the end of the interrupt. The pin
-  /// must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
+  /// The heartbeat rises with each control interrupt while the bridges are on, and falls before the end of the
+  /// interrupt. The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
-  /// Output of the monostable, connected to the bridge enable inputs. It is high while the bridges may switch.
+  /// Output of the monostable, connected to the bridge enable inputs. This output is high while the bridges may switch.
   Pin bridge_hold;
   /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins, and each pin
   /// switches off the outputs of its timer in hardware (RM0090, "Using the break function").
@@ -182,8 +182,8 @@ struct Facts {
   /// Dead time that the bridge inserts; the firmware adds no dead time.
   float bridge_dead_time_s;
   float shunt_ohm, shunt_amplifier_gain;
-  /// If the output of a shunt amplifier is closer than this to a rail, the output may not follow the current. The rails
-  /// are ground and the 3.3 V supply of the converters.
+  /// Smallest distance between the output voltage of a shunt amplifier and its rails. Closer to a rail, the output may
+  /// not follow the current. The rails are ground and the 3.3 V supply of the converters.
   float shunt_amplifier_headroom_V;
   float supply_upper_ohm, supply_lower_ohm;  ///< voltage divider at the bridge supply
   /// Filters at the analog pins. The filters must tolerate the charge that the previous channel leaves in the sampling
