@@ -13,8 +13,8 @@ constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
   return crash.exception == protocol::crystal_exception;
 }
 
-/// Record of a main loop that hung. The record is invalid if the main loop resumed, or if the watchdog did not cause
-/// the reset.
+/// Whether the crash record describes a hang of the main loop. A hang record is invalid if the main loop resumed, or if
+/// the watchdog did not cause the reset.
 constexpr bool is_hang(const protocol::CrashFacts& crash) { return crash.exception == protocol::hang_exception; }
 
 }  // namespace inkwell::application

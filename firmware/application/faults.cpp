@@ -92,10 +92,10 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 }  // namespace
 
 /// The handler first switches the motors off with three stores that need no stack, because the stack may be damaged.
-/// The crash record is then made with the lowest 512 bytes of the stack. These bytes are unused unless the stack has
-/// overflowed. No interrupt can preempt this function, because faults have the highest priority. A second fault in this
-/// function restarts the function as a hard fault handler. A fault in the hard fault handler locks up the processor
-/// until the watchdog expires.
+/// The handler then uses the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless
+/// the stack has overflowed. No interrupt can preempt this function, because faults have the highest priority. A second
+/// fault in this function restarts the function as a hard fault handler. A fault in the hard fault handler locks up the
+/// processor until the watchdog expires.
 extern "C" [[gnu::naked]] void fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"

@@ -20,8 +20,8 @@
 namespace inkwell::application {
 namespace {
 
-/// Blinks the status LED ten times per second while `lasts` returns true. Meanwhile the board does not work, and its
-/// bridges are off.
+/// Blinks the status LED ten times per second while `lasts` returns true. While the LED blinks, the board does not work
+/// and the bridges are off.
 template <class Condition>
 void blink_while(std::uint32_t processor_Hz, Condition lasts) {
   for (bool on = true; lasts(); on = !on) {

@@ -1,4 +1,4 @@
-// Main loop tasks of each round, in addition to USB.
+// Main loop tasks that run in each round, in addition to USB.
 #pragma once
 
 #include "background_watch.hpp"

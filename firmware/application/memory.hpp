@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// Places a zero-initialized object, or one with a constructor that runs at start-up, in the core-coupled memory.
+/// Places a zero-initialized object, or an object with a constructor that runs at start-up, in the core-coupled memory.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
 /// Places an object without a constructor in the part of the main memory that start-up does not clear. The object

@@ -36,7 +36,7 @@ INKWELL_CORE_COUPLED control::Controller controller{
     first_period};
 INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
 
-// These objects are in main memory: the DMA controller writes analog_inputs, and the others are large.
+// These objects are in main memory: the DMA controller writes analog_inputs, and the other objects are large.
 Part<drivers::AnalogInputs> analog_inputs;
 link::ScopeFrames scope_frames;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;

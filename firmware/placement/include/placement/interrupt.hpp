@@ -4,10 +4,10 @@
 /// Place this mark before the definition of a function that an interrupt calls. The mark places the function in the
 /// section .interrupt_text (boards/facts/stm32f405.ld), which start-up copies to RAM. The tool tools/check_image.py
 /// rejects an image in which an interrupt leaves this section. The tool also rejects an image in which the section
-/// contains a function that no interrupt calls. All of firmware/control is in this section and needs no marks. On a PC
-/// the mark has no effect.
+/// contains a function that no interrupt calls. All code of firmware/control is in this section and needs no marks. On
+/// a PC the mark has no effect.
 #if defined(__arm__)
-// One section per function, so that the linker can omit functions that were inlined everywhere.
+// Each function has a separate section, so that the linker can omit functions that were inlined everywhere.
 #define INKWELL_INTERRUPT_SECTION(number) ".text.interrupt." #number
 #define INKWELL_INTERRUPT_NUMBERED(number) [[gnu::section(INKWELL_INTERRUPT_SECTION(number))]]
 #define INKWELL_INTERRUPT INKWELL_INTERRUPT_NUMBERED(__COUNTER__)

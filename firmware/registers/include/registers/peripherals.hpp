@@ -1,5 +1,5 @@
-// Peripherals of the chip and of its core that the firmware uses, with register map and base address (RM0090, "Memory
-// map"; core: ARMv7-M Architecture Reference Manual).
+// Register maps and base addresses of the peripherals that the firmware uses (RM0090, "Memory map"; core: ARMv7-M
+// Architecture Reference Manual).
 #pragma once
 
 // To add a peripheral, write its register map in a header in this folder and add a row to one of the tables below.

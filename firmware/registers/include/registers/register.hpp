@@ -13,7 +13,7 @@
 //
 // The row in peripherals.hpp is X(TIM1, Timer, 0x40010000).
 //
-// Names are those of the reference manual.
+// Register and field names are those of the reference manual.
 #pragma once
 
 #include <cstdint>
