@@ -319,7 +319,7 @@ void Controller::regulate_currents(const Settings& settings) {
 }
 
 /// The energy, speed and change limits of the rendered force do not apply to a motor test. The test stops if the arm is
-/// too fast or the host is silent. The test pulse also stops when it has exchanged the energy of the reserve.
+/// too fast or the host is silent. The test pulse also stops when the exchanged energy exceeds the energy reserve.
 void Controller::follow_test(protocol::Watches found, const Settings& settings) {
   constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
   if ((found & ends) != 0) {
@@ -335,8 +335,8 @@ void Controller::follow_test(protocol::Watches found, const Settings& settings) 
   if (test_.moved_J > settings.energy.reserve_J) test_.rest();
 }
 
-/// Compares the angle of this period's joint with the inkwell. Without a reference the joint angle is meaningless, but
-/// no state without a reference watches this fault.
+/// Compares the angle of this period's joint with the joint angle in the inkwell. If the arm is not referenced, the
+/// joint angle is meaningless, and the supervisor ignores this fault.
 void Controller::watch_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);

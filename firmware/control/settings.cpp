@@ -62,8 +62,8 @@ Box box(const ParameterSet& set) {
           vector_of(set.of_each(Parameter::box_maximum_x_m)) - radius};
 }
 
-/// Joint torque per ampere of each motor, negative for a reversed motor. The back EMF constant has the same value,
-/// because 1 Nm/A = 1 Vs/rad.
+/// Joint torque per ampere of each motor, negative for a reversed motor. The torque per ampere is equal to the back EMF
+/// per joint speed, because 1 Nm/A = 1 Vs/rad.
 Triple joint_Nm_per_A(const ParameterSet& set) {
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
@@ -109,8 +109,8 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set, const Triple& ampere_per_N) {
-  // The bound is above the current limit and above the sensor noise. If the board cannot measure this current, the
-  // lower bound in BoardLimits applies.
+  // The bound is above the current limit and above the sensor noise. If the board cannot measure a current at this
+  // bound, the lower bound in BoardLimits applies.
   constexpr float over_current_minimum_A = 0.5f;
   // Margin of the joint limits for lost counts and elastic stops.
   constexpr float joint_margin_rad = 0.35f;

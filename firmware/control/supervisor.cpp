@@ -36,8 +36,8 @@ constexpr auto of_state = []() {
       if (way.from != state) continue;
       if (here.ways_begin == nullptr) here.ways_begin = &way;
       here.ways_end = &way + 1;
-      // A single missing or excluded event closes a transition. The last event in the list is used, because it is the
-      // rarest event.
+      // A single missing or excluded event closes a transition. The last event in the event list is used, because it is
+      // the rarest event.
       const protocol::Events key = std::bit_floor(way.needs != 0 ? way.needs : way.unless);
       here.moved_by |= key;
       if (way.needs == 0) here.rest |= key;

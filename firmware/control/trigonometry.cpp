@@ -46,7 +46,8 @@ SineCosine sine_cosine(float angle_rad) {
 }
 
 float reciprocal(float value) {
-  // Negates the exponent in the bit pattern. The constant balances the seed error over all mantissas, at most 5.1 %.
+  // Negates the exponent in the bit pattern. The constant balances the seed error over all mantissas. The seed error is
+  // at most 5.1 %.
   float estimate = std::bit_cast<float>(0x7EF31000u - std::bit_cast<std::uint32_t>(value));
   for (int i = 0; i < newton_steps; ++i) estimate *= 2.0f - value * estimate;
   return estimate;

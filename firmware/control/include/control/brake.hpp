@@ -38,7 +38,7 @@ constexpr bool may_brake(protocol::Watches found) {
   return (found & protocol::watches([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
 }
 
-/// Call this function once per control period, also in the first period of braking. `speed_squared_m2_per_s2` is the
+/// Call this function once per control period, including the first period of braking. `speed_squared_m2_per_s2` is the
 /// squared probe speed. `found` comes from the supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found);
 

@@ -2,10 +2,10 @@
 // drives the pin. A wire that touches ground or a supply overrides the output of the chip.
 //
 // While the bridges are off, the enable wire, the monostable output and all legs must be low. While the bridges are on,
-// the enable wire must be high. The control interrupt checks in each period that the monostable output is high too. The
-// legs switch while the bridges are on, so their levels are not checked. The check in control/motor_watch.hpp ensures
-// that the motors follow the legs. The heartbeat is high only during the control interrupt, so code outside it always
-// reads a low level.
+// the enable wire must be high. The control interrupt checks in each period that the monostable output is also high.
+// The legs switch while the bridges are on, so the leg levels are not checked. The check in control/motor_watch.hpp
+// ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so code outside it
+// always reads a low level.
 #pragma once
 
 #include <cstdint>

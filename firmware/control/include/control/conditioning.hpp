@@ -38,8 +38,8 @@ struct CurrentOffsets {
 
 // ---- supply --------------------------------------------------------------------------------------------
 
-/// First-order low-pass filter with a time constant of 1.6 ms. The reciprocal of its output converts volts to duty
-/// cycles.
+/// First-order low-pass filter with a time constant of 1.6 ms. The reciprocal of the filtered voltage converts volts to
+/// duty cycles.
 struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
   /// Lower bound of the voltage, so that the reciprocal is finite if the supply is off. The bound is far below any
@@ -85,7 +85,8 @@ struct InkwellReference {
   bool valid = false;
 };
 
-/// Requires the stylus to be inserted again. If `switch_in_doubt` is true, the switch must first be read as open.
+/// After this call, the stylus must be inserted again. If `switch_in_doubt` is true, the switch must first be read as
+/// open.
 constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
   reference.counts = {};
   reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;

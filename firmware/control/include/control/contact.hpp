@@ -26,7 +26,8 @@ struct Force {
   float magnitude_N;
 };
 
-/// Clamps the probe to the free space on each axis: an edge or a corner is contact on two or three axes.
+/// Clamps the probe position to the free space on each axis. Contact with an edge or a corner is contact on two or
+/// three axes.
 Contact find_contact(const Vector3& probe_m, const Box& box);
 
 /// Signed wall force along one axis: k d + c d'. `penetration_m` points out of the wall.

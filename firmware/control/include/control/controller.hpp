@@ -1,4 +1,4 @@
-// Signal path of the control interrupt and its state between periods.
+// Signal path of the control interrupt, and the state of the signal path between periods.
 #pragma once
 
 #include <array>
@@ -85,6 +85,7 @@ class Controller {
   void raise(protocol::Fault fault) { raise(protocol::watch(fault)); }
 
   // ---- while the state is `testing`, also before step ----
+
   /// Starts a round of test pulses.
   void start_pulses() { pulses_.start(); }
   bool pulses_run() const { return pulses_.runs(); }
@@ -113,7 +114,7 @@ class Controller {
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since boot; wraps
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< cycles of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }  ///< 1 is the steady-state heat at the continuous current
-  /// Value for start_warm() of the next run.
+  /// Motor heat that the next run passes to start_warm().
   Warmth warmth() const { return {heat_.heat, heat_.housing, heat_.too_hot ? 1u : 0u}; }
   bool force_is_on() const { return force_is_on_; }  ///< according to the state
 
@@ -181,7 +182,7 @@ class Controller {
   std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;
 
-  // Results of this period, in path order.
+  // Results of this period, in the order of the signal path.
   std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-on
   std::uint32_t jump_bits_ = 0;                   ///< not 0 if an encoder moved faster than an arm can move
   std::array<std::int32_t, 3> counts_since_inkwell_{};
@@ -199,7 +200,7 @@ class Controller {
   std::array<std::uint32_t, stage_count> cycles_{};
   std::uint32_t servo_cycles_ = 0;
 
-  // Large members come last, so that the other members are within the offset range of an instruction.
+  // Large members are declared last, so that the other members are within the offset range of an instruction.
   TouchedShapes shapes_;
   FeltForceLaw law_;
   SelfTestPulses pulses_;

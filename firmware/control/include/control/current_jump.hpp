@@ -1,8 +1,8 @@
-// Detects changes of a motor current that a winding cannot cause.
+// Detects motor current changes that a winding cannot cause.
 //
-// The inductance of a winding limits the rate of its current. An open motor or bridge leg interrupts the current within
-// one control period, and the reading of a failed sensor changes instantly. The motor equation (MotorWatch) detects
-// these failures within milliseconds; the jump check needs a single reading.
+// The inductance of a winding limits the rate of change of its current. An open motor or bridge leg interrupts the
+// current within one control period, and the reading of a failed sensor changes instantly. The motor equation
+// (MotorWatch) detects these failures within milliseconds; the jump check needs a single reading.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,8 @@ inline float replace(float& current_A, float now_A) {
   return change_A;
 }
 
-/// Whether one of three current changes in a control period may be a jump. If so, is_jump() must check each change.
+/// Returns true if one of three current changes in a control period may be a jump. In this case is_jump() must check
+/// each change.
 inline bool is_large(float first_A, float second_A, float third_A) {
   return first_A * first_A + second_A * second_A + third_A * third_A >
          CurrentJump::bearable_A * CurrentJump::bearable_A;

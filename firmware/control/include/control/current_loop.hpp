@@ -19,7 +19,7 @@ struct CurrentLoopGains {
   float voltage_limit_V;
 };
 
-/// State of one loop. Zero while its bridge is off.
+/// State of one current loop, which is zero while the bridge is off.
 struct CurrentLoop {
   float integral_V = 0.0f;
   float error_A = 0.0f;  ///< of the previous period

@@ -72,8 +72,8 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
 /// of joints 2 and 3.
 [[gnu::cold]] void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian);
 
-/// Angle between link 3 and link 2, which the elbow stops limit. On a parallelogram this angle is joint 3 minus joint
-/// 2.
+/// Elbow angle: the angle of link 3 relative to link 2. The elbow stops limit this angle. On a parallelogram the elbow
+/// angle is joint 3 minus joint 2.
 float elbow_rad(const Triple& joint_rad, Transmission transmission);
 
 }  // namespace inkwell::control

@@ -8,10 +8,10 @@
 
 namespace inkwell::control {
 
-/// Temperature rise of each winding above the room, relative to the steady-state rise at its continuous current. The
-/// rise is the sum of winding above housing (fast) and housing above room (slow). The squared current increases each of
-/// these differences, which decay with separate time constants. At power-on the motors count as cold. After any other
-/// restart, the Warmth of the motors is unchanged.
+/// Temperature rise of each winding above room temperature, relative to the steady-state rise at its continuous
+/// current. The rise is the sum of two temperature differences: winding to housing (fast) and housing to room (slow).
+/// The squared current increases both differences, which decay with separate time constants. At power-on the motors
+/// count as cold. After any other restart, the Warmth of the motors is unchanged.
 struct MotorHeat {
   /// Number of readings whose squares are summed, because the heat of one reading is below the resolution of a float.
   static constexpr std::uint32_t readings_per_update = 128;

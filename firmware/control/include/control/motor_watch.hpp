@@ -23,7 +23,7 @@ namespace inkwell::control {
 /// Voltage model of a healthy motor.
 struct MotorModel {
   Triple resistance_ohm;  ///< from the parameters
-  /// Per joint speed: gear ratio times torque constant, negative for a reversed motor.
+  /// Back EMF per joint speed: gear ratio times torque constant, negative for a reversed motor.
   Triple back_emf_Vs_per_rad;
 };
 
@@ -51,8 +51,8 @@ struct Resistance {
   /// and shunt add 4 %.
   static constexpr float bearable_more_else = 0.43f;
   /// Part of the tolerance that the voltage range of a current loop includes: 5 % of the resistance of a measured
-  /// motor. The resistance of a healthy motor may be higher, depending on angle or heat. This motor then gets less
-  /// current at the force limit, and no fault is raised.
+  /// motor. The resistance of a healthy motor may be higher, depending on angle or heat. A motor with a higher
+  /// resistance gets less current at the force limit, but no fault is raised.
   static constexpr float room_part = 0.25f;
   /// Increase of copper resistance at a temperature rise of 100 K, the steady-state rise at the continuous current.
   static constexpr float part_per_heat = 0.39f;

@@ -20,7 +20,7 @@ struct Surface {
   float dynamic_friction;  ///< the same bound while sliding; not above static_friction
 };
 
-/// The free space is where normal * x > offset.
+/// A point x is in the free space if normal * x > offset.
 struct Plane {
   Vector3 normal;  ///< unit vector
   float offset_m;
@@ -33,7 +33,7 @@ struct Sphere {
   float radius_squared_m2;
 };
 
-/// Set of shapes, prepared outside the interrupt. Shape 0 is the sphere, 1 to 8 are the planes.
+/// Set of shapes, prepared outside the interrupt. Shape 0 is the sphere, and shapes 1 to 8 are the planes.
 struct Shapes {
   static constexpr std::size_t maximum = 1 + protocol::shape_planes_maximum;
   /// Value of `life_periods` for a shape that does not expire.
@@ -52,7 +52,7 @@ struct Grip {
   bool slides = false;
 };
 
-/// Force of a normal spring and damper, which never pulls, and stick-slip friction (Salisbury et al., "Haptic
+/// Sum of a normal spring-damper force, which never pulls, and stick-slip friction (Salisbury et al., "Haptic
 /// rendering: programming touch interaction with virtual objects", I3D 1995). `depth_m` is the depth of the probe below
 /// the surface. If `is_new` is true, the probe was above the surface in the previous period, and the grip starts at the
 /// probe.
@@ -62,7 +62,8 @@ Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float dep
 /// Shapes with their contact state between periods.
 class TouchedShapes {
  public:
-  /// Activates a new set. `shapes` must not change until the next call. Shapes that exist in both sets keep their grip.
+  /// Activates a new set. `shapes` must not change until the next call. Shapes that exist in both sets retain their
+  /// grip points.
   void replace(const Shapes& shapes);
 
   /// Advances by one period. Returns true if a shape has expired.

@@ -3,10 +3,10 @@
 // The encoder is the only sensor of a joint angle, so a stuck encoder has the same readings as a blocked joint. A
 // blocked joint, however, is never rigid. A change of motor torque turns the joint slightly, because cables, links,
 // stops and hands are elastic. The stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten
-// counts. Friction blocks a joint if the force changes by less than twice the friction, 0.5 N on an Omni.
+// counts. Friction blocks a joint if the force changes by less than 0.5 N, twice the friction of an Omni.
 //
 // A change of 1.5 N at the end of the longer link must move the encoder by more than one count. An arm with twice the
-// friction and twice the stiffness of an Omni still moves more than one count. The count of an encoder with one dead
+// friction and twice the stiffness of an Omni still moves by more than one count. The count of an encoder with one dead
 // wire also changes by at most one. On a slow arm, these changes are too rare for the check in
 // control/encoder_wire.hpp.
 //
@@ -16,10 +16,9 @@
 // than one change of 2 N. The fault is raised after three changes of 1.5 N: press, release and press again, or an
 // increase of 4.5 N.
 //
-// An arm that reverses its motion is stationary for a moment, while the force of a wall may rise. A time of 30 ms and a
-// change of 0.5 A were observed. Current changes therefore count only after the joint has been stationary for 0.1 s.
-// The current is low-pass filtered over about 10 ms, so a force that alternates too fast for the arm has no effect on
-// the filtered current.
+// An arm that reversed its motion was observed to be stationary for 30 ms, while the force of a wall raised the current
+// by 0.5 A. Current changes therefore count only after the joint has been stationary for 0.1 s. The current is low-pass
+// filtered over about 10 ms, so a force that alternates too fast for the arm has no effect on the filtered current.
 //
 // The inkwell is too rigid for this check, so the check is inactive while the stylus is in the inkwell.
 #pragma once
@@ -32,7 +31,7 @@
 namespace inkwell::control {
 
 struct StuckEncoder {
-  /// Force change at the end of the longer link that almost always turns every joint.
+  /// Force change, at the end of the longer link, that almost always turns every joint.
   static constexpr float moving_force_N = 1.5f;
   static constexpr unsigned bearable_changes = 2;
   static constexpr std::uint32_t bearable_counts = 1;

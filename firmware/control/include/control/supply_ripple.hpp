@@ -61,7 +61,7 @@ inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint
     ripple.below = below;
   }
   if (ripple.changes == 0) return false;
-  // In a full ring the oldest entry is the next one to be overwritten.
+  // In a full ring, the oldest entry is overwritten next.
   const std::size_t oldest = (ripple.next + SupplyRipple::alternations - ripple.changes) % SupplyRipple::alternations;
   if (now_periods - ripple.changed_at_periods[oldest] > SupplyRipple::within_periods) --ripple.changes;
   return ripple.changes == SupplyRipple::alternations;

@@ -43,8 +43,8 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
 
 /// Current of a motor, 0..2, that applies `force_limit_N` to a hand that fixes the probe in this pose. The force of a
 /// single motor is perpendicular to the probe motions of the other two joints. The force is the torque divided by the
-/// component of the joint's Jacobian column in this perpendicular direction. Returns 0 if the pose has no such
-/// direction.
+/// component of the joint's Jacobian column in this perpendicular direction. Returns 0 if the perpendicular direction
+/// is undefined in this pose.
 inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
   const std::size_t next = motor == 2 ? 0 : motor + 1, last = motor == 0 ? 2 : motor - 1;
   const Vector3 across = cross(jacobian.column[next], jacobian.column[last]);

@@ -52,7 +52,7 @@ struct SpeedEstimate {
   float counts_per_period = 0.0f;
 };
 
-/// Starts a new estimate at rest at these counts.
+/// Starts a new estimate with a speed of zero at these counts.
 constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
   estimate.counts = counts;
   estimate.head.period = period;
