@@ -52,8 +52,8 @@ static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
                   is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// Slow channels in conversion order. The supply is the last channel, because its voltage is near mid-range, like that
-/// of a motor current.
+/// Slow channels in conversion order. The supply is the last channel, because its voltage is near mid-range, like the
+/// voltage of a motor current.
 struct SlowChannel {
   std::uint32_t channel;
   Sampling sampling;
@@ -102,7 +102,8 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-/// Flags of the previous transfer that must be clear before the next one (RM0090, DMA stream configuration procedure).
+/// Flags of the previous transfer that must be clear before the next transfer (RM0090, DMA stream configuration
+/// procedure).
 constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;

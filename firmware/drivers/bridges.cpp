@@ -74,10 +74,10 @@ void start_together() {
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
 }
 
-/// Writing 0 clears a flag; writing 1 does not change it.
+/// Writing 0 clears a flag, and writing 1 does not change the flag.
 void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
-/// Settling time of 4 us, in which an internal pull charges 100 pF.
+/// Settling time of 4 us, in which an internal pull resistor charges 100 pF.
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {

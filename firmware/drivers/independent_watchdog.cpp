@@ -19,8 +19,8 @@ constexpr std::uint32_t reload =
 bool IndependentWatchdog::start() {
   using Freeze = registers::DBG::DBGMCU_APB1_FZ;
   Freeze::modify(Freeze::DBG_IWDG_STOP(1));
-  // The watchdog is started first, because this also starts its oscillator. Without the oscillator, new register values
-  // would never take effect.
+  // The watchdog is started first, because its start also starts the watchdog oscillator. Without the oscillator, new
+  // register values would never take effect.
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);
   IWDG::RLR::write(IWDG::RLR::RL(reload));

@@ -32,8 +32,8 @@ struct magnet {
 
   struct State {};
 
-  /// F = F0 (2 d / r) / (1 + (d / r)^2) towards the magnet. The force reaches F0 at the distance r and is zero at the
-  /// magnet.
+  /// At a distance d from the magnet, the attracting force is F = F0 (2 d / r) / (1 + (d / r)^2). The force is F0 at
+  /// the distance r and zero at the magnet.
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State&, Signals& signals) {
     const Vector3 to_magnet_m = Vector3{parameters.x_m, parameters.y_m, parameters.z_m} - probe.position_m;
     const float squared_m2 = dot(to_magnet_m, to_magnet_m);

@@ -25,8 +25,8 @@ constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 /// PKTSTS of a word in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// No other access to the core may occur between the words of a packet. Such an access was observed to corrupt the
-/// packet and its endpoint. No interrupt handler accesses the core.
+/// No other access to the core may occur between the words of a packet. An access between the words was observed to
+/// corrupt the packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
   std::size_t left = packet.size();

@@ -13,11 +13,11 @@ namespace inkwell::drivers {
 
 namespace {
 
-/// Turnaround time in clocks of the PHY, for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
+/// Turnaround time in PHY clocks, for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
 constexpr std::uint32_t turnaround_clocks = 6;
 static_assert(board::processor_Hz >= 32'000'000);
 
-/// 25 ms (RM0090, GUSBCFG: FDMOD), plus 1 ms for a fast crystal.
+/// Duration of the mode change: 25 ms (RM0090, GUSBCFG: FDMOD), plus 1 ms for a fast crystal.
 constexpr std::uint32_t mode_change_cycles = board::processor_Hz / 1000 * 26;
 
 bool reset_core() {

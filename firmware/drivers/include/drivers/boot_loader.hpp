@@ -6,7 +6,7 @@ namespace inkwell::drivers {
 /// Resets the chip. Start-up then enters the boot loader, which runs until power-off or reset.
 [[noreturn]] void start_boot_loader();
 
-/// Whether the previous run stopped with start_boot_loader(). Only the first call returns true.
+/// Whether a call of start_boot_loader() ended the previous run. Only the first call returns true.
 bool take_boot_loader_wish();
 
 /// Enters the boot loader. Call this function during start-up, while clocks and peripherals are in their reset state.

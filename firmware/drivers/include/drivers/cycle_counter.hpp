@@ -22,7 +22,7 @@ class CycleCounter {
   /// Begins the first lap of a control period and returns the present count.
   std::uint32_t begin() { return last_ = now(); }
 
-  /// Cycles since the last lap, correct over a wrap of the counter.
+  /// Cycles since the last lap. The result is correct even if the counter wraps.
   std::uint32_t lap() {
     const std::uint32_t present = now();
     const std::uint32_t cycles = present - last_;

@@ -16,9 +16,9 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// Last statement of every handler. Without this statement, a handler may return while a store is in progress. The
-/// processor may then clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the
-/// Cortex-M4).
+/// This function is the last statement of every handler. Without this statement, a handler may return while a store is
+/// in progress. The processor may then clear a newly arrived interrupt and run another interrupt instead (erratum
+/// 838869 of the Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
 /// Handler that runs after all interrupts have been served, before the program continues (PendSV: ARMv7-M, B1.5.6).

@@ -21,7 +21,7 @@ class KeptOverReset {
 
   void forget() { check_ = ~check_of(facts_); }
 
-  /// Returns the data of the previous run, once.
+  /// Returns the data of the previous run. Only the first call returns data.
   std::optional<Facts> take() {
     const bool is_sound = check_ == check_of(facts_);
     forget();

@@ -15,13 +15,13 @@ struct LegCompares {
 };
 
 /// For a duty cycle u, the duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The motor voltage depends on the
-/// difference of the leg compares, so this difference is rounded, with steps of 1 / pwm_top. The duty cycle is limited
+/// difference of the leg duty cycles, so this difference is rounded to steps of 1 / pwm_top. The duty cycle is limited
 /// to the board's limit. A duty cycle that is not a number results in zero voltage.
 constexpr LegCompares leg_compares(float duty) {
   constexpr float limit = board::duty_limit;
   const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;
   constexpr auto top = static_cast<std::int32_t>(board::pwm_top);
-  // Rounds to nearest: the converted value is positive, and the conversion rounds positive values down.
+  // The conversion rounds a positive value down, so adding one half results in rounding to nearest.
   const auto difference = static_cast<std::int32_t>(bounded * top + (top + 0.5f)) - top;
   const std::int32_t leg_a = (top + difference) / 2;
   return {static_cast<std::uint16_t>(leg_a), static_cast<std::uint16_t>(leg_a - difference)};
