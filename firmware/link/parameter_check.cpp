@@ -19,7 +19,7 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// Columns of the parameter table that a check needs. The texts are not linked into the image.
+/// Columns of the parameter table that a check needs. The texts of the table are not linked into the image.
 struct Limits {
   std::uint16_t id;
   bool whole;
@@ -84,7 +84,7 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
   const Limits row = limits(index);
   if (!std::isfinite(value)) return Refusal::not_finite;
   if (!(row.minimum <= value && value <= row.maximum)) return Refusal::out_of_range;
-  // The range of every whole parameter fits in an int32.
+  // The values of every integer parameter are within the range of int32.
   if (row.whole && static_cast<float>(static_cast<std::int32_t>(value)) != value) return Refusal::not_whole;
   if (row.needs_force_off && force_is_on && value != current) return Refusal::force_is_on;
   return Refusal::accepted;

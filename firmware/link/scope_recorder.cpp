@@ -16,8 +16,8 @@ std::int16_t to_steps(float value, float steps_per_unit) {
   return static_cast<std::int16_t>(static_cast<std::int32_t>(steps + 32768.5f) - 32768);
 }
 
-/// Initial value of `previous_` in each frame. This value differs from every signal. It is a signaling NaN, which no
-/// computation returns, and is not a sign-extended 16-bit integer.
+/// Initial value of `previous_` in each frame. This value differs from every signal. The value is a signaling NaN,
+/// which no computation returns, and is not a sign-extended 16-bit integer.
 constexpr std::uint32_t bits_of_no_value = 0x7F80'0001;
 
 template <class Value>

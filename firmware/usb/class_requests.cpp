@@ -153,7 +153,8 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
 }
 
 bool Device::force_is_on() const {
-  // The queue must be checked first. Otherwise the interrupt could carry out the command between the two checks.
+  // The queue must be checked before the state. Otherwise the interrupt could execute the command between the two
+  // checks.
   return link_.commands.waiting(protocol::Command::enable_force) || protocol::force_is_on(link_.status.state());
 }
 
@@ -164,9 +165,10 @@ bool Device::may_store() const {
   return protocol::may_store(link_.status.state());
 }
 
-// DFU 1.1, section 5.1 and appendix A.2. The state changes from idle to detaching after the status stage. A detach
-// request while the force is on is refused, because it would remove the force without the user's consent. The status
-// stage of a refused request succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
+// Detach request (DFU 1.1, section 5.1 and appendix A.2). The state changes from idle to detaching after the status
+// stage. A detach request is refused while the force is on, because detaching would remove the force without the user's
+// consent. The status stage of a refused request succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a
+// request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
   constexpr std::byte no_error{0}, vendor_error{0x0B};

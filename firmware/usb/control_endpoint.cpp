@@ -13,7 +13,7 @@ constexpr std::uint8_t control_in = 0x80;
 }  // namespace
 
 void ControlEndpoint::setup(std::span<const std::byte> packet) {
-  // A SETUP ends the transfer in progress (USB 2.0, section 5.5.5).
+  // A SETUP packet ends the transfer in progress (USB 2.0, section 5.5.5).
   if (stage_ == Stage::data_in || stage_ == Stage::status_in) port_.cancel(control_in);
   stage_ = Stage::idle;
   if (packet.size() != sizeof setup_) return;

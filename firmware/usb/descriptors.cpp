@@ -47,7 +47,7 @@ constexpr std::uint8_t type(DescriptorType type) { return static_cast<std::uint8
 constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8_t>(index); }
 
 // ---- HID report descriptor (HID 1.11, section 6.2.2) -----------------------------------------------
-//
+
 // Every report is an array of bytes on a vendor usage page. protocol/reports.hpp defines the meaning of the bytes.
 
 constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
@@ -62,7 +62,7 @@ constexpr std::uint8_t item_of(protocol::ReportKind kind) {
   return 0;
 }
 
-/// Report id and the bytes after it.
+/// HID items of one report: report id and report bytes.
 constexpr auto items_of(const protocol::ReportInfo& row) {
   const std::size_t count = row.bytes - 1;
   return bytes(0x85, static_cast<std::uint8_t>(row.id),  // report id
@@ -118,7 +118,7 @@ constexpr auto controller_report_descriptor = join(
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------
 
-/// Version 2.01 announces a binary object store.
+/// USB version 2.01 announces a binary object store.
 constexpr std::size_t usb_version = 0x0201;
 /// Position of bcdDevice in the device descriptor. device_descriptor() writes the firmware version to this position.
 constexpr std::size_t device_version_at = 12;
@@ -151,8 +151,8 @@ constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::u
 constexpr std::uint8_t hid_class = 0x03, application_class = 0xFE, vendor_class = 0xFF;
 constexpr std::uint8_t firmware_update_subclass = 1, run_time_protocol = 1;
 
-/// DFU 1.1, section 4.1.3. The board detaches from the bus without a bus reset. The boot loader then reports its
-/// transfer size.
+/// DFU 1.1, section 4.1.3. The board detaches from the bus without a bus reset. After the detach, the boot loader
+/// reports its transfer size.
 constexpr auto firmware_update = []() {
   constexpr std::uint8_t can_download = 1, can_upload = 2, will_detach = 8;
   constexpr std::size_t detach_timeout_ms = 255, transfer_size = 2048;

@@ -44,7 +44,7 @@ std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
                                              const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();
 std::span<const std::byte> binary_object_store();
-/// Empty for an interface that is not HID.
+/// Returns an empty span for an interface that is not HID.
 std::span<const std::byte> hid_descriptor(std::uint8_t interface_number);
 std::span<const std::byte> hid_report_descriptor(std::uint8_t interface_number);
 std::span<const std::byte> microsoft_descriptor_set();

@@ -12,13 +12,13 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// Bound of the events in one poll. The bus produces fewer events in 50 us, so no event is delayed.
+/// Largest number of events in one poll. The bus produces fewer events in 50 us, so no event is delayed.
 constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // indices in endpoints_
 
-/// Time to cancel a report on its endpoint and to load a newer report. Without this time before the next control
-/// interrupt and the next start of frame, the host might poll while no report is loaded.
+/// Time to cancel a report on its endpoint and to load a newer report. A replacement needs this time before the next
+/// control interrupt and before the next start of frame. Otherwise the host might poll while no report is loaded.
 constexpr float pose_replacing_s = 8e-6f;
 
 /// Time in which the main loop detects and loads a new pose, while it also fills the scope FIFO. The final pose is
@@ -229,8 +229,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// Starting with the bus frame before the next poll, the controller report is replaced in every bus frame. This report
-// is then as recent as the pose.
+// Starting with the bus frame before the next poll, the controller report is replaced in every bus frame. The
+// controller report is then as recent as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;

@@ -67,7 +67,7 @@ Answer Device::standard_request(const SetupPacket& setup) {
       setup.value == 0) {
     if (is(get_interface_request, true)) return send_byte(0);
     if (is(set_interface_request, false)) {
-      // The interface has only one setting. Its endpoints restart (USB 2.0, section 9.1.1.5).
+      // The interface has only one setting. The endpoints of the interface restart (USB 2.0, section 9.1.1.5).
       for (Endpoint& endpoint : endpoints_)
         if (endpoint.interface_number == setup.index) restart(endpoint);
       return Answer::done();

@@ -1,5 +1,5 @@
-// The black box: all signals of the last 100 ms before a fault and of the first 100 ms after it, retained across a
-// reset.
+// The black box: all signals of the last 100 ms before a fault and of the first 100 ms after the fault, retained across
+// a reset.
 #pragma once
 
 #include <array>

@@ -35,7 +35,7 @@ class CommandQueue {
   /// Queues a decoded command and records a sign of life of the host. Returns false if the queue is full.
   [[nodiscard]] bool push(const protocol::CommandReport& command);
 
-  /// Records a sign of life without a command.
+  /// Records a sign of life of the host without a command.
   void note_sign_of_life() { sign_of_life_.store(true); }
 
   /// Number of commands queued since start-up.

@@ -27,7 +27,7 @@ namespace inkwell::link {
 class FlashMemory {
  public:
   virtual std::span<const std::uint32_t> sector(std::size_t number) const = 0;
-  /// Programs an erased word. Returns true if the word then has this value.
+  /// Programs an erased word. Returns true if the word then has the value `value`.
   virtual bool program(std::size_t sector, std::size_t word, std::uint32_t value) = 0;
   virtual void erase(std::size_t sector) = 0;
 
@@ -50,7 +50,7 @@ struct RecordHead {
 };
 inline constexpr std::size_t record_head_words = sizeof(RecordHead) / sizeof(std::uint32_t);
 
-/// Returns the number of words of a record with this payload.
+/// Returns the number of words of a record with a payload of this size.
 constexpr std::size_t record_words(std::size_t payload) { return record_head_words + payload + 1; }
 
 class FlashLog {
@@ -69,11 +69,11 @@ class FlashLog {
   /// Number of records over the life of the board.
   std::uint32_t records_written() const { return last_number_; }
   const std::array<std::uint32_t, protocol::store_sectors>& erases() const { return erases_; }
-  /// Returns the number of records with this payload that can be written without an erase.
+  /// Returns the number of records with a payload of this size that can be written without an erase.
   std::size_t room(std::size_t payload) const;
 
-  /// Starts writing a record. `head` needs all members except magic, number and payload. Returns false if there is no
-  /// space. `payload` must remain valid until step() returns `done` or `failed`.
+  /// Starts writing a record. The caller sets all members of `head` except magic, number and payload. Returns false if
+  /// there is no space. `payload` must remain valid until step() returns `done` or `failed`.
   [[nodiscard]] bool begin(RecordHead head, std::span<const std::uint32_t> payload);
   /// Programs one word of the record. After a failure, newest() still returns the previous record.
   Progress step();

@@ -38,10 +38,10 @@ class PoseRecorder {
 
   // ---- main loop ----
 
-  /// Writes the newest pose, without sequence and driver parity. Returns false before the first period.
+  /// Writes the newest pose, without sequence number and driver parity. Returns false before the first period.
   bool read(protocol::PoseReport& report) const;
 
-  /// Like read(), for a report that is sent. The maximum of the interrupt length is then reset.
+  /// Like read(), for a report that is sent. After this call, the maximum of the interrupt length is reset.
   bool take(protocol::PoseReport& report);
 
   /// Records that the report of read() was sent.

@@ -23,7 +23,7 @@ class SelfTest {
   /// A wire is not driven if it follows its pull resistor in this number of consecutive checks. In fewer checks, the
   /// level of a moving encoder could match the pull resistor by chance.
   static constexpr std::uint32_t wire_looks = 8;
-  /// Number of failures with the arm at rest after which an item has failed.
+  /// An item has failed after this number of failures with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
   /// Limits for an arm that moves continuously: number of rounds, and waiting time before each round.
   static constexpr std::uint32_t rounds_maximum = 8;
@@ -41,7 +41,7 @@ class SelfTest {
 
   // ---- main loop ----
 
-  /// Records a result of start-up.
+  /// Records the result of a start-up test.
   void note(Item item, bool is_sound, float figure = 0.0f) { note(item, sound(is_sound), figure); }
 
   /// Returns the wire to be tested, if any. The bridges are off during this test.
@@ -99,8 +99,8 @@ class SelfTest {
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
   control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
-  /// Number of the self-test and the order for the interrupt. The value is 0 after the interrupt has executed the
-  /// order.
+  /// Order for the interrupt, which includes the number of the self-test. The value is 0 after the interrupt has
+  /// executed the order.
   Shared<std::uint32_t> order_{0};
   Shared<std::uint32_t> begun_{0};     ///< number of the current or last self-test of the interrupt
   Shared<bool> round_is_over_{false};  ///< the main loop may read the results until the next order

@@ -9,7 +9,7 @@ namespace inkwell::link {
 ///
 /// The chip has one core. The interrupt preempts the main loop, but the main loop cannot preempt the interrupt. The
 /// processor therefore maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are
-/// completed before the store. Accesses after `store` or `load` start after this operation.
+/// completed before the store. Accesses that follow `store` or `load` start after the store or the load.
 ///
 /// No barrier instruction or lock is necessary. `load` followed by `store` is not atomic, so a word must have only one
 /// writer at a time.

@@ -1,5 +1,6 @@
-// The board as a USB device. It has a HID interface for poses, commands and parameters, and a vendor interface for the
-// scope. It also has a controller interface and a firmware update interface. main() uses the device as follows:
+// The board as a USB device. The board has a HID interface for poses, commands and parameters, and a vendor interface
+// for the scope. The board also has a controller interface and a firmware update interface. main() uses the device as
+// follows:
 //
 //   usb::Device device{port, link, identity};
 //   for (;;) { device.poll(); sleep until an interrupt; }
@@ -40,7 +41,7 @@ class Device final : private ControlRequests {
 
   bool configured() const { return configuration_ != 0; }
   bool suspended() const { return suspended_; }
-  /// True after the host requested the boot loader and received the answer.
+  /// True after the host has requested the boot loader and has received the answer.
   bool leaves_for_update() const { return leaves_for_update_; }
 
  private:
@@ -67,13 +68,13 @@ class Device final : private ControlRequests {
   bool force_is_on() const;
   /// True if the force is off and no queued command can switch it on.
   bool may_store() const;
-  /// True if a request with this claim is permitted. Its program must be the driver, or there must be no driver. Renews
-  /// the claim of the driver, and counts refusals.
+  /// True if a request with this claim is permitted. The program with this claim must be the driver, or there must be
+  /// no driver. Renews the claim of the driver, and counts refusals.
   bool is_permitted(std::uint32_t claim);
   /// Like is_permitted(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
   bool driver_parity() const { return (link_.driver.changes() & 1u) != 0; }
-  /// Lets force and shapes of a program fade after its claim has ended, and switches the force off.
+  /// Lets force and shapes of a program fade after the claim of the program has ended, and switches the force off.
   void driver_gone();
   void let_force_fall();
   void handle(const Event& event);

@@ -30,7 +30,7 @@ struct Event {
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
 };
 
-/// A bus frame: 1 ms of the host's clock. Cycles are counts of the processor's cycle counter.
+/// A bus frame, which lasts 1 ms of the host's clock. Cycles are counts of the processor's cycle counter.
 struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, from the start-of-frame packet
   std::uint32_t count = 0;          ///< bus frames since the port was started
@@ -59,7 +59,7 @@ class Port {
   /// Closes an endpoint. A transfer in progress is canceled without a `sent` event.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
-  /// Answers STALL from now on. Endpoint 0 answers STALL in both directions until the next SETUP.
+  /// The endpoint answers STALL from now on. Endpoint 0 answers STALL in both directions until the next SETUP.
   virtual void stall(std::uint8_t endpoint_address) = 0;
 
   /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
