@@ -193,7 +193,7 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
 void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
   const ReturnChoice choice = draw_return_card(layout.scene.place, layout.scene.size, style_, returned_,
                                                protocol::force_is_on(desk_.view().state()));
-  if (choice == ReturnChoice::send) editor_.apply("values of before", returned_.changes_back(), now_s);
+  if (choice == ReturnChoice::send) editor_.apply("old values", returned_.changes_back(), now_s);
   if (choice == ReturnChoice::keep) returned_.dismiss();
 }
 

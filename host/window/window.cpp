@@ -28,8 +28,8 @@ WindowSettings settings_at_start(const WindowOptions& options) {
   if (options.layout.empty()) return settings;
   const ScopeLayout* layout = find_layout(options.layout, settings.scope.own_layouts);
   if (layout == nullptr)
-    throw std::runtime_error(fmt::format("There is no layout {}. Give one of these with --layout: {}.", options.layout,
-                                         layout_names(settings.scope.own_layouts)));
+    throw std::runtime_error(fmt::format("The layout {} does not exist. Choose a layout with --layout: {}.",
+                                         options.layout, layout_names(settings.scope.own_layouts)));
   settings.scope.layout = *layout;
   return settings;
 }

@@ -131,7 +131,7 @@ std::string write_settings(const WindowSettings& settings, const std::filesystem
   if (stream) std::filesystem::rename(unfinished, file, error);
   if (stream && !error) return {};
   std::filesystem::remove(unfinished, error);
-  return fmt::format("The window's settings could not be kept in {}. Check that its disk is not full.", file.string());
+  return fmt::format("The window settings could not be written to {}. Check that the disk is not full.", file.string());
 }
 
 std::string format_settings(const WindowSettings& settings) {

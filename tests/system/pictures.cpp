@@ -121,7 +121,8 @@ TEST_CASE("pictures: a soft wall, what the proxy is, and a fault that was put in
   rig.picture(picture_file("proxy"));
   rig.move_to(aside);
   rig.control.inject({.fault = "shunt_high", .of = "1"});
-  rig.look_until("it is noticed", [](const Sight& now) { return now.state() == "fault" && now.says("Told since: "); });
+  rig.look_until("it is noticed",
+                 [](const Sight& now) { return now.state() == "fault" && now.says("Reported fault: "); });
   rig.picture(picture_file("injected-fault"));
 }
 
@@ -195,14 +196,14 @@ TEST_CASE("pictures: values that are not stored, the questions, and a reconnecti
       rig.picture(picture_file(name + ", question"));
       rig.click("factory reset/Cancel");
       rig.control.reset();
-      rig.look_until("it is back", [](const Sight& now) { return now.says("Connected again, with"); });
+      rig.look_until("it is back", [](const Sight& now) { return now.says("values have changed"); });
       photograph("again");
-      rig.click("returned/Send the old values");
-      rig.click("tuning/Store on the board");
+      rig.click("returned/Restore old values");
+      rig.click("tuning/Store on board");
       rig.look_until("they are stored", [](const Sight& now) { return now.says("All values are stored"); });
       photograph("stored");
       rig.control.reset();
-      rig.look_until("it is back", [](const Sight& now) { return now.says("the same values as before"); });
+      rig.look_until("it is back", [](const Sight& now) { return now.says("No value has changed"); });
       photograph("the same");
     }
 }
@@ -226,7 +227,7 @@ TEST_CASE("pictures: a guide with its result, in a small window too" * doctest::
     rig.scroll_down(rig.look().item("guides/Apply").at(0.5, -3), 20);
     photograph("guide, the rest");
     rig.click("guides/Apply");
-    rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on the board"); });
+    rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on board"); });
     photograph("guide, applied");
   }
 }
@@ -243,7 +244,7 @@ TEST_CASE("pictures: faults put into the simulation, dark and light, large and s
       rig.switch_force_on();
       rig.control.inject({.fault = "encoder_lost_counts", .of = "2"});
       rig.control.inject({.fault = "shunt_high", .of = "1"});
-      rig.look_until("it is noticed", [](const Sight& now) { return now.says("Told since: "); });
+      rig.look_until("it is noticed", [](const Sight& now) { return now.says("Reported fault: "); });
       rig.enter("faults/search", "leg");
       rig.press_key("Down");
       rig.press_key("Down");
@@ -270,10 +271,10 @@ TEST_CASE("pictures: recording and replay" * doctest::skip()) {
   rig.move_to(aside);
   rig.picture(picture_file("recording"));
   rig.click("recording/Stop recording");
-  rig.click("recording/Replay the last one");
+  rig.click("recording/Replay last recording");
   rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
   rig.picture(picture_file("question"));
-  rig.click("force before replay/Switch off and replay");
+  rig.click("force before replay/Stop and replay");
   rig.look_until("it plays", [](const Sight& now) { return now.says("REPLAY"); });
   rig.move_to(aside);
   rig.control.run(2.0);

@@ -100,9 +100,9 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
   CHECK(rig.look().says("push (simulation)"));
   rig.click("tabs/Tuning");
-  CHECK(rig.look().says("These parameters are the recording's."));
+  CHECK(rig.look().says("These parameters are from the recording."));
   rig.click("replay/Close");
-  CHECK_FALSE(rig.look().says("These parameters are the recording's."));
+  CHECK_FALSE(rig.look().says("These parameters are from the recording."));
 }
 
 TEST_CASE("a recording whose device is unplugged holds everything up to then") {
@@ -116,7 +116,7 @@ TEST_CASE("a recording whose device is unplugged holds everything up to then") {
   rig.control.run(0.5);
   rig.control.resume();
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("The device went away."); });
+  rig.look_until("it says so", [](const Sight& now) { return now.says("The device was disconnected."); });
   const auto recording = recording::read(file);
   CHECK(recording.complete);
   CHECK(recording.size() > 9'000);

@@ -47,8 +47,8 @@ TEST_CASE("a fault is chosen in the table, put in, told with what the board noti
   CHECK(rig.look().says("0 to 18"));
   rig.enter("faults/amount", "6");
   rig.click("faults/Inject");
-  look_for(rig, "6 V, in since");
-  look_for(rig, "Told since: supply_low, after ");
+  look_for(rig, "6 V, active since");
+  look_for(rig, "Reported fault: supply_low, after ");
   CHECK(rig.look().state() == "fault");
   const auto injected = rig.control.status().all.at("injected");
   REQUIRE(injected.size() == 1);
@@ -57,7 +57,7 @@ TEST_CASE("a fault is chosen in the table, put in, told with what the board noti
   rig.click("faults/Heal supply_sag");
   look_for(rig, "over");
   CHECK(count_in(rig) == 0);
-  CHECK(rig.look().says("Told since: supply_low"));
+  CHECK(rig.look().says("Reported fault: supply_low"));
   CHECK_FALSE(rig.look().can_click("faults/Heal all"));
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("without a control port there is nothing to put faults into, and the p
   rig.press_key("F7");  // no such tab
   CHECK(rig.look().has("tuning/wall_stiffness_N_per_m"));
   rig.press_key("F5");
-  look_for(rig, "does not know the control port");
+  look_for(rig, "control port of this virtual board is unknown");
   CHECK_FALSE(rig.look().has("faults/search"));
   rig.press_key("ctrl+Delete");
   CHECK_FALSE(rig.look().says("SIMULATION"));
@@ -112,7 +112,7 @@ TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
   CHECK(count_in(rig) == 0);
   rig.enter("faults/amount", "40");
   rig.click("faults/Inject");
-  look_for(rig, "motor 2, 40 K, in since");
+  look_for(rig, "motor 2, 40 K, active since");
   CHECK_FALSE(rig.look().says("is outside"));
 }
 
@@ -121,10 +121,10 @@ TEST_CASE("what another program puts in and heals is seen, also what is still to
   open_pane(rig);
   rig.control.pause();
   rig.control.inject({.fault = "wire_low", .of = "button_1", .after_s = 0.5});
-  look_for(rig, "button_1, comes at");
+  look_for(rig, "button_1, starts at");
   rig.control.run(0.6);
-  look_for(rig, "button_1, in since");
-  look_for(rig, "Nothing told since");
+  look_for(rig, "button_1, active since");
+  look_for(rig, "No fault reported");
   rig.control.heal_all();
   look_for(rig, "over");
 }
@@ -138,16 +138,16 @@ TEST_CASE("the same fault again takes the place of the first, and outlasts a res
   for (const std::string amount : {"40", "50"}) {
     rig.enter("faults/amount", amount);
     rig.click("faults/Inject");
-    look_for(rig, "motor 2, " + amount + " K, in since");
+    look_for(rig, "motor 2, " + amount + " K, active since");
   }
-  look_for(rig, "motor 2, 40 K, came at");
+  look_for(rig, "motor 2, 40 K, started at");
   CHECK(count_in(rig) == 1);
   rig.control.reset();
   rig.look_until("the device is gone", [](const Sight& now) { return !now.connected(); });
   rig.look_until("it is back", [](const Sight& now) { return now.connected(); });
-  CHECK(rig.look().says("motor 2, 50 K, in since"));
+  CHECK(rig.look().says("motor 2, 50 K, active since"));
   rig.click("faults/Heal all");
-  look_for(rig, "motor 2, 50 K, came at");
+  look_for(rig, "motor 2, 50 K, started at");
   CHECK(count_in(rig) == 0);
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("a wire is chosen from the board's, two of them one after the other") 
     click_in_list(rig, wire);
   }
   rig.click("faults/Inject");
-  look_for(rig, "encoders[0].a+encoders[0].b, in since");
+  look_for(rig, "encoders[0].a+encoders[0].b, active since");
 }
 
 TEST_CASE("a device that is pulled or a board that is gone leaves a pane that says so") {

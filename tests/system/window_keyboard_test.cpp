@@ -169,7 +169,7 @@ TEST_CASE("the space bar stops the force and does not press the focused control"
 TEST_CASE("Enter twice does not forget a calibration") {
   WindowRig rig;
   rig.tap_key("F2");
-  go_to(rig, "Down", "tuning/Store on the board", 60);
+  go_to(rig, "Down", "tuning/Store on board", 60);
   go_to(rig, "Right", "tuning/Factory reset", 3);
   rig.tap_key("Return");
   CHECK(rig.look().with_keyboard() == "factory reset/Cancel");
@@ -183,5 +183,5 @@ TEST_CASE("the page of keys is whole in the smallest window") {
       rig.look_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
           .item("Keys and mouse/Close");
   CHECK(close.y + close.height < 550);  // no scrolling is needed
-  CHECK(rig.look().says("Choose what a plot shows"));
+  CHECK(rig.look().says("Choose signals and plot type"));
 }

@@ -36,9 +36,9 @@ void write_swing(const std::string& file, double times) {
 }
 
 Sight lay_over(WindowRig& rig, const std::string& file) {
-  rig.click("replay/Lay over");
+  rig.click("replay/Overlay");
   rig.enter("choose a file/path", file);
-  rig.click("choose a file/Lay over");
+  rig.click("choose a file/Overlay");
   return rig.look_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
 }
 
@@ -83,8 +83,8 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   CHECK(changed_in_plots(rig, alone, picture_of(rig)) > 10 * of_a_sample);
 
   rig.click("replay/over");
-  rig.click("##Combo_00/Take it away");
-  rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Lay over"); });
+  rig.click("##Combo_00/Remove overlay");
+  rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Overlay"); });
   CHECK(changed_in_plots(rig, alone, picture_of(rig)) < of_a_sample);
 
   const auto position = [](const Sight& sight) {

@@ -99,7 +99,7 @@ TEST_CASE("what is no number, or out of range, leaves the old value and is told"
     rig.enter(stiffness, typed);
     rig.press_key("Return");
     rig.look_until(fmt::format("'{}' is told", typed),
-                   [&](const Sight& now) { return now.says(told) && now.says("stays as it was"); });
+                   [&](const Sight& now) { return now.says(told) && now.says("keeps its old value"); });
     CHECK(rig.look().applied_at_periods() == before);
   }
   CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
@@ -167,9 +167,9 @@ TEST_CASE("a page lists the keys") {
   for (const auto& [way, open] : ways) {
     CAPTURE(way);
     open();
-    rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off, always"); });
+    rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off at any time"); });
     rig.click("Keys and mouse/Close");
-    rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off, always"); });
+    rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off at any time"); });
   }
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   const auto asks = [](const Sight& now) { return now.has("force before replay/Cancel"); };
   const auto ask_with_force = [&] {
     rig.switch_force_on();
-    rig.click("recording/Replay the last one");
+    rig.click("recording/Replay last recording");
     rig.look_until("it asks", asks);
   };
   const auto check_no_replay = [&] {
@@ -223,8 +223,8 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   check_no_replay();
   CHECK(rig.look().state() == "active");
 
-  rig.click("recording/Replay the last one");
-  rig.click("force before replay/Switch off and replay");
+  rig.click("recording/Replay last recording");
+  rig.click("force before replay/Stop and replay");
   const auto replay = rig.look_until("the replay says what it is", [](const Sight& now) { return now.says("REPLAY"); });
   CHECK(replay.state() == "ready");
   CHECK_FALSE(replay.can_click("status/Switch force on"));  // impossible during a replay
@@ -236,7 +236,7 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   RunningProgram other_program(
       {build_directory() + "/inkwell", "force", "on", "--take-over", "--usbip", rig.board.usbip().text()});
   rig.look_until("the force is on", force_is_on);
-  rig.look_until("it is told", [](const Sight& now) { return now.says("what you see is a recording"); });
+  rig.look_until("it is told", [](const Sight& now) { return now.says("The window shows a recording"); });
   rig.click("status/STOP");
   rig.look_until("the force is off", force_is_off);
 }
@@ -270,5 +270,5 @@ TEST_CASE("what the proxy is, is told where it is drawn") {
   rig.control.pause();
   rig.release_mouse();
   rig.move_to(rig.look().item("scene/proxy").centre());
-  rig.look_until("it is told", [](const Sight& now) { return now.says("Where the walls would have the sphere"); });
+  rig.look_until("it is told", [](const Sight& now) { return now.says("A virtual spring connects the proxy"); });
 }

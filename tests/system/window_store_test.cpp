@@ -23,7 +23,7 @@ void make_stiff(WindowRig& rig) {
 }
 
 void store(WindowRig& rig) {
-  rig.click("tuning/Store on the board");
+  rig.click("tuning/Store on board");
   rig.look_until("they are stored", says("All values are stored"));
 }
 
@@ -31,7 +31,7 @@ void store(WindowRig& rig) {
 void restart(WindowRig& rig) {
   rig.control.reset();
   rig.look_until("the window is connected again",
-                 [](const Sight& now) { return now.state() == "ready" && now.says("Connected again"); });
+                 [](const Sight& now) { return now.state() == "ready" && now.says("Reconnected"); });
 }
 
 float stiffness_held_at_the_end(WindowRig& rig) {
@@ -48,12 +48,12 @@ TEST_CASE("values that are not stored are counted; stored by a button, they outl
   rig.click("tabs/Tuning");
   CHECK_FALSE(rig.look().has("tabs/values to store"));
   store(rig);
-  CHECK_FALSE(rig.look().can_click("tuning/Store on the board"));
+  CHECK_FALSE(rig.look().can_click("tuning/Store on board"));
   rig.click("tabs/Guides");
   CHECK_FALSE(rig.look().has("tabs/values to store"));
   restart(rig);
-  CHECK(rig.look().says("The board holds the same values as before."));
-  rig.look_until("that is not told for ever", [](const Sight& now) { return !now.says("Connected again"); });
+  CHECK(rig.look().says("No value has changed since the last connection."));
+  rig.look_until("that is not told for ever", [](const Sight& now) { return !now.says("Reconnected"); });
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
@@ -61,12 +61,12 @@ TEST_CASE("nothing is stored or forgotten while the force is on, and the window 
   WindowRig rig;
   make_stiff(rig);
   rig.switch_force_on();
-  const std::string why = "They can be stored once the force is off.";
+  const std::string why = "The values can be stored once the force is off.";
   const auto sight = rig.look_until("it says why", says(why));
-  CHECK_FALSE(sight.can_click("tuning/Store on the board"));
+  CHECK_FALSE(sight.can_click("tuning/Store on board"));
   CHECK_FALSE(sight.can_click("tuning/Factory reset"));
   rig.press_key("F12");
-  rig.look_until("it can be stored", [](const Sight& now) { return now.can_click("tuning/Store on the board"); });
+  rig.look_until("it can be stored", [](const Sight& now) { return now.can_click("tuning/Store on board"); });
   CHECK_FALSE(rig.look().says(why));
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("the stored values are given back by a question, as one step that can 
   rig.click("tuning/Stiff");
   rig.look_until("two values wait", says("2 values are not stored"));
   rig.click("tuning/Restore");
-  CHECK(rig.look().says("Wall stiffness: 1500 N/m, stored is 800"));
+  CHECK(rig.look().says("Wall stiffness: 1500 N/m, stored: 800"));
   rig.click("restore stored values/Cancel");
   CHECK(rig.look().says("2 values are not stored"));
   rig.click("tuning/Restore");
@@ -98,7 +98,7 @@ TEST_CASE("a factory reset asks first, then forgets what is stored and gives the
   rig.click("factory reset/Cancel");
   CHECK(rig.look().says("All values are stored"));
   rig.click("tuning/Factory reset");
-  rig.click("factory reset/Forget and reset");
+  rig.click("factory reset/Erase and reset");
   rig.look_until("the board has forgotten", says("All values are defaults"));
   CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
 }
@@ -127,21 +127,21 @@ TEST_CASE("after a loss of power the window lists what is not as before, and sen
   make_stiff(rig);
   restart(rig);
   const auto sight = rig.look();
-  CHECK(sight.says("Connected again, with 3 other values"));
+  CHECK(sight.says("Reconnected: 3 values have changed"));
   CHECK(sight.says("Wall stiffness"));
   CHECK(sight.says("800, was 1500 N/m"));
   rig.control.run(0.5);  // time for an automatic change to arrive
   rig.control.resume();
   CHECK(rig.look().applied_at_periods() == 0);
   SUBCASE("the old ones") {
-    rig.click("returned/Send the old values");
-    rig.look_until("nothing is left to say", [](const Sight& now) { return !now.has("returned/Keep these"); });
+    rig.click("returned/Restore old values");
+    rig.look_until("nothing is left to say", [](const Sight& now) { return !now.has("returned/Keep new values"); });
     CHECK(rig.look().applied_at_periods() != 0);
     CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
   }
   SUBCASE("these are kept") {
-    rig.click("returned/Keep these");
-    CHECK_FALSE(rig.look().has("returned/Keep these"));
+    rig.click("returned/Keep new values");
+    CHECK_FALSE(rig.look().has("returned/Keep new values"));
     CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
   }
 }
@@ -152,7 +152,7 @@ TEST_CASE("a cable that was out changes nothing, and the window says so") {
   rig.control.usb(false);
   rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
   rig.control.usb(true);
-  rig.look_until("it says so", says("The board holds the same values as before."));
+  rig.look_until("it says so", says("No value has changed since the last connection."));
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
@@ -164,9 +164,9 @@ TEST_CASE("a guide ends by offering to store what it has changed") {
     if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
     return now.has("guides/Apply");
   });
-  CHECK_FALSE(rig.look().has("guides/Store on the board"));
+  CHECK_FALSE(rig.look().has("guides/Store on board"));
   rig.click("guides/Apply");
-  rig.look_until("it offers to store", says("It lasts until the board loses its power, unless you store it."));
-  rig.click("guides/Store on the board");
-  rig.look_until("it is stored", says("It is stored on the board, and outlives its power."));
+  rig.look_until("it offers to store", says("The values are lost at power-off unless you store them."));
+  rig.click("guides/Store on board");
+  rig.look_until("it is stored", says("The values are stored on the board."));
 }

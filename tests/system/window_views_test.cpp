@@ -86,12 +86,12 @@ TEST_CASE("a signal is found by a word and dragged into a plot, and a formula is
 
   rig.click("scope/New formula");
   rig.enter("formula/formula", "force_N +");
-  rig.look_until("it is refused", [](const Sight& now) { return now.says("ends too early"); });
-  CHECK_FALSE(rig.look().can_click("formula/Draw it"));
+  rig.look_until("it is refused", [](const Sight& now) { return now.says("formula is incomplete"); });
+  CHECK_FALSE(rig.look().can_click("formula/Draw signal"));
   rig.enter("formula/formula", "force_x_N - force_y_N");
   rig.enter("formula/name of formula", "difference_N");
-  rig.look_until("it has a unit", [](const Sight& now) { return now.says("It is drawn in N."); });
-  rig.click("formula/Draw it");
+  rig.look_until("it has a unit", [](const Sight& now) { return now.says("Unit of the plot: N."); });
+  rig.click("formula/Draw signal");
   rig.look_until("it has a plot", [](const Sight& now) { return now.has("scope/difference_N"); });
 }
 
@@ -108,8 +108,8 @@ TEST_CASE("where nothing answers at the address that was given, the window says 
 TEST_CASE("where there is no device, a button starts a virtual one") {
   WindowRig rig;
   rig.control.usb(false);
-  rig.look_until("it is offered", [](const Sight& now) { return now.can_click("connection/Start a virtual arm"); });
-  for (int step = 0; step < 12 && rig.look().with_keyboard() != "connection/Start a virtual arm"; ++step)
+  rig.look_until("it is offered", [](const Sight& now) { return now.can_click("connection/Start virtual board"); });
+  for (int step = 0; step < 12 && rig.look().with_keyboard() != "connection/Start virtual board"; ++step)
     rig.tap_key("ctrl+Tab");
   rig.tap_key("Return");
   rig.look_until("its arm is there", [](const Sight& now) { return now.state() == "ready"; });

@@ -26,9 +26,11 @@ std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpda
   if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||
       protocol::force_is_on(view.state()))
     return std::nullopt;
-  return Banner{fmt::format("The board has firmware {}, this companion brings {}.", version, firmware.version),
-                "Both speak the same protocol, so the board may stay as it is. Stored parameters stay in either case.",
-                BannerAction::update_firmware, "Update"};
+  return Banner{
+      fmt::format("The board runs firmware {}, and this companion contains firmware {}.", version, firmware.version),
+      "Both firmware versions use the same protocol, so the update is optional. The update keeps the stored "
+      "parameters.",
+      BannerAction::update_firmware, "Update"};
 }
 
 }  // namespace
@@ -43,16 +45,17 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const Fi
   if (!view.connected() || !view.status.information) return std::nullopt;
   if (is_replay && protocol::force_is_on(view.state()))
     return Banner{
-        "The arm's force is on, and what you see is a recording.",
-        "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",
+        "The window shows a recording, but the force of the arm is on.",
+        "Another program has switched the force on. STOP switches the force off. Close the replay to see the arm.",
         BannerAction::none};
   if (view.status.command_problem)
-    return Banner{*view.status.command_problem, "STOP switches the force off, whichever program drives the arm.",
-                  BannerAction::take_over, "Take over"};
+    return Banner{*view.status.command_problem,
+                  "STOP switches the force off, even while another program drives the arm.", BannerAction::take_over,
+                  "Take over"};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
   if (heat.level == HeatLevel::cool) return firmware_banner(view, firmware);
-  return Banner{fmt::format("Motor {} is {}: {:.0f} %.", heat.motor, heat.level == HeatLevel::hot ? "hot" : "warm",
-                            100.0f * heat.hottest),
+  return Banner{fmt::format("Motor {} is {}: motor heat {:.0f} %.", heat.motor,
+                            heat.level == HeatLevel::hot ? "hot" : "warm", 100.0f * heat.hottest),
                 heat_advice(heat), BannerAction::none};
 }
 

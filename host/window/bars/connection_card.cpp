@@ -10,9 +10,9 @@ using device::Connection;
 
 const char* connection_title(const device::SessionStatus& status) {
   switch (status.connection) {
-    case Connection::searching: return "Looking for a device";
+    case Connection::searching: return "Searching for a device";
     case Connection::connected: return status.is_simulation ? "Connected to a simulation" : "Connected";
-    case Connection::incompatible: return "Another protocol version";
+    case Connection::incompatible: return "Protocol mismatch";
     case Connection::no_permission: return "No permission";
   }
   return "";
@@ -28,10 +28,12 @@ namespace {
 bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer) {
   const Palette& palette = *style.palette;
   ImGui::Dummy({0, style.points(4)});
-  const bool asks = coloured_button("Start a virtual arm", palette.accent, palette.pane, {-1, style.points(32)});
-  wrapped_text(offer.problem.empty() ? palette.text_quiet : palette.danger_text,
-               offer.problem.empty() ? "The same firmware on a simulated board, arm and hand: the mouse is the hand."
-                                     : offer.problem);
+  const bool asks = coloured_button("Start virtual board", palette.accent, palette.pane, {-1, style.points(32)});
+  wrapped_text(
+      offer.problem.empty() ? palette.text_quiet : palette.danger_text,
+      offer.problem.empty()
+          ? "The virtual board runs the same firmware with a simulated arm. The mouse moves the simulated hand."
+          : offer.problem);
   return asks;
 }
 
@@ -66,7 +68,9 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
     // An error of the search is more useful than the message that no device was found.
     const std::string& message = view.list_error.empty() ? view.status.message : view.list_error;
-    wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
+    wrapped_text(palette.text_quiet, message.empty()
+                                         ? "Plug in the USB cable of the arm. The window then connects automatically."
+                                         : message);
     if (view.status.connection == Connection::incompatible)
       outcome.firmware.update = draw_firmware_offer(style, firmware);
     if (view.must_choose) outcome.chosen_serial_number = draw_choice(style, view);

@@ -19,7 +19,7 @@ void draw_progress(const Style& style, const FirmwareUpdater::Sight& sight) {
                      packed(palette.accent), round);
   ImGui::Dummy({width, height + style.points(4)});
   text(palette.text_quiet, sight.message);
-  wrapped_text(palette.text, "Leave its cable and its power as they are.");
+  wrapped_text(palette.text, "Do not unplug the board, and do not switch off its power.");
 }
 
 bool update_button(const char* label, const Style& style) {
@@ -44,33 +44,33 @@ FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater
     case Phase::asks:
       text(style.fonts.strong, palette.caution, "The board has a newer firmware");
       wrapped_text(palette.text_quiet, sight.message);
-      outcome.update = update_button("Write the older firmware", style);
+      outcome.update = update_button("Write older firmware", style);
       ImGui::SameLine();
       outcome.dismiss = quiet_button("Leave it", style);
       break;
     case Phase::failed:
-      text(style.fonts.strong, palette.caution, "The update did not succeed");
+      text(style.fonts.strong, palette.caution, "The update failed");
       wrapped_text(palette.text_quiet, sight.message);
       outcome.update = update_button("Try again", style);
       ImGui::SameLine();
       outcome.dismiss = quiet_button("Leave it", style);
       break;
     case Phase::done:
-      text(style.fonts.strong, palette.good, "The firmware is written");
+      text(style.fonts.strong, palette.good, "The firmware was updated");
       wrapped_text(palette.text_quiet, sight.message);
-      outcome.dismiss = update_button("Go on", style);
+      outcome.dismiss = update_button("Continue", style);
       break;
     case Phase::idle:
-      text(style.fonts.strong, palette.caution, "A board waits for its firmware");
+      text(style.fonts.strong, palette.caution, "A board is in its boot loader");
       wrapped_text(
           palette.text_quiet,
           sight.brings.empty()
-              ? "It is in the boot loader of its chip, and this companion has no firmware to write: it was not "
-                "built or installed. `tools/build board` makes it."
-              : fmt::format("It is in the boot loader of its chip, and no firmware runs. This companion brings {}{}.",
-                            sight.brings,
-                            sight.board.empty() ? "; a board that still says which it is gets the one for it" : ""));
-      if (!sight.brings.empty()) outcome.update = update_button("Write its firmware", style);
+              ? "No firmware runs on this board, and this companion contains no firmware. Build the firmware with "
+                "`tools/build board`."
+              : fmt::format(
+                    "No firmware runs on this board. This companion contains {}.{}", sight.brings,
+                    sight.board.empty() ? " If the board reports its name, it receives the matching firmware." : ""));
+      if (!sight.brings.empty()) outcome.update = update_button("Write firmware", style);
   }
   return outcome;
 }
@@ -79,12 +79,12 @@ bool draw_firmware_offer(const Style& style, const FirmwareUpdater::Sight& sight
   if (sight.brings.empty()) {
     if (!sight.board.empty())
       wrapped_text(style.palette->text_quiet,
-                   fmt::format("This companion has no firmware for the board {}.", sight.board));
+                   fmt::format("This companion contains no firmware for the board {}.", sight.board));
     return false;
   }
   wrapped_text(style.palette->text_quiet,
-               fmt::format("This companion brings {}. Stored parameters stay.", sight.brings));
-  return update_button("Update the board", style);
+               fmt::format("This companion contains {}. An update keeps the stored parameters.", sight.brings));
+  return update_button("Update firmware", style);
 }
 
 }  // namespace inkwell::window

@@ -39,7 +39,7 @@ void FirmwareUpdater::begin(const std::string& serial_number) {
   begun_ = serial_number;
   allows_downgrade_ = sight_.phase == Phase::asks;
   sight_.phase = Phase::runs;
-  sight_.message = "beginning";
+  sight_.message = "starting";
   sight_.done = 0;
   changed_.notify_one();
 }
@@ -78,7 +78,7 @@ void FirmwareUpdater::work(const std::stop_token& stop) {
 firmware_update::Image FirmwareUpdater::image_for(const std::string& board_name) const {
   if (auto own = firmware_update::own_image_for(board_name)) return std::move(*own);
   if (!board_name.empty())
-    throw firmware_update::NoImage(fmt::format("This companion has no firmware for the board {}.", board_name));
+    throw firmware_update::NoImage(fmt::format("This companion contains no firmware for the board {}.", board_name));
   return firmware_update::read_image(image_);
 }
 
@@ -133,10 +133,11 @@ void FirmwareUpdater::update(const std::string& serial_number, bool allows_downg
          .on_progress = [this](std::string_view step, double done) { set(Phase::runs, std::string(step), done); }});
     if (result.firmware_version.empty())
       set(Phase::failed,
-          "The firmware was written and read back, but the board does not show itself. Switch its power off and on.",
+          "The firmware was written and verified, but the board did not reconnect. Switch the power of the board off "
+          "and on.",
           1);
     else
-      set(Phase::done, fmt::format("The board has firmware {} now.", result.firmware_version), 1);
+      set(Phase::done, fmt::format("The board now runs firmware {}.", result.firmware_version), 1);
   } catch (const firmware_update::Downgrade& question) {
     set(Phase::asks, question.what(), 0);
   } catch (const std::exception& error) {

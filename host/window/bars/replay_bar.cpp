@@ -89,7 +89,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
              time_width);
   ImGui::SetCursorScreenPos({right + gap + time_width + gap, corner.y});
   const bool is_to_be_closed = button("Close", {close_width, 0});
-  help_on_hover("Close", "Back to the device.", style);
+  help_on_hover("Close", "Closes the replay and shows the device.", style);
   end_pane();
   if (!is_to_be_closed) return;
   replay_.reset();
@@ -112,28 +112,29 @@ void ReplayBar::draw_controls(const Style& style) {
       if (ImGui::Selectable(speed_label(speed).c_str(), speed == replay_->speed())) replay_->set_speed(speed);
     ImGui::EndCombo();
   }
-  help_on_hover("Speed", "1 x is as fast as it was.", style);
+  help_on_hover("Speed", "Replay speed relative to the recording.", style);
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   const auto& recording = replay_->recording();
   std::string name = name_;
   if (recording.information.simulation) name += " (simulation)";
-  if (!recording.complete) name += ", end missing";
+  if (!recording.complete) name += ", incomplete";
   text(style.fonts.strong, style.palette->text, fitted(name, style.points(name_points)));
   if (!recording.remarks.empty())
-    help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
+    help_on_hover("Ignored content", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
 }
 
 /// Draws the controls of the overlaid recording: name, alignment, open and close.
 void ReplayBar::draw_over(const Style& style) {
   if (!over_) {
-    if (button("Lay over", {style.points(74), 0}))
-      chooser_.ask({.title = "Lay another recording over this one",
-                    .help = "Its signals are drawn paler in the same plots.",
-                    .button = "Lay over",
+    if (button("Overlay", {style.points(74), 0}))
+      chooser_.ask({.title = "Overlay a second recording",
+                    .help = "The plots draw the second recording in paler colors.",
+                    .button = "Overlay",
                     .endings = {".h5", ".csv"},
                     .suggestion = std::filesystem::current_path()});
-    help_on_hover("Lay over", problem_.empty() ? "A second recording, paler, in the same plots." : problem_, style);
+    help_on_hover("Overlay", problem_.empty() ? "Adds a second recording to the plots, in paler colors." : problem_,
+                  style);
     if (!problem_.empty()) {
       ImGui::SameLine();
       const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -143,13 +144,13 @@ void ReplayBar::draw_over(const Style& style) {
     ImGui::SetNextItemWidth(style.points(150));
     const std::string shown = fitted(over_->recording().name, style.points(112));
     if (ImGui::BeginCombo("##over", shown.c_str())) {
-      text(style.palette->text_quiet, "aligned at");
-      if (ImGui::Selectable("the begin", aligned_at_.empty())) align_at({});
+      text(style.palette->text_quiet, "Align at");
+      if (ImGui::Selectable("start", aligned_at_.empty())) align_at({});
       for (const std::string& mark : recording::common_marks(replay_->recording(), over_->recording()))
         if (ImGui::Selectable(mark.c_str(), aligned_at_ == mark)) align_at(mark);
       ImGui::Separator();
-      const bool goes = ImGui::Selectable("Take it away");
-      note_item("Take it away");
+      const bool goes = ImGui::Selectable("Remove overlay");
+      note_item("Remove overlay");
       ImGui::EndCombo();
       if (goes) {
         over_.reset();
@@ -160,7 +161,7 @@ void ReplayBar::draw_over(const Style& style) {
     }
     note_item("over");
     note_text(shown);
-    help_on_hover("Laid over, paler", over_->recording().name, style);
+    help_on_hover("Overlaid recording", over_->recording().name, style);
   }
   if (const auto chosen = chooser_.draw(style)) try {
       problem_.clear();

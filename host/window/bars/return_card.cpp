@@ -50,15 +50,14 @@ ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_i
   const Palette& palette = *style.palette;
   const std::size_t count = values.rows().size();
   if (count == 0) {
-    text(style.fonts.strong, palette.good, "Connected again");
-    wrapped_text(palette.text_quiet, "The board holds the same values as before.");
+    text(style.fonts.strong, palette.good, "Reconnected");
+    wrapped_text(palette.text_quiet, "No value has changed since the last connection.");
     return ReturnChoice::none;
   }
   text(style.fonts.strong, palette.caution,
-       count == 1 ? std::string("Connected again, with another value")
-                  : fmt::format("Connected again, with {} other values", count));
-  wrapped_text(palette.text_quiet,
-               "The board does not hold what it held before. Values that are not stored go with its power.");
+       count == 1 ? std::string("Reconnected: 1 value has changed")
+                  : fmt::format("Reconnected: {} values have changed", count));
+  wrapped_text(palette.text_quiet, "Values that are not stored are lost at power-off.");
   draw_rows(values, room, style);
   ImGui::Dummy({0, style.points(2)});
   const float gap = ImGui::GetStyle().ItemSpacing.x;
@@ -68,15 +67,15 @@ ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_i
                        return protocol::needs_force_off(protocol::info(row.parameter));
                      });
   ImGui::BeginDisabled(waits);
-  if (coloured_button(count == 1 ? "Send the old value" : "Send the old values", palette.accent, palette.pane, half))
+  if (coloured_button(count == 1 ? "Restore old value" : "Restore old values", palette.accent, palette.pane, half))
     choice = ReturnChoice::send;
   ImGui::EndDisabled();
   help_on_hover("",
-                waits ? "Switch the force off first: some of them say where the arm is."
-                      : "Sends them together, in one transaction. It can be undone.",
+                waits ? "Switch the force off first. While the force is on, the board refuses some of these values."
+                      : "Sends all old values in one transaction. You can undo this change.",
                 style);
   ImGui::SameLine();
-  if (button("Keep these", half)) choice = ReturnChoice::keep;
+  if (button("Keep new values", half)) choice = ReturnChoice::keep;
   return choice;
 }
 

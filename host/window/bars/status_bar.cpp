@@ -80,7 +80,7 @@ void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   const DeviceView& view = desk.view();
   text(style.fonts.strong, palette.text, "Devices");
   if (!view.list_error.empty()) wrapped_text(palette.caution, view.list_error);
-  if (view.listed.empty()) text(palette.text_quiet, "None found.");
+  if (view.listed.empty()) text(palette.text_quiet, "No device found.");
   for (const device::Endpoint& endpoint : view.listed) {
     const bool present =
         view.connected() && view.status.information && view.status.information->serial_number == endpoint.serial_number;
@@ -144,7 +144,7 @@ void StatusBar::draw_switches(ImVec2 corner, const Style& style, std::uint8_t sw
   }
   ImGui::SetCursorScreenPos(corner);
   ImGui::InvisibleButton("switches", {x - corner.x, style.points(item_points)});
-  help_on_hover("Switches", "The two buttons of the stylus, and the inkwell that feels it.", style);
+  help_on_hover("Switches", "State of the two stylus buttons and of the inkwell switch.", style);
 }
 
 float StatusBar::height(float width, const Style& style) const {
@@ -166,7 +166,7 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   ImGui::PushFont(style.fonts.strong);
   outcome.stop = stop_button(make_room(stop_points), style);
   ImGui::PopFont();
-  help_on_hover("Stop", "Switches the force off at once. Escape and F12 do the same, whatever has the focus.", style);
+  help_on_hover("Stop", "Switches the force off immediately, like the keys Escape and F12.", style);
 
   const bool alive = view.pose.has_value();
   const bool active = alive && protocol::force_is_on(view.state());
@@ -180,13 +180,14 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   }
   ImGui::EndDisabled();
   help_on_hover("Force",
-                input.is_replay ? "Close the replay first: what you see is a recording, not the arm."
-                                : "While it is on, walls and programs push back. It rises gently and goes off at once.",
+                input.is_replay ? "Close the replay first. The window shows a recording instead of the arm."
+                                : "While the force is on, walls and programs push the hand. The force rises slowly and "
+                                  "switches off immediately.",
                 style);
   outcome.toggle_scope = toggle_button("Scope", input.scope_is_shown, style, make_room(scope_points));
   outcome.toggle_theme = button(style.palette == &dark_palette ? "Light theme" : "Dark theme", make_room(theme_points));
   outcome.help = button("?", make_room(help_points));
-  help_on_hover("Keys and mouse", "What every key does. F1 opens it too.", style);
+  help_on_hover("Keys and mouse", "Lists all keys and mouse actions. F1 also opens this list.", style);
 }
 
 StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk,

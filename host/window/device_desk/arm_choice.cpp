@@ -20,10 +20,13 @@ std::optional<device::Endpoint> ArmChoice::pick(const std::vector<device::Endpoi
   if (auto same = taken_.empty() ? std::nullopt : named(taken_)) return same;
   if (found.size() > 1)
     throw device::NoDevice(fmt::format(
-        "{} arms are plugged in. Choose one here; the list in the status bar leads to another later.", found.size()));
+        "{} arms are plugged in. Choose an arm. To change the arm later, use the device list in the status bar.",
+        found.size()));
   if (saw_several_ && !taken_.empty())
-    throw device::NoDevice(fmt::format("The arm {} is gone, and {} is another one. Plug it in again, or choose.",
-                                       taken_, found.front().serial_number));
+    throw device::NoDevice(
+        fmt::format("The arm {} is disconnected, but the arm {} is connected. Plug in the first arm again, or choose "
+                    "the second arm.",
+                    taken_, found.front().serial_number));
   taken_ = found.front().serial_number;
   return found.front();
 }

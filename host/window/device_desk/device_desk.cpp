@@ -84,7 +84,8 @@ void DeviceDesk::follow_choice() {
   wanted_ = *std::exchange(choice_, std::nullopt);
   events_.add(session_->take_events());
   if (view_.connected())
-    events_.add(device::event_now(device::EventKind::connection, "The device was left for another one.", std::nullopt));
+    events_.add(device::event_now(device::EventKind::connection, "Disconnected, because the user chose another device.",
+                                  std::nullopt));
   session_.reset();  // the old session releases the device before the new session opens it
   view_ = DeviceView{};
   {

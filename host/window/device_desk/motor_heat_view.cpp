@@ -26,12 +26,14 @@ std::string heat_advice(const MotorHeatView& heat) {
     case HeatLevel::cool: return {};
     case HeatLevel::warm:
       return fmt::format(
-          "From {:.0f} % on motor {} gets less current, and the force may be weaker. Push less or pause.",
+          "Above {:.0f} % motor heat, the current of motor {} is reduced, and the force may be weaker. Push less or "
+          "pause.",
           100.0f * protocol::motor_heat_holds_back_from, heat.motor);
     case HeatLevel::hot:
       return fmt::format(
-          "Motor {} has all the heat that it bears: it gets its continuous current at most. Switch the force off until "
-          "it has cooled, or lower the force limit.",
+          "Motor {} has reached its heat limit, and its current is limited to the continuous current. Switch the force "
+          "off "
+          "until the motor has cooled, or lower the force limit.",
           heat.motor);
   }
   return {};

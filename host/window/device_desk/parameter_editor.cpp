@@ -185,13 +185,13 @@ std::span<const Preset> presets() {
   using enum Parameter;
   static const std::array<Preset, 3> all{{
       {"Soft",
-       "Like pressing into rubber: 250 N/m with little damping.",
+       "A wall like rubber: 250 N/m with little damping.",
        {{wall_stiffness_N_per_m, 250.0f}, {wall_damping_Ns_per_m, 0.5f}}},
       {"Stiff",
-       "Like wood: 1500 N/m, damped so that it does not ring.",
+       "A wall like wood: 1500 N/m with enough damping to prevent vibration.",
        {{wall_stiffness_N_per_m, 1500.0f}, {wall_damping_Ns_per_m, 3.0f}}},
       {"Viscous",
-       "Like honey behind the wall: 120 N/m and 10 Ns/m.",
+       "A wall like honey: 120 N/m with a damping of 10 Ns/m.",
        {{wall_stiffness_N_per_m, 120.0f}, {wall_damping_Ns_per_m, 10.0f}}},
   }};
   return all;

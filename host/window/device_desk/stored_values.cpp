@@ -21,8 +21,8 @@ std::string stored_title(const DeviceView& view) {
 }
 
 std::string why_storing_waits(const DeviceView& view) {
-  if (!view.connected() || !view.status.store) return "It needs a device. Plug one in.";
-  if (view.status.is_storing) return "The board is writing.";
+  if (!view.connected() || !view.status.store) return "No device is connected. Plug in a device.";
+  if (view.status.is_storing) return "The board is writing its flash memory.";
   if (!protocol::may_store(view.state())) return std::string(info(StoreResult::force_is_on).remedy);
   if (view.status.store->report.stores_left == 0) return std::string(info(StoreResult::no_room).remedy);
   return {};

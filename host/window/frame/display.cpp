@@ -36,15 +36,16 @@ std::optional<ScreenSize> monitor_room() {
 std::string last_glfw_error() {
   const char* description = nullptr;
   glfwGetError(&description);
-  return description == nullptr ? "no reason given" : description;
+  return description == nullptr ? "no reason reported" : description;
 }
 
 }  // namespace
 
 Display::Display(ScreenSize points, float scale, const std::string& title) {
   if (!start_window_system())
-    throw DisplayError("No display could be opened (" + last_glfw_error() +
-                       "). Run it in a graphical session, or use the commands that need none: inkwell --help.");
+    throw DisplayError(
+        "No display could be opened (" + last_glfw_error() +
+        "). Run inkwell in a graphical session, or use a command that needs no display (inkwell --help).");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -60,9 +61,9 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
     glfwTerminate();
-    throw DisplayError("OpenGL 3.3 is needed and this display does not offer it (" + reason +
-                       "). Install a driver for the graphics card, or Mesa's software OpenGL (libgl1-mesa-dri) and "
-                       "set LIBGL_ALWAYS_SOFTWARE=1.");
+    throw DisplayError("OpenGL 3.3 is needed, but this display does not provide OpenGL 3.3 (" + reason +
+                       "). Install a driver for the graphics card. Without a graphics card, install libgl1-mesa-dri "
+                       "and set LIBGL_ALWAYS_SOFTWARE=1.");
   }
   const auto least = window_size(smallest_window_points, scale_, room);
   glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);

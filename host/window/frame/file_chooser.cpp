@@ -105,8 +105,8 @@ void FileChooser::draw_entries(const Style& style) {
   if (!listing_.problem.empty())
     wrapped_text(palette.caution, listing_.problem);
   else if (listing_.entries.empty())
-    text(palette.text_quiet,
-         shows_all_files_ || question_.endings.empty() ? "Nothing is in here." : "No such file is in here.");
+    text(palette.text_quiet, shows_all_files_ || question_.endings.empty() ? "This folder is empty."
+                                                                           : "This folder has no files of this type.");
   ImGui::EndChild();
   ImGui::PopStyleColor();
   if (wanted) enter(*wanted);
@@ -137,11 +137,11 @@ bool FileChooser::draw_buttons(const Style& style) {
   const ImVec2 size{style.points(100), 0};
   if (to_be_replaced_) {
     wrapped_text(style.palette->caution,
-                 fmt::format("{} exists already. Replace it?", to_be_replaced_->filename().string()));
+                 fmt::format("The file {} already exists. Replace the file?", to_be_replaced_->filename().string()));
     if (coloured_button("Replace", style.palette->danger, style.palette->on_danger, size))
       chosen_ = std::exchange(to_be_replaced_, std::nullopt);
     ImGui::SameLine();
-    if (button("Keep it", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) to_be_replaced_.reset();
+    if (button("Keep file", size) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape))) to_be_replaced_.reset();
     return false;
   }
   if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->pane, size)) accept();
@@ -164,7 +164,7 @@ std::optional<fs::path> FileChooser::draw(const Style& style) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(question_.endings.empty() ? -1.0f : -style.points(158));
   ImGui::BeginDisabled(to_be_replaced_.has_value());
-  const bool entered = ImGui::InputTextWithHint("##path", question_.is_new_file ? "name of the file" : "name or path",
+  const bool entered = ImGui::InputTextWithHint("##path", question_.is_new_file ? "file name" : "file name or path",
                                                 &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("path");
   ImGui::EndDisabled();

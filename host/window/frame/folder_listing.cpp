@@ -17,11 +17,10 @@ namespace {
 
 std::string folder_problem(const fs::path& folder, const std::error_code& error) {
   if (error == std::errc::no_such_file_or_directory)
-    return fmt::format("There is no folder {}. Choose another one.", folder.string());
+    return fmt::format("The folder {} does not exist. Choose another folder.", folder.string());
   if (error == std::errc::not_a_directory) return fmt::format("{} is a file, not a folder.", folder.string());
   if (error == std::errc::permission_denied)
-    return fmt::format("You may not look into {}. Choose another folder, or ask its owner for the permission.",
-                       folder.string());
+    return fmt::format("You have no permission to read the folder {}. Choose another folder.", folder.string());
   return fmt::format("The folder {} cannot be read: {}.", folder.string(), error.message());
 }
 
@@ -73,20 +72,21 @@ fs::path with_ending(fs::path path, std::span<const std::string> endings) {
 
 std::string reading_problem(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) return fmt::format("There is no file {}.", file.string());
+  if (!fs::exists(file, error)) return fmt::format("The file {} does not exist. Choose another file.", file.string());
   if (fs::is_directory(file, error)) return fmt::format("{} is a folder, not a file.", file.string());
-  if (access(file.c_str(), R_OK) != 0) return fmt::format("You may not read {}.", file.string());
+  if (access(file.c_str(), R_OK) != 0)
+    return fmt::format("You have no permission to read the file {}. Choose another file.", file.string());
   return {};
 }
 
 std::string writing_problem(const fs::path& file) {
   std::error_code error;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (fs::is_directory(file, error)) return fmt::format("{} is a folder. Type the name of a file.", file.string());
+  if (fs::is_directory(file, error)) return fmt::format("{} is a folder. Type a file name.", file.string());
   if (!fs::is_directory(folder, error))
-    return fmt::format("There is no folder {}. Choose another one.", folder.string());
+    return fmt::format("The folder {} does not exist. Choose another folder.", folder.string());
   if (access(folder.c_str(), W_OK) != 0 || (fs::exists(file, error) && access(file.c_str(), W_OK) != 0))
-    return fmt::format("You may not write {}. Choose another folder.", file.string());
+    return fmt::format("You have no permission to write the file {}. Choose another folder.", file.string());
   return {};
 }
 

@@ -22,7 +22,7 @@ void FramesReport::add(double period_s, double drawing_s, std::optional<double> 
 
 std::string FramesReport::text() const {
   const auto count = static_cast<double>(std::max<std::uint64_t>(frames_, 1));
-  std::string report = fmt::format("{:.1f} frames per second while something moved ({:.1f} s), {:.1f} ms to draw one\n",
+  std::string report = fmt::format("{:.1f} frames per second during motion ({:.1f} s), {:.1f} ms to draw a frame\n",
                                    count / std::max(frames_s_, 1e-3), frames_s_, 1000.0 * drawing_s_ / count);
   if (pose_ages_s_.empty()) return report;
   std::vector<double> sorted = pose_ages_s_;
@@ -31,8 +31,8 @@ std::string FramesReport::text() const {
     return 1000.0 * sorted[static_cast<std::size_t>(std::lround(part * static_cast<double>(sorted.size() - 1)))];
   };
   report += fmt::format(
-      "drawn pose older than the newest that had arrived by {:.0f} ms at the median, {:.0f} ms in 99 % of the frames, "
-      "{:.0f} ms at most; by no more than {:.1f} ms, a frame of the display, in {:.2f} %\n",
+      "age of the drawn pose relative to the newest received pose: median {:.0f} ms, 99th percentile {:.0f} ms, "
+      "maximum {:.0f} ms; at most one display frame ({:.1f} ms) in {:.2f} % of the frames\n",
       part_ms(0.5), part_ms(0.99), part_ms(1.0), 1000.0 * display_period_s_,
       100.0 * static_cast<double>(poses_within_a_frame_) / static_cast<double>(sorted.size()));
   return report;

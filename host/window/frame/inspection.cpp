@@ -134,7 +134,7 @@ bool Inspection::end_frame(const nlohmann::json& more, int width, int height) {
       answer["closing"] = true;
       goes_on = false;
     } else {
-      answer["error"] = "There is no such question. Ask look, picture FILE or close.";
+      answer["error"] = "Unknown request. Send look, picture FILE or close.";
     }
     fmt::print("{}\n", answer.dump());
   }

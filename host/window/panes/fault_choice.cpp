@@ -26,8 +26,9 @@ std::optional<double> number(const std::string& text, std::string_view of_what) 
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code == std::errc{} && end == text.data() + text.size() && std::isfinite(value)) return value;
   const bool has_comma = text.find(',') != std::string::npos;
-  throw device::Error(fmt::format("`{}` is not a number. Give {} as a number{}.", text, of_what,
-                                  has_comma ? " with a decimal point and without commas" : ", or leave it empty"));
+  throw device::Error(
+      fmt::format("`{}` is not a number. Enter {} as a number{}.", text, of_what,
+                  has_comma ? " with a decimal point and without commas" : ", or leave the field empty"));
 }
 
 std::string_view word_for(InjectionPlace place) {
@@ -45,12 +46,14 @@ std::string_view word_for(InjectionPlace place) {
 std::string_view obstacle(const device::SessionStatus& status, bool knows_control_port) {
   const bool connected = status.connection == device::Connection::connected;
   if (connected && !status.is_simulation)
-    return "This is a real device, and faults are put into a simulation only. Start one with `inkwell --virtual`.";
+    return "This is a real device, but faults can be injected only into a virtual board. Start a virtual board with "
+           "`inkwell --virtual`.";
   if (knows_control_port) return "";
   if (connected)
-    return "The window does not know the control port of this virtual board. Start the window with `--control` and the "
-           "port that the board printed, or with `--virtual`.";
-  return "Faults are put into a simulation only, and none is here. Start one with `inkwell --virtual`.";
+    return "The control port of this virtual board is unknown. Start the window with `--virtual`, or with `--control` "
+           "and the port that the board printed.";
+  return "Faults can be injected only into a virtual board, but no device is connected. Start a virtual board with "
+         "`inkwell --virtual`.";
 }
 
 std::string_view title_of(InjectionPart part) {
@@ -95,8 +98,8 @@ protocol::InjectionRequest request_of(const TypedFault& typed) {
   protocol::InjectionRequest request{.fault = std::string(row.name)};
   if (row.place != InjectionPlace::none) request.of = typed.of;
   if (row.has_amount()) request.amount = number(typed.amount, "the amount");
-  request.after_s = number(typed.after_s, "the time until it comes").value_or(0.0);
-  request.for_s = number(typed.for_s, "how long it lasts");
+  request.after_s = number(typed.after_s, "the start delay").value_or(0.0);
+  request.for_s = number(typed.for_s, "the duration");
   return request;
 }
 

@@ -34,10 +34,10 @@ const char* place_label(InjectionPlace place) {
 
 const char* place_hint(InjectionPlace place) {
   switch (place) {
-    case InjectionPlace::wires: return "one+another";
+    case InjectionPlace::wires: return "wire+wire";
     case InjectionPlace::exception: return "16 is interrupt 0";
-    case InjectionPlace::address: return "by the seed";
-    default: return "which one";
+    case InjectionPlace::address: return "from the seed";
+    default: return "name or number";
   }
 }
 
@@ -54,14 +54,14 @@ bool FaultForm::draw(const Style& style) {
   bool entered = draw_place(style);
   if (row.has_amount()) {
     entered |= draw_number("Amount", "amount", fmt::format("{}", row.otherwise), row.unit,
-                           "What stands there in grey is taken unless you type another.", typed_.amount, style);
+                           "An empty field uses the amount that is shown in gray.", typed_.amount, style);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + label_part * ImGui::GetContentRegionAvail().x);
     text(style.fonts.caption, style.palette->text_quiet, fmt::format("{} to {}", row.minimum, row.maximum));
   }
-  entered |= draw_number("Comes after", "after", "at once", "s", "So long after Inject, in board time.", typed_.after_s,
-                         style);
-  entered |= draw_number("Lasts", "duration", "until healed", "s", "Then it heals by itself. In board time.",
-                         typed_.for_s, style);
+  entered |= draw_number("Starts after", "after", "immediately", "s",
+                         "Delay between Inject and the start of the fault, in board time.", typed_.after_s, style);
+  entered |= draw_number("Duration", "duration", "until healed", "s",
+                         "Time until the fault heals automatically, in board time.", typed_.for_s, style);
   if (entered) take_keyboard();  // for the next fault
   if (coloured_button("Inject", style.palette->accent, style.palette->pane, {-1, 0})) entered = true;
   ImGui::Dummy({0, style.points(4)});
@@ -126,7 +126,7 @@ void FaultForm::draw_wires(const Style& style) {
   ImGui::SameLine();
   if (ImGui::ArrowButton("##wires", ImGuiDir_Down)) ImGui::OpenPopup("wires");
   note_item("wires");
-  help_on_hover("Wires", "Of the board; any other pin goes by its name, such as PA0.", style);
+  help_on_hover("Wires", "Lists the wires of the board. For any other pin, type its name, such as PA0.", style);
   ImGui::SetNextWindowSizeConstraints({style.points(180), 0}, {style.points(260), style.points(320)});
   if (!ImGui::BeginPopup("wires")) return;
   for (const std::string_view name : wires()) {

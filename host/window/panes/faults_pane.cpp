@@ -49,11 +49,11 @@ void draw_badge(std::string_view word, const Style& style) {
 
 std::string when_text(const LoggedFault& fault) {
   switch (fault.phase) {
-    case FaultPhase::to_come: return fmt::format("comes at {:.2f} s", fault.put_in.at_s);
-    case FaultPhase::in: return fmt::format("in since {:.2f} s", fault.put_in.at_s);
+    case FaultPhase::to_come: return fmt::format("starts at {:.2f} s", fault.put_in.at_s);
+    case FaultPhase::in: return fmt::format("active since {:.2f} s", fault.put_in.at_s);
     case FaultPhase::over: break;
   }
-  return fmt::format("came at {:.2f} s, over", fault.put_in.at_s);
+  return fmt::format("started at {:.2f} s, over", fault.put_in.at_s);
 }
 
 class FaultsPane final : public Pane {
@@ -166,7 +166,7 @@ void FaultsPane::draw_heading(const Style& style) {
   else if (log_.faults().empty())
     wrapped_text(
         style.palette->text_quiet,
-        "Break something of the virtual board, and see what its firmware makes of it. No real arm is touched.");
+        "Inject a fault into the virtual board, and observe the reaction of the firmware. No real arm is affected.");
   if (gone_.empty() && !refusal_.empty()) wrapped_text(style.palette->danger_text, refusal_);
 }
 
@@ -183,7 +183,8 @@ void FaultsPane::draw_log(const Style& style) {
   const bool any = std::ranges::any_of(log_.faults(), [](const auto& each) { return each.phase != FaultPhase::over; });
   ImGui::BeginDisabled(!any);
   if (button("Heal all", {-1, 0})) heal_all();
-  help_on_hover("Heal all", "Takes out what is in, and forgets what is still to come. Ctrl+Delete", style);
+  help_on_hover("Heal all", "Heals all active faults and cancels all faults that have not started. Key: Ctrl+Delete",
+                style);
   ImGui::EndDisabled();
   ImGui::Dummy({0, style.points(4)});
 }
@@ -220,11 +221,11 @@ void FaultsPane::draw_noticed(const LoggedFault& fault, const Style& style) {
   if (fault.noticed) {
     const auto& [noticed, after_s] = *fault.noticed;
     const auto when = after_s ? fmt::format(", after {}", duration_text(*after_s)) : std::string();
-    wrapped_text(palette.caution, fmt::format("Told since: {}{}", protocol::info(noticed).name, when));
+    wrapped_text(palette.caution, fmt::format("Reported fault: {}{}", protocol::info(noticed).name, when));
   } else if (fault.phase != FaultPhase::to_come && !log_.waits_for_answer()) {
     const bool in_fault = desk_.view().state() == protocol::State::fault;
     wrapped_text(palette.text_quiet,
-                 in_fault ? "Nothing told since: the board was in a fault already" : "Nothing told since");
+                 in_fault ? "No fault reported: the board was already in a fault" : "No fault reported");
   }
 }
 
@@ -257,7 +258,10 @@ void FaultsPane::draw_search(const Style& style) {
       ImGui::InputTextWithHint("##search", fmt::format("Search {} faults", protocol::injection_table.size()).c_str(),
                                &search_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("search");
-  help_on_hover("Search", "In names, places and help. Up and Down choose, Enter goes to the fault's fields.", style);
+  help_on_hover(
+      "Search",
+      "Searches names, parts and help texts. Up and Down select a fault. Enter moves to the fields of the fault.",
+      style);
   keep_vertical_arrows();
   if (ImGui::IsItemActive()) {
     if (ImGui::IsKeyPressed(key_index(ImGuiKey_DownArrow))) choose_neighbour(1);
@@ -272,7 +276,7 @@ void FaultsPane::draw_search(const Style& style) {
 void FaultsPane::draw_table(const Style& style) {
   if (!is_low_) ImGui::BeginChild("table", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   const auto all = found();
-  if (all.empty()) wrapped_text(style.palette->text_quiet, "No fault of that name, place or help.");
+  if (all.empty()) wrapped_text(style.palette->text_quiet, "No fault matches the search.");
   std::optional<protocol::InjectionPart> part;
   bool is_open = false;
   for (const InjectedFault fault : all) {

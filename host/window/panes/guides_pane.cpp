@@ -153,8 +153,8 @@ void GuidesPane::draw_offers(const Style& style) {
   wrapped_text(
       style.palette->text_quiet,
       connected
-          ? "Each guide says what it will do before anything moves, and changes nothing until you apply its result."
-          : "Guides need a device. Plug one in.");
+          ? "Each guide describes its actions before the arm moves. Press Apply to accept the proposals of a guide."
+          : "Guides need a device. Plug in a device.");
   ImGui::Dummy({0, style.points(4)});
   ImGui::BeginDisabled(!connected);
   for (const guides::Offer* offer : guides::all_guides()) {
@@ -170,7 +170,7 @@ void GuidesPane::draw_offers(const Style& style) {
   draw_bandwidth(style);
   if (!control_) return;
   ImGui::Dummy({0, style.points(4)});
-  ImGui::Checkbox("The simulated hand does my part", &hand_helps_);
+  ImGui::Checkbox("Simulated hand performs the steps", &hand_helps_);
   note_item("hand helps");
 }
 
@@ -178,7 +178,7 @@ void GuidesPane::draw_bandwidth(const Style& style) {
   static constexpr ValueRange range{.minimum = static_cast<float>(guides::bandwidth_minimum_Hz),
                                     .maximum = static_cast<float>(guides::bandwidth_maximum_Hz),
                                     .decimals = 0};
-  text(style.palette->text_quiet, "Bandwidth of the current loops / Hz");
+  text(style.palette->text_quiet, "Current-loop bandwidth / Hz");
   const ValueEdit edit =
       fields_.draw("##bandwidth", "bandwidth", bandwidth_Hz_, range, ImGui::GetContentRegionAvail().x, style);
   if (edit.dragged_to) bandwidth_Hz_ = *edit.dragged_to;
@@ -198,7 +198,7 @@ void GuidesPane::draw_step(const Style& style) {
   ImGui::Dummy({0, style.points(2)});
   text(style.fonts.strong, palette.text, step.title());
   wrapped_text(palette.text, step.text());
-  if (guide_->phase() == Phase::asks) wrapped_text(palette.caution, "Nothing happens before you confirm.");
+  if (guide_->phase() == Phase::asks) wrapped_text(palette.caution, "The guide waits until you press Confirm.");
   if (!user_problem_.empty()) wrapped_text(palette.danger_text, user_problem_);
   ImGui::Dummy({0, style.points(4)});
   if (guide_->phase() == Phase::working) draw_checks(style);
@@ -226,7 +226,7 @@ void GuidesPane::draw_result(const Style& style) {
   const Palette& palette = *style.palette;
   const bool applied = guide_->applied() == guides::Applied::yes;
   wrapped_text(outcome_colour(guide_->phase(), palette),
-               applied ? "Finished, and the device holds the proposals." : guide_->outcome());
+               applied ? "Finished. The device uses the proposed values." : guide_->outcome());
   if (applied) draw_what_lasts(style);
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
   // Order: decisions first, then the curves, then the log of the measurement.
@@ -250,7 +250,7 @@ void GuidesPane::draw_proposals(const Style& style) {
     right_text(palette.text_quiet, held, 0.24f * width);
   };
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(2)});
-  columns(palette.text, "", guide_->applied() == guides::Applied::yes ? "Applied" : "Proposed", "instead of");
+  columns(palette.text, "", guide_->applied() == guides::Applied::yes ? "Applied" : "Proposed", "Before");
   for (const auto& proposal : guide_->findings().proposals) {
     ImGui::BeginGroup();
     columns(palette.text, label_of(info(proposal.parameter)),
@@ -269,9 +269,9 @@ void GuidesPane::draw_what_lasts(const Style& style) const {
   if (view.status.store_problem)
     wrapped_text(palette.caution, *view.status.store_problem);
   else if (not_stored(view).empty())
-    wrapped_text(palette.text_quiet, "It is stored on the board, and outlives its power.");
+    wrapped_text(palette.text_quiet, "The values are stored on the board.");
   else
-    wrapped_text(palette.caution, "It lasts until the board loses its power, unless you store it.");
+    wrapped_text(palette.caution, "The values are lost at power-off unless you store them.");
 }
 
 void GuidesPane::draw_curves(const Style& style) {

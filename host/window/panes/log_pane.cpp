@@ -24,7 +24,7 @@ namespace {
 using device::EventKind;
 
 constexpr std::array<const char*, device::event_kind_count + 1> shown_kinds{
-    "Everything", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
+    "All events", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
 
 /// One row, from the log of the device or of a recording.
 struct LogRow {
@@ -87,7 +87,7 @@ void LogPane::draw(const PaneFrame& frame) {
 }
 
 void LogPane::draw_head(const Style& style) {
-  text(style.fonts.strong, style.palette->text, replayed_() ? "What happened in the recording" : "What happened");
+  text(style.fonts.strong, style.palette->text, replayed_() ? "Events in the recording" : "Events");
   ImGui::SetNextItemWidth(-1);
   ImGui::Combo("##kinds", &shown_, shown_kinds.data(), static_cast<int>(shown_kinds.size()));
   note_item("kinds");
@@ -113,8 +113,8 @@ void LogPane::draw_rows(const Style& style) {
   }
   if (is_empty)
     wrapped_text(style.palette->text_quiet,
-                 "Nothing yet. Faults, losses, changes of parameters, connections and the force going on and off are "
-                 "noted here, and in a recording that runs.");
+                 "No events yet. Faults, losses, parameter changes, connections and force on/off are logged here and "
+                 "in a running recording.");
 }
 
 void LogPane::draw_row(const LogRow& row, const Style& style) {
@@ -154,17 +154,17 @@ void LogPane::draw_saving(const Style& style) {
     saved_.clear();
     problem_.clear();
     chooser_.ask({.title = "Save the log",
-                  .help = "One line for each event: clock in UTC, time of the board, kind, text.",
+                  .help = "One line per event: UTC time, board time, kind and text.",
                   .button = "Save",
                   .endings = {".txt"},
                   .is_new_file = true,
                   .suggestion = "inkwell-log.txt"});
   }
-  help_on_hover("Save as text", saved_.empty() ? "The clock is in UTC, the other time is the board's." : saved_, style);
+  help_on_hover("Save as text", saved_.empty() ? "Saves all events with UTC time and board time." : saved_, style);
   const auto chosen = chooser_.draw(style);
   if (chosen) try {
       recording::write_text(*chosen, as_text());
-      saved_ = fmt::format("{} is written.", chosen->filename().string());
+      saved_ = fmt::format("{} was saved.", chosen->filename().string());
     } catch (const device::Error& error) {
       problem_ = error.what();
     }

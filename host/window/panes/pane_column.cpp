@@ -59,7 +59,7 @@ bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) 
   const bool pressed = coloured_button(label.c_str(), is_shown ? palette.accent : palette.raised,
                                        palette.pane.with_alpha(0), {width, 0});
   draw_running(running, ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), is_shown, style);
-  help_on_hover(pane.title(), "It goes on while another pane is shown.", style);
+  help_on_hover(pane.title(), "The recording continues while another pane is shown.", style);
   return pressed;
 }
 
@@ -67,7 +67,7 @@ bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) 
 void mark_values_to_store(const Style& style) {
   const ImVec2 corner{ImGui::GetItemRectMax().x, ImGui::GetItemRectMin().y};
   not_stored_mark({corner.x - style.points(7), corner.y + style.points(7)}, style);
-  help_on_hover("", "Values are not stored on the board. They last until it loses its power.", style);
+  help_on_hover("", "Some values are not stored on the board and are lost at power-off.", style);
   note_item("values to store");
 }
 

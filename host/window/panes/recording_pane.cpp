@@ -169,7 +169,7 @@ void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& sa
   if (!went_away && recorder_->status().running) return;
   stop();
   if (went_away && last_status_->error.empty())
-    last_status_->error = "The device went away. The recording holds everything up to then.";
+    last_status_->error = "The device was disconnected. The recording contains all samples until the disconnection.";
 }
 
 void RecordingPane::follow_replay_wish() {
@@ -199,34 +199,34 @@ void RecordingPane::draw_choice(const PaneFrame& frame) {
   const DeviceView& view = desk_.view();
   const Palette& palette = *style.palette;
   const bool connected = view.connected() && view.status.information && view.parameters;
-  wrapped_text(palette.text_quiet, !connected ? "A recording needs a device. Plug one in."
+  wrapped_text(palette.text_quiet, !connected ? "A recording needs a device. Plug in a device."
                                    : !frame.scope_is_free
-                                       ? "A guide uses the scope. Finish or cancel it first."
-                                       : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
+                                       ? "A guide uses the scope. Finish or cancel the guide first."
+                                       : "Records every control period and the parameters as HDF5 (.h5) or CSV.");
   const float button_width = style.points(74);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
-  ImGui::InputTextWithHint("##file", "named after the time", &file_);
+  ImGui::InputTextWithHint("##file", "default: date and time", &file_);
   note_item("file");
   help_on_hover("File",
-                fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
+                fmt::format("The file extension selects the format: .h5 or .csv. The default folder is {}.",
                             std::filesystem::current_path().string()),
                 style);
   ImGui::SameLine();
   if (button("Choose", {button_width, 0})) {
     task_ = FileTask::record;
-    chooser_.ask({.title = "Record into a file",
-                  .help = "Its ending chooses the format: HDF5 (.h5) or CSV (.csv).",
+    chooser_.ask({.title = "Record to a file",
+                  .help = "The file extension selects the format: HDF5 (.h5) or CSV (.csv).",
                   .button = "Choose",
                   .endings = {".h5", ".csv"},
                   .is_new_file = true,
                   .suggestion = file_.empty() ? name_from_time() : file_});
   }
-  static constexpr const char* choices[] = {"What replay and plots need", "The whole signal path",
-                                            "What the scope shows"};
+  static constexpr const char* choices[] = {"Signals for replay and plots", "Complete signal path",
+                                            "Scope signals only"};
   ImGui::SetNextItemWidth(-1);
   int chosen = static_cast<int>(choice_);
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
-  help_on_hover("Signals", "What the scope shows is recorded with them in any case.", style);
+  help_on_hover("Signals", "The recording always includes the signals of the scope.", style);
   ImGui::BeginDisabled(!connected || !frame.scope_is_free);
   if (record_button(style)) start(frame.scope_signals);
   ImGui::EndDisabled();
@@ -250,7 +250,7 @@ void RecordingPane::draw_progress(const Style& style) {
   const float button_width = style.points(64);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
   const bool entered =
-      ImGui::InputTextWithHint("##mark", "what happens now", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
+      ImGui::InputTextWithHint("##mark", "text of the mark", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("mark text");
   ImGui::SameLine();
   if (button("Mark", {button_width, 0}) || entered) {
@@ -258,7 +258,7 @@ void RecordingPane::draw_progress(const Style& style) {
     mark_text_.clear();
   }
   help_on_hover("Mark",
-                "Notes this moment in the recording. Changes of parameters, force and faults are noted by themselves.",
+                "Adds a mark to the recording. Parameter changes, force on/off and faults are marked automatically.",
                 style);
 }
 
@@ -281,13 +281,14 @@ void RecordingPane::draw_replay(const Style& style) {
   };
   if (button("Open a recording", {-1, style.points(30)})) {
     task_ = FileTask::replay;
-    chooser_.ask({.title = "Replay a recording",
-                  .help = "It plays in place of the device, with its parameters, signals and marks.",
-                  .button = "Open",
-                  .endings = {".h5", ".csv"},
-                  .suggestion = written_file_});
+    chooser_.ask(
+        {.title = "Replay a recording",
+         .help = "Instead of the device, the window then shows the recording with its parameters, signals and marks.",
+         .button = "Open",
+         .endings = {".h5", ".csv"},
+         .suggestion = written_file_});
   }
-  if (!recorder_ && last_status_ && button("Replay the last one", {-1, style.points(30)})) replay(written_file_);
+  if (!recorder_ && last_status_ && button("Replay last recording", {-1, style.points(30)})) replay(written_file_);
   draw_question(style);
   if (!replay_error_.empty()) wrapped_text(style.palette->danger_text, replay_error_);
   const auto chosen = chooser_.draw(style);
@@ -305,10 +306,9 @@ void RecordingPane::draw_question(const Style& style) {
   ImGui::SetNextWindowSize({style.points(440), 0});
   if (!ImGui::BeginPopupModal(question, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
   text(style.fonts.strong, style.palette->text, "The force is on");
-  wrapped_text(style.palette->text_quiet,
-               "The recording takes the arm's place in this window. An arm with force must not be out of sight.");
+  wrapped_text(style.palette->text_quiet, "A replay hides the arm in this window, so the force must be off.");
   const bool agrees =
-      coloured_button("Switch off and replay", style.palette->accent, style.palette->pane, {style.points(180), 0});
+      coloured_button("Stop and replay", style.palette->accent, style.palette->pane, {style.points(180), 0});
   ImGui::SameLine();
   const bool cancels = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
   if (agrees) {

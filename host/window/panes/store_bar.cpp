@@ -26,9 +26,9 @@ std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& vie
   std::string lines;
   for (std::size_t i = 0; i < std::min(waiting.size(), listed_maximum); ++i) {
     const auto& row = protocol::info(waiting[i]);
-    lines += fmt::format("{}{}: {}{}{}, stored is {}", i == 0 ? "" : "\n", full_label_of(row),
-                         (*view.parameters)[waiting[i]], row.unit.empty() ? "" : " ", row.unit,
-                         view.status.store->at_next_start[waiting[i]]);
+    lines +=
+        fmt::format("{}{}: {}{}{}, stored: {}", i == 0 ? "" : "\n", full_label_of(row), (*view.parameters)[waiting[i]],
+                    row.unit.empty() ? "" : " ", row.unit, view.status.store->at_next_start[waiting[i]]);
   }
   if (waiting.size() > listed_maximum) lines += fmt::format("\nand {} more", waiting.size() - listed_maximum);
   return lines;
@@ -79,16 +79,16 @@ void store_button(DeviceDesk& desk, ImVec2 size, const Style& style) {
   const DeviceView& view = desk.view();
   const bool is_needed = !not_stored(view).empty();
   const std::string waits = why_storing_waits(view);
-  constexpr const char* label = "Store on the board";
+  constexpr const char* label = "Store on board";
   const bool works = is_needed && waits.empty();
   ImGui::BeginDisabled(!works);
   if (works ? coloured_button(label, style.palette->accent, style.palette->pane, size) : button(label, size))
     desk.session().store_parameters();
   ImGui::EndDisabled();
   help_on_hover(label,
-                works       ? "Every value then outlives the board's power, and so does its calibration."
+                works       ? "Stores all values permanently, including the calibration."
                 : is_needed ? waits
-                            : "The board's next start gives every parameter the value that it has now.",
+                            : "All values will be the same after the next start of the board.",
                 style);
 }
 
@@ -98,13 +98,13 @@ std::string StoreBar::caption() const {
   if (status.store_problem) return *status.store_problem;
   const std::size_t waiting = not_stored(view).size();
   if (waiting == 0)
-    return status.store->report.contents == protocol::StoreContents::parameters ? "They outlive the board's power."
+    return status.store->report.contents == protocol::StoreContents::parameters ? "The values remain after power-off."
                                                                                 : "Nothing is stored on the board.";
   if (protocol::force_is_on(view.state()))
-    return fmt::format("{} can be stored once the force is off.", waiting == 1 ? "It" : "They");
+    return fmt::format("The {} can be stored once the force is off.", waiting == 1 ? "value" : "values");
   const std::string waits = why_storing_waits(view);
   if (!waits.empty()) return waits;
-  return fmt::format("{} until the board loses its power.", waiting == 1 ? "It lasts" : "They last");
+  return fmt::format("The {} lost at power-off.", waiting == 1 ? "value is" : "values are");
 }
 
 float StoreBar::height(float width, const Style& style) const {
@@ -143,7 +143,7 @@ void StoreBar::draw_buttons(const std::vector<Parameter>& waiting, const Style& 
   if (button("Restore", {0.22f * width, 0})) ImGui::OpenPopup(restore_question);
   ImGui::EndDisabled();
   help_on_hover("Restore",
-                has_stored ? "Gives every parameter the value that is stored on the board. It asks first."
+                has_stored ? "Sets every parameter to its stored value, after a confirmation."
                            : "Nothing is stored on the board.",
                 style);
   ImGui::SameLine();
@@ -151,16 +151,18 @@ void StoreBar::draw_buttons(const std::vector<Parameter>& waiting, const Style& 
   ImGui::BeginDisabled(!waits.empty());
   if (button("Factory reset", {0.32f * width, 0})) ImGui::OpenPopup(reset_question);
   ImGui::EndDisabled();
-  help_on_hover("Factory reset",
-                waits.empty() ? "Forgets what is stored, and gives every parameter its default. It asks first." : waits,
-                style);
+  help_on_hover(
+      "Factory reset",
+      waits.empty() ? "Erases the stored values and sets every parameter to its default, after a confirmation." : waits,
+      style);
 }
 
 void StoreBar::draw_restore_question(const std::vector<Parameter>& waiting, bool has_device, ParameterEditor& editor,
                                      const Style& style, double now_s) {
   const DeviceView& view = desk_.view();
-  const Question question{restore_question, "Give the stored values back?",
-                          waiting.empty() ? "The board holds them already." : list_of(waiting, view), "Restore", false};
+  const Question question{restore_question, "Restore the stored values?",
+                          waiting.empty() ? "The board already uses the stored values." : list_of(waiting, view),
+                          "Restore", false};
   if (draw_question(question, has_device, style) != Answer::yes) return;
   std::vector<device::ParameterChange> changes;
   for (const Parameter parameter : waiting)
@@ -169,10 +171,10 @@ void StoreBar::draw_restore_question(const std::vector<Parameter>& waiting, bool
 }
 
 void StoreBar::draw_reset_question(bool has_device, const Style& style) {
-  const Question question{reset_question, "Forget everything that is stored?",
-                          "Every parameter gets its default, and the calibration of this arm is lost. Cancel and press "
-                          "Save to keep the values in a file first.",
-                          "Forget and reset", true};
+  const Question question{reset_question, "Erase all stored values?",
+                          "Every parameter is set to its default, and the calibration of this arm is lost. To keep the "
+                          "values in a file, press Cancel and then Save.",
+                          "Erase and reset", true};
   if (draw_question(question, has_device, style) == Answer::yes) desk_.session().factory_reset();
 }
 

@@ -39,13 +39,13 @@ std::array<const char*, 2> choice_names(Parameter parameter) {
 }
 
 std::string help_of(const protocol::ParameterInfo& info) {
-  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nIn files: {}", info.help, info.minimum, info.maximum,
+  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nName in files: {}", info.help, info.minimum, info.maximum,
                      info.unit.empty() ? "" : " ", info.unit, info.default_value, info.name);
 }
 
 constexpr std::string_view editing_help =
-    "Click the number to type one: Enter sends it, Escape keeps the old one. Drag the dots to change it, with Shift "
-    "ten times as fast, with Ctrl a tenth.";
+    "Click the number to type a new number. Enter sends the new number, and Escape restores the old number. Drag the "
+    "dots to change the number (Shift: ten times faster, Ctrl: ten times slower).";
 
 ValueRange range_of(const protocol::ParameterInfo& info) {
   return {.minimum = info.minimum,
@@ -127,7 +127,7 @@ void TuningPane::load(const std::filesystem::path& file, ParameterEditor& editor
     editor.apply("load " + file.filename().string(), loaded.changes, now_s);
     messages_ = {fmt::format("Loaded {} values from {}.", loaded.changes.size(), file.filename().string())};
     for (const std::string& name : loaded.unknown)
-      messages_.push_back(fmt::format("This version does not know {}; it was left out.", name));
+      messages_.push_back(fmt::format("The parameter {} is unknown in this version and was ignored.", name));
     message_is_error_ = false;
   } catch (const device::Error& error) {
     messages_ = {error.what()};
@@ -140,7 +140,7 @@ void TuningPane::save(const std::filesystem::path& file, const ParameterEditor& 
   messages_.clear();
   try {
     device::save_parameters(file, editor.shown());
-    messages_ = {fmt::format("Saved all parameters in {}.", file.string())};
+    messages_ = {fmt::format("Saved all parameters to {}.", file.string())};
     message_is_error_ = false;
   } catch (const device::Error& error) {
     messages_ = {error.what()};
@@ -159,12 +159,14 @@ void TuningPane::draw_heading(const PaneFrame& frame) {
   ImGui::BeginDisabled(!editor.known() || !editor.can_undo());
   if (quiet_button("Undo", style)) editor.undo(frame.now_s);
   ImGui::EndDisabled();
-  if (editor.can_undo()) help_on_hover("", fmt::format("Takes back: {}. Ctrl+Z", editor.undo_title()), style);
+  if (editor.can_undo())
+    help_on_hover("", fmt::format("Undoes the change: {}. Key: Ctrl+Z", editor.undo_title()), style);
   ImGui::SameLine();
   ImGui::BeginDisabled(!editor.known() || !editor.can_redo());
   if (quiet_button("Redo", style)) editor.redo(frame.now_s);
   ImGui::EndDisabled();
-  if (editor.can_redo()) help_on_hover("", fmt::format("Does again: {}. Ctrl+Shift+Z", editor.redo_title()), style);
+  if (editor.can_redo())
+    help_on_hover("", fmt::format("Redoes the change: {}. Key: Ctrl+Shift+Z", editor.redo_title()), style);
   ImGui::SameLine();
   ImGui::BeginDisabled(!editor.known());
   if (quiet_button("Load", style)) ask_for_file(FileTask::load);
@@ -196,14 +198,15 @@ void TuningPane::draw_presets(const PaneFrame& frame) {
       changes.emplace_back(static_cast<Parameter>(i), protocol::known_parameters()[i].default_value);
     editor.apply("all defaults", changes, frame.now_s);
   }
-  help_on_hover("Defaults", "Gives every parameter its default. It can be undone.", style);
+  help_on_hover("Defaults", "Sets every parameter to its default. You can undo this change.", style);
 }
 
 void TuningPane::draw_messages(const PaneFrame& frame) {
   const Style& style = frame.style;
   ImGui::PushFont(style.fonts.caption);
-  const std::string refusal = frame.is_replay ? "These parameters are the recording's. Close it to tune the device."
-                                              : desk_.view().refusal.value_or("");
+  const std::string refusal = frame.is_replay
+                                  ? "These parameters are from the recording. Close the replay to tune the device."
+                                  : desk_.view().refusal.value_or("");
   if (!refusal.empty()) wrapped_text(style.palette->caution, refusal);
   for (const std::string& message : messages_)
     wrapped_text(message_is_error_ ? style.palette->caution : style.palette->text_quiet, message);
@@ -243,7 +246,7 @@ void TuningPane::take_typed(Parameter parameter, const std::string& label, const
     const ParameterChange change{parameter, device::parse_value(parameter, typed)};
     frame.editor.apply(label, {&change, 1}, frame.now_s);
   } catch (const device::Error& error) {
-    messages_ = {fmt::format("{} {} stays as it was.", error.what(), label)};
+    messages_ = {fmt::format("{} {} keeps its old value.", error.what(), label)};
     message_is_error_ = true;
   }
 }
@@ -289,7 +292,7 @@ void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
       const ParameterChange change{parameter, info.default_value};
       editor.apply(label, {&change, 1}, frame.now_s);
     }
-    help_on_hover("", fmt::format("Back to the default, {} {}", info.default_value, info.unit), style);
+    help_on_hover("", fmt::format("Restores the default, {} {}", info.default_value, info.unit), style);
   }
   ImGui::PopID();
 }
@@ -334,9 +337,9 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
 void TuningPane::ask_for_file(FileTask task) {
   task_ = task;
   const bool saving = task == FileTask::save;
-  chooser_.ask({.title = saving ? "Save the parameters" : "Load parameters",
-                .help = saving ? "A TOML file with every parameter, its unit, range and default."
-                               : "A file saved here, or an arm's description.",
+  chooser_.ask({.title = saving ? "Save parameters" : "Load parameters",
+                .help = saving ? "A TOML file with value, unit, range and default of every parameter."
+                               : "A saved parameter file or an arm description.",
                 .button = saving ? "Save" : "Load",
                 .endings = {".toml"},
                 .is_new_file = saving,

@@ -22,8 +22,8 @@ constexpr float depth_per_wheel_step_m = 0.004f;
 constexpr float probe_grab_points = 22.0f;
 constexpr float wall_grab_points = 9.0f;
 constexpr std::string_view about_the_proxy =
-    "Where the walls would have the sphere: the place in the box that is nearest to it. The force grows with the "
-    "distance from the sphere to its proxy, by the wall's stiffness.";
+    "A point on the wall surface. A virtual spring connects the proxy to the probe. The force grows with the distance "
+    "between proxy and probe, according to the wall stiffness.";
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colours::axis_y, scene_colours::axis_z};
 
@@ -297,19 +297,18 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
   const Style& style = input.style;
   ImGui::SetCursorScreenPos({origin_.x + style.points(14), origin_.y + style.points(12)});
   if (button("Reset view")) reset_view();
-  help_on_hover("", "Shows the whole box again. A double click in the scene does the same.", style);
+  help_on_hover("", "Shows the whole box, like a double click in the scene.", style);
   if (input.hand == nullptr) return;
   ImGui::SameLine();
   ImGui::BeginDisabled(!input.hand->target_m());
-  if (button("Let go")) input.hand->let_go();
+  if (button("Release stylus")) input.hand->let_go();
   ImGui::EndDisabled();
-  help_on_hover("", "The simulated hand lets go of the stylus, and the arm falls as its weight and friction have it.",
-                style);
+  help_on_hover("", "The simulated hand releases the stylus, and gravity moves the arm.", style);
   ImGui::SameLine();
   ImGui::BeginDisabled(input.hand->is_docked());
-  if (button("Into the inkwell")) input.hand->put_into_inkwell();
+  if (button("Return to inkwell")) input.hand->put_into_inkwell();
   ImGui::EndDisabled();
-  help_on_hover("", "The simulated hand puts the stylus into the inkwell, where the board learns where the arm is.",
+  help_on_hover("", "The simulated hand puts the stylus into the inkwell, and the board references the encoders.",
                 style);
   if (const std::string error = input.hand->error(); !error.empty()) {
     ImGui::SetCursorScreenPos({origin_.x + style.points(14), ImGui::GetCursorScreenPos().y});

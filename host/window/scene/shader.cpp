@@ -17,7 +17,7 @@ GLuint compile(GLenum kind, const char* source) {
   if (compiled != GL_TRUE) {
     std::array<char, 1024> log{};
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error("The OpenGL driver refused a shader: " + std::string(log.data()));
+    throw std::runtime_error("The OpenGL driver could not compile a shader: " + std::string(log.data()));
   }
   return shader;
 }

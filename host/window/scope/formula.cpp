@@ -52,25 +52,24 @@ std::string in_words(const mu::Parser::exception_type& error) {
     case mu::ecUNASSIGNABLE_TOKEN:
       return fmt::format("There is no signal or function `{}`.{}", token,
                          device::suggestion(protocol::known_signals(), token));
-    case mu::ecUNEXPECTED_EOF: return "The formula ends too early: something has to follow its last sign.";
+    case mu::ecUNEXPECTED_EOF: return "The formula is incomplete: a value is missing after the last operator.";
     case mu::ecMISSING_PARENS: return "A closing parenthesis is missing.";
-    case mu::ecUNEXPECTED_PARENS: return fmt::format("The parenthesis at character {} has no partner.", error.GetPos());
+    case mu::ecUNEXPECTED_PARENS:
+      return fmt::format("The parenthesis at character {} has no matching parenthesis.", error.GetPos());
     case mu::ecTOO_MANY_PARAMS:
-    case mu::ecTOO_FEW_PARAMS: return fmt::format("`{}` needs another number of values in its parentheses.", token);
+    case mu::ecTOO_FEW_PARAMS: return fmt::format("`{}` needs a different number of arguments.", token);
     case mu::ecUNEXPECTED_ARG:
-    case mu::ecUNEXPECTED_ARG_SEP: return "A number has a decimal point, not a comma.";
+    case mu::ecUNEXPECTED_ARG_SEP: return "Use a decimal point instead of a comma.";
     default:
-      return fmt::format(
-          "`{}` does not belong at character {}: a sign such as + or * is missing, or there is one too "
-          "many.",
-          token, error.GetPos());
+      return fmt::format("`{}` is not allowed at character {}: an operator such as + or * is missing or superfluous.",
+                         token, error.GetPos());
   }
 }
 
 std::string refusal_of_name(std::string_view name) {
-  if (name.empty()) return "Give the signal a name, such as force_error_N.";
+  if (name.empty()) return "Enter a name for the signal, such as force_error_N.";
   if (!std::ranges::all_of(name, is_of_a_name) || std::isdigit(static_cast<unsigned char>(name.front())) != 0)
-    return "The name has letters, digits and _ only, and begins with a letter.";
+    return "The name may contain only letters, digits and _, and must start with a letter.";
   if (protocol::find_signal(name)) return fmt::format("{} is a signal of the device. Choose another name.", name);
   return {};
 }
@@ -134,14 +133,17 @@ std::string unit_told_by(std::string_view text) {
 
 std::string refusal_of(const Formula& formula) {
   if (formula.text.find_first_not_of(' ') == std::string::npos)
-    return "Type a formula, such as force_x_N - program_force_x_N.";
-  if (formula.text.size() > text_maximum) return fmt::format("A formula has {} characters at most.", text_maximum);
-  if (assigns(formula.text)) return "A formula has no =: what it gives is the signal.";
+    return "Enter a formula, such as force_x_N - program_force_x_N.";
+  if (formula.text.size() > text_maximum)
+    return fmt::format("The formula may have at most {} characters.", text_maximum);
+  if (assigns(formula.text)) return "Remove the = character: the result of the formula is the signal.";
   if (!(formula.low_pass_Hz >= 0.0 && formula.low_pass_Hz <= Formula::low_pass_maximum_Hz))
-    return fmt::format("The filter's corner lies between 0 (no filter) and {} Hz.", Formula::low_pass_maximum_Hz);
+    return fmt::format("The corner frequency of the filter must be between 0 (no filter) and {} Hz.",
+                       Formula::low_pass_maximum_Hz);
   try {
     FormulaValues values(formula);
-    if (values.inputs().size() > protocol::scope_signals_maximum) return "The formula names too many signals.";
+    if (values.inputs().size() > protocol::scope_signals_maximum)
+      return "The formula contains too many signals. Use fewer signals.";
     const std::vector<float> ones(values.inputs().size(), 1.0f);
     values.next(ones);
     mu::Parser counted;
@@ -150,14 +152,14 @@ std::string refusal_of(const Formula& formula) {
       counted.DefineVar(std::string(info(values.inputs()[i]).name), &places[i]);
     counted.SetExpr(formula.text);
     counted.Eval();
-    if (counted.GetNumResults() > 1) return "A number has a decimal point, not a comma.";
-    if (values.inputs().empty()) return "The formula names no signal. The list at the left has all of them.";
+    if (counted.GetNumResults() > 1) return "Use a decimal point instead of a comma.";
+    if (values.inputs().empty()) return "The formula contains no signal. The list on the left shows all signals.";
   } catch (const mu::Parser::exception_type& error) {
     return in_words(error);
   }
   if (std::string reason = refusal_of_name(formula.name); !reason.empty()) return reason;
   if (formula.unit.empty())
-    return "State the unit: it does not follow from this formula. 1 stands for a number without a unit.";
+    return "Enter the unit, because it cannot be derived from this formula. Enter 1 for a result without a unit.";
   return {};
 }
 

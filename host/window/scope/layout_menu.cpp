@@ -16,7 +16,9 @@ void LayoutMenu::draw(ScopeLayout& layout, const Style& style) {
     draw_choices(layout);
     ImGui::EndCombo();
   }
-  help_on_hover(shown, "What the plots show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.",
+  help_on_hover(shown,
+                "Selects a layout of the plots. The layout \"paper\" shows figures 11 to 14 of the paper. You can save "
+                "custom layouts.",
                 style);
   if (task_ != NameTask::none) draw_name(layout, style);
 }
@@ -62,7 +64,7 @@ void LayoutMenu::draw_name(ScopeLayout& layout, const Style& style) {
        renames ? fmt::format("Rename \"{}\"", layout.name) : std::string("Save this layout"));
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##name", "a name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##name", "layout name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
   if (!refusal_.empty()) wrapped_text(style.palette->caution, refusal_);
   const bool confirmed =
       coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->pane, {style.points(100), 0});

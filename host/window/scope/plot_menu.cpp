@@ -37,7 +37,7 @@ void choose_signals(ScopePlot& plot, std::span<const Formula> formulas, const st
     text(style.fonts.strong, style.palette->text, group.title);
     for (const protocol::Signal signal : group.signals) choose_signal(plot, signal, style);
   }
-  if (!formulas.empty()) text(style.fonts.strong, style.palette->text, "By formula");
+  if (!formulas.empty()) text(style.fonts.strong, style.palette->text, "Formulas");
   for (const Formula& formula : formulas) choose_signal(plot, ScopeSignal(formula), style);
   if (groups.empty()) wrapped_text(style.palette->text_quiet, nothing_found);
 }

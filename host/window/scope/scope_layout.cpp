@@ -83,9 +83,9 @@ const ScopeLayout* OwnLayouts::find(std::string_view name) const {
 }
 
 std::string OwnLayouts::refusal(std::string_view name) {
-  if (name.find_first_not_of(' ') == std::string_view::npos) return "Give the layout a name.";
+  if (name.find_first_not_of(' ') == std::string_view::npos) return "Enter a name for the layout.";
   if (find_built_in(name) != nullptr)
-    return fmt::format("\"{}\" comes with the window and stays as it is. Choose another name.", name);
+    return fmt::format("The built-in layout \"{}\" cannot be replaced. Choose another name.", name);
   return {};
 }
 
@@ -100,7 +100,7 @@ void OwnLayouts::save(ScopeLayout layout) {
 std::string OwnLayouts::rename(std::string_view from, std::string_view to) {
   if (from == to) return {};
   if (std::string reason = refusal(to); !reason.empty()) return reason;
-  if (find(to) != nullptr) return fmt::format("There is a layout \"{}\" already. Choose another name.", to);
+  if (find(to) != nullptr) return fmt::format("A layout named \"{}\" already exists. Choose another name.", to);
   if (const auto found = std::ranges::find(layouts_, from, &ScopeLayout::name); found != layouts_.end())
     found->name = std::string(to);
   return {};
@@ -164,13 +164,13 @@ std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout) {
 
 std::string hint_for(const ScopePlot& plot, const SignalHistory& history) {
   if (plot.kind == PlotKind::xy && plot.signals.size() < 2)
-    return "Drag a second signal in here from Signals, or click the title: it is drawn against the first.";
-  if (history.end() == history.begin())
-    return "Nothing has come yet. A connected device or a replayed recording brings it.";
+    return "This plot needs a second signal. Drag the signal from Signals into the plot, or click the title.";
+  if (history.end() == history.begin()) return "No samples received yet. Connect a device or open a recording.";
   for (const ScopeSignal& signal : plot.signals)
     if (history.find(signal) == nullptr)
-      return fmt::format("{} is not among the signals that come. Choose another one by the title, or record it.",
-                         signal.name());
+      return fmt::format(
+          "{} is not among the received signals. Click the title to choose another signal, or record this signal.",
+          signal.name());
   return {};
 }
 

@@ -136,7 +136,7 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   const float title_width = ImGui::GetItemRectSize().x;
-  help_on_hover("", "Click to choose what this plot shows.", style);
+  help_on_hover("", "Click to choose the signals and the plot type.", style);
   const bool is_to_be_removed = draw_plot_menu(plot, layout_.formulas, layout_.plots.size() > 1, style);
   draw_legend(view.plot(), {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
               frame);

@@ -35,7 +35,7 @@ void draw_row(const ScopeSignal& signal, ScopeLayout& layout, float width, const
   }
   help_on_hover(
       name,
-      fmt::format("{}\nDrag it into a plot, or double-click or press Enter for a plot of its own.", signal.help()),
+      fmt::format("{}\nDrag the signal into a plot. Double-click or press Enter for a separate plot.", signal.help()),
       style);
 }
 
@@ -45,7 +45,7 @@ void draw_search(std::string& search, const Style& style) {
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "search", &search);
   note_item("search");
-  help_on_hover("Search", "Words of a name, a unit or what is told of a signal.", style);
+  help_on_hover("Search", "Searches the names, groups and help texts of the signals.", style);
 }
 
 std::optional<std::string> dropped_signal() {
@@ -103,7 +103,9 @@ void SignalList::draw_formulas(ScopeLayout& layout, const Style& style) {
     if (quiet_button(edit.c_str(), style)) clicked = formula;
   }
   if (button("New formula", {-1, 0})) clicked = Formula{};
-  help_on_hover("New formula", "A signal made of others, such as force_x_N - program_force_x_N, and filtered.", style);
+  help_on_hover("New formula",
+                "Computes a signal from other signals, such as force_x_N - program_force_x_N, with an optional filter.",
+                style);
   if (clicked) ask_about(*clicked);
 }
 
@@ -133,11 +135,11 @@ void SignalList::draw_fields(const Style& style) {
     note_item(id + 2);
   };
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  field("Formula, of names of signals with + - * / ^ ( ) sqrt abs sin cos min max", "##formula",
+  field("Formula of signal names and + - * / ^ ( ) sqrt abs sin cos min max", "##formula",
         "force_x_N - program_force_x_N", typed_.text);
-  field("Name of what it gives", "##name of formula", "force_error_N", typed_.name);
+  field("Signal name", "##name of formula", "force_error_N", typed_.name);
   const std::string told = unit_told_by(typed_.text);
-  field("Unit", "##unit", told.empty() ? "such as Nm; 1 for a number without one" : told.c_str(), typed_.unit);
+  field("Unit", "##unit", told.empty() ? "such as Nm; 1 for no unit" : told.c_str(), typed_.unit);
   field("Low-pass filter / Hz", "##filter", "none", typed_low_pass_);
 }
 
@@ -148,19 +150,19 @@ void SignalList::draw_dialog(ScopeLayout& layout, const Style& style) {
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
   if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
   const bool is_new = asked_about_->name.empty();
-  text(style.fonts.strong, style.palette->text, is_new ? "A signal by formula" : asked_about_->name);
+  text(style.fonts.strong, style.palette->text, is_new ? "New formula" : asked_about_->name);
   draw_fields(style);
   const Formula formula = typed();
   std::string refusal = refusal_of(formula);
   if (refusal.empty() && formula.name != asked_about_->name &&
       std::ranges::find(layout.formulas, formula.name, &Formula::name) != layout.formulas.end())
-    refusal = fmt::format("There is a formula {} already. Choose another name.", formula.name);
+    refusal = fmt::format("A formula named {} already exists. Choose another name.", formula.name);
   wrapped_text(
       refusal.empty() ? style.palette->text_quiet : style.palette->caution,
-      refusal.empty() ? fmt::format("It is drawn in {}.", formula.unit == "1" ? "numbers" : formula.unit) : refusal);
+      refusal.empty() ? fmt::format("Unit of the plot: {}.", formula.unit == "1" ? "none" : formula.unit) : refusal);
   const ImVec2 size{style.points(100), 0};
   ImGui::BeginDisabled(!refusal.empty());
-  bool is_over = coloured_button("Draw it", style.palette->accent, style.palette->pane, size);
+  bool is_over = coloured_button("Draw signal", style.palette->accent, style.palette->pane, size);
   ImGui::EndDisabled();
   if (is_over) {
     put_formula(layout, formula, asked_about_->name);

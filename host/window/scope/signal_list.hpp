@@ -10,7 +10,8 @@
 
 namespace inkwell::window {
 
-inline constexpr std::string_view nothing_found = "No signal is called so. Try one word, such as force.";
+inline constexpr std::string_view nothing_found =
+    "No signal matches the search. Search for a single word, such as force.";
 
 void draw_search(std::string& search, const Style& style);
 

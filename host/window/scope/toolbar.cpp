@@ -35,7 +35,7 @@ void draw_span(Timeline& timeline, const Style& style) {
       if (ImGui::Selectable(span_label(span_s).c_str(), span_s == timeline.span_s())) timeline.set_span_s(span_s);
     ImGui::EndCombo();
   }
-  help_on_hover("Time shown", "The wheel over a plot changes it too.", style);
+  help_on_hover("Time span", "The mouse wheel over a plot also changes the time span.", style);
 }
 
 TriggerMode choose_mode(TriggerMode chosen, const Style& style) {
@@ -44,7 +44,7 @@ TriggerMode choose_mode(TriggerMode chosen, const Style& style) {
   same_line_if_room(style.points(100));
   ImGui::SetNextItemWidth(style.points(100));
   ImGui::Combo("##mode", &mode, modes.data(), static_cast<int>(modes.size()));
-  help_on_hover("Trigger", "Aligns the picture to the moment at which a signal crosses a level.", style);
+  help_on_hover("Trigger", "Aligns the plots to the time at which a signal crosses a level.", style);
   return static_cast<TriggerMode>(mode);
 }
 
@@ -64,7 +64,7 @@ void choose_event(TriggerSettings& trigger, const Style& style) {
   ImGui::SetNextItemWidth(style.points(92));
   if (ImGui::DragFloat("##before", &percent, 0.5f, 0.0f, 100.0f, "%.0f %% before", ImGuiSliderFlags_AlwaysClamp))
     trigger.pre_trigger = percent / 100.0f;
-  help_on_hover("Before the event", "Part of the picture that lies before the event.", style);
+  help_on_hover("Before the event", "Fraction of the time span before the trigger event.", style);
 }
 
 void draw_trigger(Timeline& timeline, const Style& style) {
@@ -85,7 +85,9 @@ void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, S
   same_line_if_room(style.points(58));
   if (toggle_button(paused ? "Run###pause" : "Pause###pause", paused, style, {style.points(58), 0}))
     timeline.pause(!paused);
-  help_on_hover("", "A pause keeps the picture; drag to move in it, wheel to zoom, double click to run again.", style);
+  help_on_hover(
+      "", "Pause freezes the plots. Then drag to move in time, turn the wheel to zoom, and double-click to resume.",
+      style);
   draw_span(timeline, style);
   same_line_if_room(style.points(66));
   if (toggle_button("Cursors", cursors.are_shown(), style, {style.points(66), 0})) cursors.toggle();
@@ -93,7 +95,7 @@ void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, S
   if (toggle_button("Statistics", with_statistics, style, {style.points(72), 0})) with_statistics = !with_statistics;
   same_line_if_room(style.points(66));
   if (toggle_button("Signals", signals.is_shown(), style, {style.points(66), 0})) signals.toggle();
-  help_on_hover("Signals", "The list of all signals, to be dragged into plots, and formulas of them.", style);
+  help_on_hover("Signals", "Lists all signals and formulas. Drag a signal into a plot.", style);
   draw_trigger(timeline, style);
   if (!cursors.are_shown()) return;
   const std::string distance = cursors.distance(timeline.span_s());

@@ -34,7 +34,7 @@ TEST_CASE("an arm that is alone is taken, also after another one that was alone"
 
 TEST_CASE("of several arms none is taken that was not named") {
   ArmChoice choice("");
-  CHECK(contains(question(choice, {a, b}), "2 arms are plugged in. Choose one"));
+  CHECK(contains(question(choice, {a, b}), "2 arms are plugged in. Choose an arm"));
   ArmChoice named("B");
   CHECK(picked(named, {a, b}) == "B");
   CHECK(picked(named, {a}) == "none");
@@ -45,7 +45,7 @@ TEST_CASE("an arm that was taken alone is taken again beside another one, which 
   CHECK(picked(choice, {a}) == "A");
   CHECK(picked(choice, {b, a}) == "A");
   CHECK(picked(choice, {}) == "none");  // the choice resets itself
-  CHECK(contains(question(choice, {b}), "The arm A is gone, and B is another one"));
+  CHECK(contains(question(choice, {b}), "The arm A is disconnected, but the arm B is connected"));
   CHECK(picked(choice, {b, a}) == "A");
 }
 

@@ -44,18 +44,18 @@ TEST_CASE("what cannot be listed, read or written is told in a sentence") {
   const TemporaryDirectory directory;
   const fs::path file = directory.file("a.toml");
   write(file, "");
-  CHECK(list_folder(directory.file("nowhere"), toml).problem.find("There is no folder") == 0);
+  CHECK(list_folder(directory.file("nowhere"), toml).problem.find("The folder") == 0);
   CHECK(list_folder(file, toml).problem.find("is a file") != std::string::npos);
   CHECK(reading_problem(file).empty());
-  CHECK(reading_problem(directory.file("b.toml")).find("There is no file") == 0);
+  CHECK(reading_problem(directory.file("b.toml")).find("The file") == 0);
   CHECK(reading_problem(file.parent_path()).find("is a folder") != std::string::npos);
   CHECK(writing_problem(file).empty());
-  CHECK(writing_problem(directory.file("nowhere") + "/a.toml").find("There is no folder") == 0);
+  CHECK(writing_problem(directory.file("nowhere") + "/a.toml").find("The folder") == 0);
   CHECK(writing_problem(file.parent_path()).find("is a folder") != std::string::npos);
   if (geteuid() == 0) return;  // root has access to every folder
   fs::permissions(file, fs::perms::none);
-  CHECK(reading_problem(file).find("You may not read") == 0);
-  CHECK(writing_problem(file).find("You may not write") == 0);
+  CHECK(reading_problem(file).find("You have no permission to read") == 0);
+  CHECK(writing_problem(file).find("You have no permission to write") == 0);
 }
 
 TEST_CASE("typed names are relative to the folder, absolute, or in the user's home") {

@@ -86,11 +86,11 @@ TEST_CASE("of another fault's fields nothing is asked for") {
 
 TEST_CASE("what is no number is told with its field") {
   const auto told = [](const TypedFault& typed) { return message_of<device::Error>([&] { request_of(typed); }); };
-  CHECK(contains(told({InjectedFault::supply_sag, "", "much", "", ""}), "`much` is not a number. Give the amount"));
+  CHECK(contains(told({InjectedFault::supply_sag, "", "much", "", ""}), "`much` is not a number. Enter the amount"));
   CHECK(contains(told({InjectedFault::supply_sag, "", "1,5", "", ""}), "without commas"));
   CHECK(contains(told({InjectedFault::supply_sag, "", "inf", "", ""}), "is not a number"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "", "1 s", ""}), "the time until it comes"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "", "", "x"}), "how long it lasts"));
+  CHECK(contains(told({InjectedFault::supply_sag, "", "", "1 s", ""}), "the start delay"));
+  CHECK(contains(told({InjectedFault::supply_sag, "", "", "", "x"}), "the duration"));
 }
 
 TEST_CASE("a fault is told with its place and its amount") {

@@ -58,7 +58,7 @@ TEST_CASE("the unit of a sum is known, that of a product is to be stated") {
   CHECK(unit_told_by("force_x_N * velocity_x_m_s").empty());
   CHECK(unit_told_by("force_x_N + velocity_x_m_s").empty());
   CHECK(unit_told_by("sqrt(force_x_N)").empty());
-  CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "")).starts_with("State the unit"));
+  CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "")).starts_with("Enter the unit"));
   CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "W")).empty());
 }
 
@@ -69,16 +69,16 @@ TEST_CASE("what is no formula is refused in plain words") {
     CAPTURE(reason);
     CHECK(reason.find(part) != std::string::npos);
   };
-  refused("", "Type a formula");
+  refused("", "Enter a formula");
   refused("forse_N + 1", "no signal or function `forse_N`. Did you mean");
-  refused("force_N +", "ends too early");
+  refused("force_N +", "formula is incomplete");
   refused("(force_N + 1", "closing parenthesis");
-  refused("force_N + 1)", "has no partner");
-  refused("force_N force_x_N", "does not belong at character");
+  refused("force_N + 1)", "no matching parenthesis");
+  refused("force_N force_x_N", "is not allowed at character");
   refused("force_N + 1,5", "decimal point");
-  refused("force_N = 3", "has no =");
-  refused("1 + 2", "names no signal");
-  refused(std::string(500, '1'), "characters at most");
+  refused("force_N = 3", "Remove the =");
+  refused("1 + 2", "contains no signal");
+  refused(std::string(500, '1'), "may have at most");
   Formula wrong = formula("force_N + 1");
   CHECK(refusal_of(wrong).empty());
   wrong.name = "force_N";

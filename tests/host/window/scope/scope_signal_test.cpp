@@ -30,7 +30,7 @@ TEST_CASE("references are drawn last, above the noise of what follows them") {
 TEST_CASE("a plot that shows nothing says what to do") {
   SignalHistory history(256);
   const ScopePlot force{PlotKind::time, "Force", {Signal::force_N}};
-  CHECK(hint_for(force, history).find("A connected device") != std::string::npos);
+  CHECK(hint_for(force, history).find("Connect a device") != std::string::npos);
   history.append({{Signal::force_N}, 0, 1, {1.0f}, 0});
   CHECK(hint_for(force, history).empty());
   CHECK(hint_for({PlotKind::time, "Duty", {Signal::duty_1}}, history).find("duty_1") != std::string::npos);

@@ -18,7 +18,7 @@ class PictureDigest {
   /// For values without padding bytes.
   template <class Value>
   void add(const Value& value) {
-    static_assert(!std::is_pointer_v<Value>, "where something lies says nothing of what it is");
+    static_assert(!std::is_pointer_v<Value>, "an address does not identify the content");
     static_assert(std::has_unique_object_representations_v<Value> || std::is_floating_point_v<Value>);
     add_bytes(&value, sizeof value);
   }
