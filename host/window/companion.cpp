@@ -80,7 +80,7 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (io.WantTextInput) return;
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
-  // A held key acts once, because a step may move a motor and a frame can last longer than a key press.
+  // Key repetition is ignored, because each step may move a motor.
   const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(key_index(key), false); };
   if (is_tapped(ImGuiKey_Z)) {
     if (io.KeyShift) {
@@ -122,7 +122,7 @@ void Companion::lay_out(ImVec2 size, double now_s) {
 
 void Companion::follow_device(double now_s) {
   if (desk_.has_choice()) {
-    column_.cancel();  // before the device changes, because trial values have to be restored on the old device
+    column_.cancel();  // trial values must be restored on the old device
     desk_.follow_choice();
   }
   follow_parameters(desk_.refresh(), now_s);

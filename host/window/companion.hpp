@@ -1,4 +1,4 @@
-// The companion's window: one frame from all its parts.
+// The companion's window, which lays out and draws all panes.
 #pragma once
 
 #include <optional>
@@ -27,15 +27,15 @@ namespace inkwell::window {
 
 class Companion final : public FrameContent {
  public:
-  /// `problem`: why a requested virtual board could not be started; empty: no problem.
+  /// `problem`: error of the last start of a virtual board; empty: no error.
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
-  /// Escape, F12 and the space bar stop immediately; the space bar has no effect while the user types text.
+  /// Handles the keys. Escape, F12 and, outside of text fields, the space bar switch the force off immediately.
   void key(const KeyEvent& event) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
-  /// True once the user asks for a virtual board; the window then restarts with the virtual board.
+  /// True once the user requests a virtual board. The window then restarts with the virtual board.
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
@@ -44,28 +44,28 @@ class Companion final : public FrameContent {
   nlohmann::json inspect() const override;
   std::optional<double> pose_age_s() const override;
 
-  /// Returns the current settings, which are saved.
+  /// Returns the settings to save.
   WindowSettings settings() const;
 
  private:
   void follow_device(double now_s);
   void follow_parameters(const DeviceView& view, double now_s);
   void take_keyboard_shortcuts(double now_s);
-  /// Alt with the arrow keys moves the splitters.
+  /// Moves the splitters while Alt and an arrow key are pressed.
   void move_borders(const WindowLayout& layout, ImVec2 window);
 
   /// Returns the height that the layout reserves for the banner. The height does not change while a mouse button is
-  /// down, so that a dragged item does not move.
+  /// down, because a dragged item must not move.
   float banner_room(float banner_height);
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
-  /// Returns true if the user asks for the force.
+  /// Returns true if the user switches the force on.
   bool draw_scene(const WindowLayout& layout, double now_s);
   void draw_returned_values(const WindowLayout& layout, double now_s);
   void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
 
-  /// True if a card about a missing device or an update is shown in the middle of the scene.
+  /// True if the connection card is shown.
   bool has_card() const;
   void draw_card(const WindowLayout& layout);
   void update_firmware();
@@ -73,7 +73,7 @@ class Companion final : public FrameContent {
   void use_theme(Theme theme);
   void stop();
 
-  /// Parameters of the replayed recording if one is open, of the device otherwise.
+  /// Returns the parameters of the replayed recording or, without a replay, of the device.
   ParameterEditor& shown_parameters() { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
   const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
 
@@ -101,7 +101,7 @@ class Companion final : public FrameContent {
   float banner_room_ = 0.0f;                ///< value of the previous frame
   Rectangle scene_;                         ///< position in the last layout
   std::optional<device::Pose> arrived_;     ///< the device's newest pose at the start of the frame
-  std::optional<device::Pose> pose_;        ///< pose that the frame shows, from the device or from the recording
+  std::optional<device::Pose> pose_;        ///< displayed pose, from the device or from the recording
   std::optional<device::Pose> drawn_pose_;  ///< last pose that differed visibly from the previous pose
   bool is_moving_ = true;
   bool button_1_ = false;

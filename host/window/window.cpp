@@ -54,7 +54,7 @@ void run(WindowOptions options) {
   WindowSettings settings = settings_at_start(options);
   end_loop_at_signals();
   Display display({options.width, options.height}, options.scale, "Inkwell");
-  std::optional<Inspection> inspection;  // outlives both loops, so that no request is lost between them
+  std::optional<Inspection> inspection;  // outlives the frame loops, so that no request is lost between two loops
   if (options.inspect) inspection.emplace(&Display::wake);
   for (std::string problem;;) {
     ImGuiFrames imgui(display.handle());
@@ -73,7 +73,7 @@ void run(WindowOptions options) {
 }
 
 /// Each frame allocates and frees some megabytes. If the memory were returned to the system, page faults would take a
-/// third of the preparation time of a frame.
+/// third of the frame preparation time.
 void keep_memory_between_frames() {
   constexpr int kept_bytes = 64 << 20;
   mallopt(M_TRIM_THRESHOLD, kept_bytes);

@@ -20,7 +20,7 @@ float banner_text_width(float width, const Style& style, const Banner& banner) {
                                                                         : banner_margin_points));
 }
 
-/// A device with a different firmware version that speaks the same protocol version. The update is optional.
+/// Returns a banner that offers an optional update if the firmware versions differ.
 std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpdater::Sight& firmware) {
   const std::string& version = view.status.information->firmware_version;
   if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||
@@ -70,7 +70,7 @@ float banner_height(float width, const Style& style, const Banner& banner) {
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
   const Colour colour = banner.is_fault() ? palette.danger : palette.caution;
-  begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may lie over the scene
+  begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may cover the scene
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
   list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));

@@ -66,7 +66,7 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     outcome.firmware = draw_firmware_part(style, firmware);
   } else {
     text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
-    // An error of the search is more useful than the message that no device was found.
+    // A search error replaces the message that no device was found.
     const std::string& message = view.list_error.empty() ? view.status.message : view.list_error;
     wrapped_text(palette.text_quiet, message.empty()
                                          ? "Plug in the USB cable of the arm. The window then connects automatically."

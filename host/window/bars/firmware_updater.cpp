@@ -27,7 +27,7 @@ void FirmwareUpdater::meet(const std::string& board_name) {
   if (board_name.empty() || board_name == met_ || sight_.phase == Phase::runs) return;
   met_ = board_name;
   is_offer_read_ = false;
-  sight_.board.clear();  // no image is offered until the right one is known
+  sight_.board.clear();  // no image is offered until the matching image is known
   sight_.brings.clear();
   sight_.version.clear();
   changed_.notify_one();

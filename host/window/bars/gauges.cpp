@@ -21,7 +21,7 @@ Colour colour_of(const device::Pose& pose, const Palette& palette) {
   }
 }
 
-/// Shows the force source in place of the state while a program or shapes act on the hand.
+/// Returns "program" while a program or shapes exert a force, and otherwise the name of the state.
 std::string state_text(const device::Pose& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);

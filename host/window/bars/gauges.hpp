@@ -1,4 +1,4 @@
-// The values of the status bar, each with its caption above it.
+// Values in the status bar, with a caption above each value.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Gauge {
   bool warns = false;  ///< shown by a symbol and by the color
 };
 
-/// State, control load, supply, motor heat, pose rate and losses.
+/// Returns the state, control load, supply, motor heat, pose rate and losses.
 std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette);
 
 void draw_gauge(const Gauge& gauge, ImVec2 corner, ImVec2 size, const Style& style);

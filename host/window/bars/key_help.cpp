@@ -60,7 +60,7 @@ constexpr float keys_points = 172.0f;
 constexpr float column_points = 400.0f;
 constexpr float gap_points = 24.0f;
 
-// Draws one group of rows from the cursor position, and leaves the cursor below the group.
+// Draws the rows at the cursor position and moves the cursor below the rows.
 void draw_rows(std::span<const Row> rows, const Style& style) {
   const Palette& palette = *style.palette;
   const float left = ImGui::GetCursorPosX();

@@ -183,7 +183,7 @@ void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   const double duration_s = std::max(replay_->duration_s(), 1.0 / protocol::servo_rate_Hz);
   if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left))
     replay_->seek(duration_s * static_cast<double>((mouse - corner.x) / size.x));
-  constexpr double step_part = 0.01;  // of the whole, by a key
+  constexpr double step_part = 0.01;  // of the recording, per key press
   if (const int steps = key_steps_in_part(with_shift).right; steps != 0)
     replay_->seek(std::clamp(replay_->position_s() + step_part * steps * duration_s, 0.0, duration_s));
 

@@ -22,7 +22,7 @@ using protocol::State;
 namespace {
 
 constexpr float margin_points = 12.0f;
-constexpr float item_points = 38.0f;  // height of the buttons and of one row of gauges
+constexpr float item_points = 38.0f;  // height of the buttons and of a gauge row
 constexpr float row_points = 46.0f;
 constexpr float gap_points = 8.0f;
 // Widths of the buttons at the right end.
@@ -34,7 +34,7 @@ constexpr float help_points = 28.0f;
 constexpr float buttons_points =
     stop_points + force_points + scope_points + theme_points + help_points + 5 * gap_points + margin_points;
 
-/// Device, gauges and switches, from left to right.
+/// Items of the bar, from left to right.
 enum Item : std::size_t {
   device_item,
   state_item,
@@ -54,7 +54,7 @@ std::vector<FlowPlace> places_of(float width, const Style& style) {
   return flow(widths, row - style.points(buttons_points - margin_points), row, style.points(gap_points));
 }
 
-// Acts on the press instead of the release, and also while a dialog or an open list captures the mouse.
+// Draws the STOP button. The button reacts to the press instead of the release, even while a dialog captures the mouse.
 bool stop_button(ImVec2 size, const Style& style) {
   const Palette& palette = *style.palette;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -152,7 +152,7 @@ float StatusBar::height(float width, const Style& style) const {
   return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
-/// Right-aligned at `corner`, with the STOP button outermost.
+/// Draws the buttons to the left of `corner`, with the STOP button at the right end.
 void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
                              StatusBarOutcome& outcome) const {
   const Palette& palette = *style.palette;

@@ -61,7 +61,7 @@ void DeviceDesk::open_session() {
 }
 
 const DeviceView& DeviceDesk::refresh() {
-  view_.reconnection = session_->reconnection();  // read first, so that all later reads are at least as new
+  view_.reconnection = session_->reconnection();  // read first, because all other data must be at least as new
   events_.add(session_->take_events());
   view_.status = session_->status();
   view_.pose = view_.connected() ? session_->newest_pose() : std::nullopt;

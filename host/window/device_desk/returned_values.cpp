@@ -27,7 +27,7 @@ void ReturnedValues::follow(const DeviceView& view, double now_s) {
     is_shown_ = now_s - shown_since_s_ < same_is_told_for_s;
     return;
   }
-  // A value that has changed since the reconnection needs no decision.
+  // The user no longer has to decide about a value that has changed since the reconnection.
   std::erase_if(rows_, [&](const Row& row) { return (*view.parameters)[row.parameter] != row.now; });
   is_shown_ = !rows_.empty();
 }

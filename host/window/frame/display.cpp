@@ -15,7 +15,7 @@ namespace inkwell::window {
 
 namespace {
 
-/// Scale of the main display: 2 for 192 dots per inch.
+/// Returns the scale of the main display, such as 2 for 192 dots per inch.
 float monitor_scale() {
   if (!has_pixel_units()) return 1.0f;
   float x = 1.0f;
@@ -24,7 +24,7 @@ float monitor_scale() {
   return std::clamp(std::max(x, y), 1.0f, 4.0f);
 }
 
-/// Usable area of the main display; none if the desktop does not report it.
+/// Returns the usable area of the main display; none if the desktop does not report this area.
 std::optional<ScreenSize> monitor_room() {
   int x = 0, y = 0;
   ScreenSize room{0, 0};
@@ -75,7 +75,7 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
     display->had_input_ = true;
     if (display->on_key_) display->on_key_({key, scancode, action, modifiers});
   });
-  // ImGui's back end chains these callbacks and calls them first.
+  // The callbacks of ImGui's back end call these callbacks first.
   static constexpr auto note_input = [](GLFWwindow* window) {
     static_cast<Display*>(glfwGetWindowUserPointer(window))->had_input_ = true;
   };
@@ -104,7 +104,7 @@ double Display::refresh_rate_Hz() const {
 }
 
 bool Display::draws_in_software() const {
-  // Mesa's software renderers (GL_RENDERER of llvmpipe and softpipe).
+  // llvmpipe and softpipe are Mesa's software renderers.
   const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
 }
@@ -138,7 +138,7 @@ void write_screenshot(const std::filesystem::path& path, int width, int height) 
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGB;
-  // OpenGL's first row is the lowest one; a negative stride flips the picture.
+  // OpenGL stores the lowest row first, so a negative stride flips the picture.
   if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
     throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
 }

@@ -40,7 +40,7 @@ void FileChooser::enter(const fs::path& folder) {
   listed_at_s_ = -list_again_after_s;
 }
 
-/// Draws the parent folders; each is a button that opens it.
+/// Draws one button per parent folder, which opens this folder.
 void FileChooser::draw_places(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(4)});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(4), style.points(2)});
@@ -112,7 +112,7 @@ void FileChooser::draw_entries(const Style& style) {
   if (wanted) enter(*wanted);
 }
 
-/// Accepts the typed text: opens a folder or checks a file.
+/// Opens the typed folder, or checks and chooses the typed file.
 void FileChooser::accept() {
   if (typed_.empty()) return;
   const fs::path typed = typed_path(folder_, typed_);
@@ -132,7 +132,7 @@ void FileChooser::accept() {
     chosen_ = file;
 }
 
-/// True if the dialog must be closed.
+/// Returns true if the user cancels the dialog.
 bool FileChooser::draw_buttons(const Style& style) {
   const ImVec2 size{style.points(100), 0};
   if (to_be_replaced_) {

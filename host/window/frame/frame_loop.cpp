@@ -17,8 +17,8 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr double look_period_s = 1.0 / 60.0;  // at rest: interval for asking the content for a new frame
-constexpr double faster_than_display = 1.04;  // above the display rate, so that normally the display sets the pace
+constexpr double look_period_s = 1.0 / 60.0;  // polling interval for changed content at rest
+constexpr double faster_than_display = 1.04;  // above the display rate, which is the usual limit
 
 volatile std::sig_atomic_t asked_to_end = 0;
 
@@ -61,7 +61,7 @@ void FrameLoop::run() {
 }
 
 FrameLoop::Frame FrameLoop::next_frame() {
-  // Read before the events, so that the answer to a request reflects all earlier events.
+  // Requests are read before the events, because an answer must reflect all earlier events.
   const bool is_asked = inspection_ && inspection_->is_asked();
   const bool is_lively = rhythm_.is_lively(glfwGetTime());
   is_lively ? pacer_.wait() : pacer_.rest();
@@ -92,7 +92,7 @@ void FrameLoop::lay_out(Frame& frame) {
   imgui_.end();
 
   const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
-  // At rest there is time for antialiasing.
+  // Frames at rest and photographed frames are always antialiased.
   frame.smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed;
   PictureDigest canvas;
   canvas.add(content_.canvas_digest());
@@ -138,7 +138,7 @@ void FrameLoop::draw_part(const Frame& frame, const Box& part) {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const ImVec4 ground = vector(content_.ground());
   glClearColor(ground.x, ground.y, ground.z, 1.0f);
-  // ImGui's back end leaves the scissor test on, but clearing a whole buffer is fastest without it.
+  // ImGui's back end enables the scissor test. Clearing a whole buffer is fastest without this test.
   part == frame.picture.window ? glDisable(GL_SCISSOR_TEST) : glEnable(GL_SCISSOR_TEST);
   glScissor(pixels(part.left), height - pixels(part.bottom), pixels(part.right - part.left),
             pixels(part.bottom - part.top));
@@ -155,13 +155,13 @@ void FrameLoop::draw_part(const Frame& frame, const Box& part) {
 }
 
 void FrameLoop::show(const Frame& frame) {
-  // Waits for the GPU, so that the measured time includes the drawing.
+  // Waits for the GPU, because the measured time must include the drawing.
   if (options_.frames_report || !frame.is_lively) glFinish();
   const double drawn_s = glfwGetTime();
   if (!frame.is_lively) rhythm_.took(drawn_s - frame.now_s);
   display_.show();
   on_screen_ = frame.picture;
-  // At rest the frame rate is low on purpose.
+  // The report excludes frames at rest, whose rate is intentionally low.
   if (frame.is_lively) frames_report_.add(frame.now_s - shown_s_, drawn_s - frame.now_s, content_.pose_age_s());
   shown_s_ = frame.now_s;
 }

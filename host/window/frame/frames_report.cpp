@@ -8,7 +8,7 @@
 namespace inkwell::window {
 
 namespace {
-constexpr std::size_t pose_ages_maximum = 1'000'000;  // enough for hours; a user watches a run with a report
+constexpr std::size_t pose_ages_maximum = 1'000'000;  // enough for several hours
 }
 
 void FramesReport::add(double period_s, double drawing_s, std::optional<double> pose_age_s) {

@@ -23,7 +23,7 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
   const std::span corners(list.VtxBuffer.Data + command.VtxOffset + first, static_cast<std::size_t>(last - first) + 1);
   PictureDigest digest;
   digest.add_bytes(corners.data(), corners.size_bytes());
-  // Relative to the first corner, because the number of corners drawn earlier may change.
+  // Indices are relative to the first corner, because the number of previous corners may change.
   std::uint64_t order = 0;
   for (const ImDrawIdx index : indices) order = order * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(index - first);
   digest.add(order);
@@ -70,7 +70,7 @@ std::vector<DrawnPane> ImGuiFrames::panes() const {
 }
 
 void ImGuiFrames::draw(const Box& box) const {
-  // The back end draws the content of a command's rectangle. Commands without content in the box are not uploaded.
+  // Clips all commands to the box. Lists without content in the box are not uploaded.
   const ImDrawData& data = *ImGui::GetDrawData();
   std::vector<ImDrawList*> lists;
   std::vector<ImVec4> rectangles;

@@ -30,7 +30,7 @@ struct Notes {
 
 Notes* notes = nullptr;  // for the current frame; null without a request
 
-// The visible part of an ImGui label, or its identifier if nothing is visible.
+// Returns the visible part of an ImGui label, or the identifier of an invisible label.
 std::string_view name_in(std::string_view label) {
   return label.starts_with("##") ? label.substr(2) : label.substr(0, label.find("##"));
 }

@@ -22,14 +22,14 @@ bool can_cancel() {
 
 #if INKWELL_IMGUI_HAS_KEY_EVENTS
 
-// This back end queues key events, so that short keystrokes last one frame, and follows the keyboard layout.
+// This back end queues key events and follows the keyboard layout, so no set-up is necessary.
 void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
 void apply_keys(KeyTaps&) {}
 
 #else
 
-// Called every frame, because the user may change the layout at any time.
+// Called for every frame, because the user may change the layout at any time.
 void follow_keyboard_layout(ImGuiIO& io) {
   const KeyLetters keys = key_letters([](int key) { return glfwGetKeyName(key, 0); });
   for (const auto& [letter, shortcut] :
@@ -45,7 +45,7 @@ void set_up_keys() {
 
 void note_tap(KeyTaps& taps, int key) {
   taps.note(key);
-  // The current modifiers are recorded as well, because they may be released before the next frame.
+  // The modifier keys are also recorded, because the user may release them before the next frame.
   const bool* down = ImGui::GetIO().KeysDown;
   for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
                              GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
@@ -66,7 +66,7 @@ void apply_keys(KeyTaps& taps) {
 }  // namespace
 
 KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
-  // Otherwise the back end would install its callback in front of the window's callback and receive every key.
+  // Hides the window's callback from the back end, which would otherwise receive every key.
   const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   glfwSetKeyCallback(window_, callback);

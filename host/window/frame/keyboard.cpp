@@ -17,7 +17,7 @@ bool can_have_keyboard(const ImGuiWindow& part) {
   return part.WasActive && part.RootWindow == &part && (part.Flags & cannot) == 0;
 }
 
-/// The focusable panes in drawing order.
+/// Returns the focusable panes in drawing order.
 std::vector<ImGuiWindow*> parts() {
   std::vector<ImGuiWindow*> found;
   for (ImGuiWindow* each : GImGui->Windows)
@@ -109,7 +109,7 @@ void keep_modified_arrows() {
 }
 
 void scroll_by_page_keys() {
-  constexpr float page = 0.9f;  // less than a page, so that one line of the previous page stays visible
+  constexpr float page = 0.9f;  // one line of the previous page remains visible
   const int pages = key_steps_in_part(no_modifier).away;
   if (pages != 0) ImGui::SetScrollY(ImGui::GetScrollY() - page * ImGui::GetWindowHeight() * static_cast<float>(pages));
 }

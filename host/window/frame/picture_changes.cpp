@@ -26,7 +26,7 @@ std::vector<Box> without_overlap(std::vector<Box> boxes) {
     if (overlapping == boxes.end()) continue;
     boxes[i] = enclosing(boxes[i], *overlapping);
     boxes.erase(overlapping);
-    i = static_cast<std::size_t>(-1);  // the enlarged box may overlap boxes before it
+    i = static_cast<std::size_t>(-1);  // the enlarged box may overlap previous boxes
   }
   return boxes;
 }

@@ -43,7 +43,7 @@ void draw_ground(ImVec2 corner, ImVec2 end, float part, bool is_typed_in, const 
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  // At the bottom, so that the line does not cross the number.
+  // The line is at the bottom, because it must not cross the number.
   list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
 }
 
@@ -88,8 +88,7 @@ ValueEdit ValueFields::draw(const char* id, const std::string& name, float value
   ValueEdit edit;
   const ImVec2 handle{style.points(handle_points), height};
   ImGui::PushID(id);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoNav | ImGuiItemFlags_NoNavDefaultFocus, true);  // the keyboard focus goes to the
-                                                                                       // number instead
+  ImGui::PushItemFlag(ImGuiItemFlags_NoNav | ImGuiItemFlags_NoNavDefaultFocus, true);  // only the number has the focus
   ImGui::InvisibleButton("handle", handle);
   ImGui::PopItemFlag();
   ImGui::PopID();

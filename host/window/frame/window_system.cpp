@@ -34,12 +34,11 @@ bool prefers_wayland() {
 #if GLFW_VERSION_MAJOR > 3 || (GLFW_VERSION_MAJOR == 3 && GLFW_VERSION_MINOR >= 4)
 
 bool start_window_system() {
-  // X11 has priority also in a Wayland session: on Wayland GLFW has no icon and, without a plugin, no title bar.
+  // X11 has priority even in a Wayland session, because a GLFW window on Wayland has no icon and may lack a title bar.
   std::array order{GLFW_PLATFORM_X11, GLFW_PLATFORM_WAYLAND};
   if (prefers_wayland()) std::swap(order[0], order[1]);
   for (const int platform : order) {
-    // Without the variable, the Wayland library would connect to a default session, which may belong to another
-    // desktop.
+    // Without this variable, the Wayland library might connect to the session of a different desktop.
     if (platform == GLFW_PLATFORM_WAYLAND && variable("WAYLAND_DISPLAY").empty()) continue;
     if (glfwPlatformSupported(platform) != GLFW_TRUE) continue;
     glfwInitHint(GLFW_PLATFORM, platform);

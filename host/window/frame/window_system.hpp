@@ -4,15 +4,14 @@
 
 namespace inkwell::window {
 
-/// Starts GLFW on X11 if available, otherwise on Wayland. With INKWELL_WINDOW_SYSTEM set to "wayland", Wayland has
-/// priority. Returns false if no window system could be started. Throws DisplayError if the variable has another value.
+/// Starts GLFW on X11 if available, otherwise on Wayland. If INKWELL_WINDOW_SYSTEM is "wayland", Wayland has priority.
+/// Returns false if no window system could be started. Throws DisplayError if the value of the variable is invalid.
 bool start_window_system();
 
-/// Sets the name by which a desktop finds the program's entry and icon in packaging/inkwell.desktop. Call this before a
-/// window is created.
+/// Sets the name that identifies packaging/inkwell.desktop for the desktop. Call before a window is created.
 void set_program_name(const char* name);
 
-/// True if a screen unit is a pixel. On Wayland screen units are already scaled.
+/// True if screen units are pixels. Wayland scales screen units.
 bool has_pixel_units();
 
 }  // namespace inkwell::window

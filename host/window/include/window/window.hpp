@@ -5,8 +5,8 @@
 
 namespace inkwell::window {
 
-/// Opens the window and runs it until it is closed. Returns the exit code of the process. An error is printed to
-/// standard error and gives the code 1: no display, no OpenGL 3.3, or a screenshot that could not be written.
+/// Opens the window and runs it until it is closed. Returns the exit code of the process. After an error, such as a
+/// missing display, it prints the error to standard error and returns 1.
 int run_window(const WindowOptions& options);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Layout of the window: bars at the top, scene above scope on the left, column of panes on the right.
+// Layout of the window: bars at the top, scene and scope on the left, pane column on the right.
 #pragma once
 
 #include <imgui.h>
@@ -26,7 +26,7 @@ struct WindowLayout {
 struct LayoutNeeds {
   float status_height;
   float banner_height;
-  float banner_room;  ///< space for the banner above the other parts; with 0 the banner covers them
+  float banner_room;  ///< reserved height; with 0 the banner covers the parts below the bars
   float replay_height;
 };
 

@@ -17,7 +17,7 @@ struct WindowSettings {
 
   Theme theme = Theme::dark;
   float column_width = 330.0f;  ///< width of the pane column, in points before scaling
-  float scope_part = 0.42f;     ///< share of the common height of scene and scope
+  float scope_part = 0.42f;     ///< scope height divided by the shared height of scene and scope
   bool scope_is_shown = true;
   ScopeSettings scope;
   std::filesystem::path parameters_file;  ///< last file that was loaded or saved

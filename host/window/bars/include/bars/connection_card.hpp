@@ -13,18 +13,18 @@ namespace inkwell::window {
 const char* connection_title(const device::SessionStatus& status);
 Colour connection_colour(device::Connection connection, const Palette& palette);
 
-/// A virtual board as a substitute for a missing device.
+/// Offer to start a virtual board if no device is connected.
 struct VirtualBoardOffer {
   bool is_made;
-  const std::string& problem;  ///< error of the last attempt to start it; empty: no error
+  const std::string& problem;  ///< error of the last start of a virtual board; empty: no error
 };
 struct ConnectionCardOutcome {
   FirmwareCardOutcome firmware;
   bool starts_virtual_board = false;
   std::optional<std::string> chosen_serial_number{};
 };
-/// Draws a card in the middle of the scene. The card shows the progress of an update, or why no device is connected and
-/// what to do.
+/// Draws a card in the middle of the scene. The card shows the progress of an update, or the reason and remedy for a
+/// missing connection.
 ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
                                            const FirmwareUpdater::Sight& firmware, const VirtualBoardOffer& offer);
 

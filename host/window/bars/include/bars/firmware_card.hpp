@@ -1,4 +1,4 @@
-// Firmware update part of the card in the middle of the scene.
+// The firmware update on the connection card.
 #pragma once
 
 #include <bars/firmware_updater.hpp>
@@ -11,11 +11,11 @@ struct FirmwareCardOutcome {
   bool update = false, dismiss = false;
 };
 
-/// True while an update has something to show, or while a boot loader waits for an update.
+/// True while an update has progress or a result to show, or while a board is in its boot loader.
 bool has_firmware_card(const FirmwareUpdater::Sight& sight, const DeviceView& view);
-/// Draws the content of the card in this case.
+/// Draws the state of the update on the card.
 FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater::Sight& sight);
-/// Draws the update offer below the message about a different protocol version. Returns true if its button was pressed.
+/// Offers an update if the protocol versions differ. Returns true if the update button was pressed.
 bool draw_firmware_offer(const Style& style, const FirmwareUpdater::Sight& sight);
 
 }  // namespace inkwell::window

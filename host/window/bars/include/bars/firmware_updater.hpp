@@ -18,33 +18,33 @@ namespace inkwell::window {
 
 class FirmwareUpdater {
  public:
-  /// `asks`: the board's firmware is newer. A second begin() confirms that the newer firmware may be replaced.
+  /// `asks`: the board's firmware is newer. A second call of begin() permits the downgrade.
   enum class Phase : std::uint8_t { idle, runs, asks, failed, done };
   /// State of the updater in one frame.
   struct Sight {
     Phase phase = Phase::idle;
-    std::string message{};  ///< step, question, error, or firmware version that the board now has
+    std::string message{};  ///< step, question, error, or the new firmware version
     double done = 0;        ///< progress from 0 to 1
     bool sees_boot_loader = false;
-    std::string board{};    ///< board that the image is for; empty: not known yet
+    std::string board{};    ///< board that the image belongs to; empty: not known yet
     std::string brings{};   ///< description of the image, such as "firmware 0.1.0 for omni_driver"; empty: no image
     std::string version{};  ///< version of the image; empty: no image
   };
 
-  /// `image` is used for a board that does not report its name, and is read again for each update. `address` is the
+  /// Boards that do not report their name receive `image`, which is read again for each update. `address` is the
   /// address of the board.
   FirmwareUpdater(std::filesystem::path image, device::Address address);
-  /// Waits until a running update has finished, because an interrupted update leaves an incomplete firmware.
+  /// Waits for the end of a running update, because an interrupted update leaves incomplete firmware on the board.
   ~FirmwareUpdater() = default;
 
-  /// Call once per frame. Looks for a boot loader while no device is connected.
+  /// Call once per frame. Searches for a boot loader while `looks` is true.
   void look_for_boot_loader(bool looks);
-  /// Call once per frame with the name of the connected board. The name is kept because a board with an incomplete
-  /// firmware cannot report its name.
+  /// Call once per frame with the name of the connected board. The updater stores the name, because a board with
+  /// incomplete firmware does not report its name.
   void meet(const std::string& board_name);
   /// Starts an update unless one is running. An empty `serial_number` selects the only board.
   void begin(const std::string& serial_number);
-  /// Acknowledges the message.
+  /// Closes the message.
   void dismiss();
   Sight sight() const;
 
@@ -65,7 +65,7 @@ class FirmwareUpdater {
   bool looks_ = false;
   std::string met_;
   bool is_offer_read_ = false;        ///< for the connected board
-  std::optional<std::string> begun_;  ///< serial number of the board that the update was started for
+  std::optional<std::string> begun_;  ///< serial number of the board to update
   bool allows_downgrade_ = false;     ///< applies to the current update
 
   std::jthread worker_;

@@ -9,7 +9,7 @@ class KeyHelp {
  public:
   /// Opens the page in the next frame.
   void open() { is_to_be_opened_ = true; }
-  /// Draws the page over everything else while it is open.
+  /// Draws the open page in front of all panes.
   void draw(const Style& style);
 
  private:

@@ -1,4 +1,4 @@
-// A recording that is replayed instead of the device, and the bar that controls the replay.
+// The replayed recording and the bar that controls the replay.
 #pragma once
 
 #include <filesystem>
@@ -34,11 +34,11 @@ class ReplayBar {
   /// Call once per frame. Passes the samples of the elapsed time to the scope.
   void follow(double now_s, ScopePane& scope);
   std::optional<device::Pose> pose() const { return replay_->pose(); }
-  /// Contains the recording's parameters. Edits of these parameters are not sent to any device.
+  /// Returns an editor for the recorded parameters, whose edits are not sent to any device.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
 
-  /// Draws the bar and handles its buttons, one of which closes the recording.
+  /// Draws the bar and handles its buttons. The button Close closes the recording.
   void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:
@@ -51,9 +51,9 @@ class ReplayBar {
   std::filesystem::path file_;
   std::string name_;  ///< file name, with its folders if both recordings have the same file name
   std::optional<recording::Overlay> over_;
-  std::string aligned_at_;  ///< text of the mark at which both are aligned; empty: at their starts
+  std::string aligned_at_;  ///< text of the mark that aligns the recordings; empty: aligned at their starts
   FileChooser chooser_;
-  std::string problem_;  ///< why the second recording could not be overlaid
+  std::string problem_;  ///< error of the last overlay; empty: no error
   ParameterEditor editor_;
   std::optional<double> followed_until_s_;
 };

@@ -1,4 +1,4 @@
-// A card over the scene after a reconnection. The card compares the device's values with the values before the loss.
+// The card that compares the parameter values before and after a reconnection.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ enum class ReturnChoice : std::uint8_t {
   keep,  ///< keep the device's current values
 };
 
-/// Draws the card in the upper right corner of a scene with this position and size.
+/// Draws the card in the upper right corner of the scene. `place`, `size`: rectangle of the scene.
 ReturnChoice draw_return_card(ImVec2 place, ImVec2 size, const Style& style, const ReturnedValues& values,
                               bool force_is_on);
 

@@ -10,7 +10,7 @@ namespace inkwell::window {
 
 struct StatusBarInput {
   bool scope_is_shown;
-  bool is_replay;  ///< a recording is replayed; the force cannot be switched on
+  bool is_replay;  ///< true during a replay, when the force cannot be switched on
 };
 
 struct StatusBarOutcome {

@@ -1,5 +1,5 @@
-// Chooses the arm that the window connects to. An arm that the user has not chosen is used only if it is the only
-// candidate, because otherwise the force could act on the wrong hand.
+// Chooses the arm that the window connects to. Without a choice by the user, an arm is used only if no other arm is
+// connected. Otherwise the force could act on the wrong hand.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ class ArmChoice {
  private:
   std::string wanted_;
   std::string taken_;         ///< serial number of the last chosen arm, if it has one
-  bool saw_several_ = false;  ///< a single arm is then not necessarily the previous arm
+  bool saw_several_ = false;  ///< true: a single arm may differ from the previous arm
 };
 
 }  // namespace inkwell::window

@@ -14,7 +14,7 @@
 
 namespace inkwell::window {
 
-/// Snapshot of the device, constant while a frame is drawn.
+/// Snapshot of the device data, constant while a frame is drawn.
 struct DeviceView {
   device::SessionStatus status;
   std::optional<device::Pose> pose;  ///< newest pose; empty while not connected
@@ -24,7 +24,7 @@ struct DeviceView {
   std::optional<device::Reconnection> reconnection;  ///< newest reconnection
   std::vector<device::Endpoint> listed;              ///< devices found in the last search
   std::string list_error;
-  bool must_choose = false;  ///< no listed device is opened until the user chooses one
+  bool must_choose = false;  ///< the user must choose a device
 
   bool connected() const { return status.connection == device::Connection::connected; }
   protocol::State state() const { return pose ? pose->state : protocol::State::starting; }
@@ -35,7 +35,7 @@ class DeviceDesk {
   DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number);
   ~DeviceDesk();
 
-  /// Call at the start of a frame.
+  /// Reads the device data. Call at the start of a frame.
   const DeviceView& refresh();
   const DeviceView& view() const { return view_; }
   device::Session& session() { return *session_; }
@@ -45,13 +45,13 @@ class DeviceDesk {
   /// Requests another device, or any device if the number is empty. follow_choice() then connects to the device.
   void choose(const std::string& serial_number) { choice_ = serial_number; }
   bool has_choice() const { return choice_.has_value(); }
-  /// Ends the session with the present device and connects to the chosen device.
+  /// Closes the session with the present device and connects to the chosen device.
   void follow_choice();
   const std::string& wanted_serial_number() const { return wanted_; }
-  /// Searches for devices continuously while `looking` is true, for the open device list.
+  /// Searches for devices continuously while `looking` is true.
   void keep_looking(bool looking) { looking_ = looking; }
 
-  /// Selects the streamed signals. The selection is kept for the next device.
+  /// Selects the streamed signals. The selection also applies to the next device.
   void select_signals(std::vector<protocol::Signal> signals);
   /// Events of the devices since the window was opened.
   const device::EventLog& events() const { return events_; }

@@ -17,7 +17,7 @@ struct MotorHeatView {
 
 MotorHeatView motor_heat_view(const protocol::InformationReport& report);
 
-/// Returns advice for the user in one sentence; empty if none is needed.
+/// Returns advice for the user; empty if the motors are cool.
 std::string heat_advice(const MotorHeatView& heat);
 
 }  // namespace inkwell::window

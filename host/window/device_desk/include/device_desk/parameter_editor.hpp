@@ -1,4 +1,4 @@
-// Requested parameter values between the controls of the window and the device: edits, undo and redo.
+// Parameter edits of the user, with undo and redo.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace inkwell::window {
 
-/// The shown values are the device's values, except for edits that the device has not confirmed yet.
+/// Shows the device's values and the edits that the device has not confirmed yet.
 class ParameterEditor {
  public:
   /// Call after each read of the device's parameters.
@@ -29,7 +29,7 @@ class ParameterEditor {
   protocol::ParameterSet shown() const;
   bool differs_from_default(protocol::Parameter parameter) const;
 
-  /// All edits from begin_step() to end_step() form one undo step, for example the drag of a slider.
+  /// All edits between begin_step() and end_step() form one undo step, such as the drag of a slider.
   void begin_step(std::string title);
   void edit(std::span<const device::ParameterChange> changes, double now_s);
   void end_step();
@@ -74,10 +74,10 @@ class ParameterEditor {
 
 /// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without group and unit.
 std::string label_of(const protocol::ParameterInfo& info);
-/// The label with its group, for use without a heading: "Box minimum x".
+/// The label that includes the group: "Box minimum x".
 std::string full_label_of(protocol::ParameterInfo info);
 
-/// Number of digits after the decimal point: a resolution of about a ten-thousandth of the parameter's range.
+/// Number of decimals that resolves about 1/10,000 of the parameter's range.
 int decimals_of(const protocol::ParameterInfo& info);
 
 /// A complete set of contact parameters for one type of wall.

@@ -1,4 +1,4 @@
-// Parameter values that differ after a reconnection, until the user has decided about them.
+// Parameter values that differ after a reconnection, until the user accepts or restores these values.
 #pragma once
 
 #include <cstdint>

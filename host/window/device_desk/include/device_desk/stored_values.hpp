@@ -8,13 +8,13 @@
 
 namespace inkwell::window {
 
-/// Returns the parameters whose values would be lost on power loss; empty while this is not known.
+/// Returns the parameters whose values are not stored; empty while the stored values are unknown.
 std::vector<protocol::Parameter> not_stored(const DeviceView& view);
 
-/// "3 values are not stored", "All values are stored", "Nothing is stored, all values are defaults".
+/// Returns a title: "3 values are not stored", "All values are stored" or "All values are defaults".
 std::string stored_title(const DeviceView& view);
 
-/// Returns why the board would currently refuse to store or erase values, and what to do; empty if it would not refuse.
+/// Returns why the board currently refuses to store or erase values, and the remedy; empty: no refusal.
 std::string why_storing_waits(const DeviceView& view);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The operating system window and its OpenGL context.
+// The window of the operating system, with an OpenGL context.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
-/// The window cannot be opened; `what()` states the reason and the remedy.
+/// Error of the display. `what()` returns the reason and the remedy.
 class DisplayError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,10 +35,9 @@ class Display {
   float scale() const { return scale_; }  ///< pixels per point
   double refresh_rate_Hz() const;
   bool draws_in_software() const;  ///< OpenGL runs without a graphics card
-  ImVec2 corner() const;           ///< top left of the drawing area on the screen; (0, 0) on Wayland, which does not
-                                   ///< report it
+  ImVec2 corner() const;           ///< top left corner of the drawing area on the screen; (0, 0) on Wayland
 
-  /// Size of the drawing area in pixels; 0 by 0 while the window is minimized.
+  /// Size of the drawing area in pixels; 0 x 0 while the window is minimized.
   struct Size {
     int width, height;
   };
@@ -55,10 +54,10 @@ class Display {
 
   /// True if there was an event since the last call.
   bool take_input() { return std::exchange(had_input_, false); }
-  /// True if the screen has lost the picture, so that an unchanged picture must be drawn again.
+  /// True if the screen has lost the picture, which must then be redrawn.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
-  /// `take` is called with every key event of the window.
+  /// Sets the function that receives every key event of the window.
   void on_key(std::function<void(const KeyEvent&)> take) { on_key_ = std::move(take); }
 
  private:

@@ -1,5 +1,4 @@
-// The window's file dialog: folders, names, sizes and dates, a typed path, and a confirmation before a file is
-// replaced.
+// The window's file dialog, with a typed path and a confirmation before a file is replaced.
 #pragma once
 
 #include <filesystem>
@@ -16,16 +15,15 @@ struct FileQuestion {
   std::string title;
   std::string help;
   std::string button;                ///< "Load", "Save"
-  std::vector<std::string> endings;  ///< extensions of the selectable files, such as ".toml"; a new file gets the first
-                                     ///< one
-  bool is_new_file = false;          ///< the file will be written and need not exist
+  std::vector<std::string> endings;  ///< extensions of the selectable files, such as ".toml"; the first is the default
+  bool is_new_file = false;          ///< true: the file is written and need not exist
   std::filesystem::path suggestion;  ///< initial file or folder; empty: the working folder
 };
 
 class FileChooser {
  public:
   void ask(FileQuestion question);
-  /// Draws the dialog while it is open. Returns the file once, when the user has chosen it.
+  /// Draws the dialog while it is open. Returns the chosen file once.
   std::optional<std::filesystem::path> draw(const Style& style);
 
  private:

@@ -1,4 +1,4 @@
-// Rows of items that wrap if the window is narrow or its text is large.
+// Layout of items in rows, which wrap in a narrow window or with large text.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ struct FlowPlace {
   float x;  ///< from the left end of the row
 };
 
-/// Puts all items in the first row if they fit into `first_row_width`, which other items may share. Otherwise only the
-/// first item stays there, and the others fill rows of `row_width`.
+/// Puts all items in the first row if `first_row_width` is sufficient. Otherwise the first row contains only the first
+/// item, and the next rows have the width `row_width`.
 std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width, float row_width, float gap);
 
 }  // namespace inkwell::window

@@ -24,16 +24,16 @@ struct FolderListing {
   std::string problem;               ///< reason why the folder could not be read; empty on success
 };
 
-/// Lists the files with one of these endings (".toml"), or all files if there are no endings.
+/// Lists the folders and the files with one of these endings, such as ".toml". Without endings, all files are listed.
 FolderListing list_folder(const std::filesystem::path& folder, std::span<const std::string> endings);
 
-/// Interprets typed text: relative to the folder unless it is absolute or begins with "~/".
+/// Converts typed text to a path. The path is relative to the folder unless the text starts with "/" or "~/".
 std::filesystem::path typed_path(const std::filesystem::path& folder, std::string_view typed);
 
 /// Appends the first ending if the path has none of the endings.
 std::filesystem::path with_ending(std::filesystem::path path, std::span<const std::string> endings);
 
-/// Reason why this file cannot be read or written, as far as this is known in advance; empty if there is none.
+/// Returns the reason why the file cannot be read or written; empty if no reason is known in advance.
 std::string reading_problem(const std::filesystem::path& file);
 std::string writing_problem(const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// The main loop of the window. It decides when a frame is laid out and drawn.
+// The main loop of the window, which lays out and draws frames when necessary.
 #pragma once
 
 #include <cstdint>
@@ -21,42 +21,42 @@
 
 namespace inkwell::window {
 
-/// The framebuffer for the scene under the panes.
+/// Drawing target of the scene, which lies below the panes.
 struct Canvas {
   float pixels_per_unit;  ///< pixels per unit of screen coordinates
   int height_pixels;
-  bool smooth;        ///< there is time for antialiasing
-  bool is_as_before;  ///< the picture would equal the previous one
+  bool smooth;        ///< true: antialiased
+  bool is_as_before;  ///< true: the picture equals the previous picture
 };
 
-/// The content of the window, frame by frame.
+/// Interface of the window's content.
 class FrameContent {
  public:
   virtual ~FrameContent() = default;
 
-  /// A key was pressed or released, independent of the focus.
+  /// Handles a key event, independent of the focus.
   virtual void key(const KeyEvent& event) = 0;
-  /// Whether the content has changed visibly since the last frame. This must be fast, because the loop calls it often
-  /// while the window is at rest.
+  /// True if the content has changed visibly since the last frame. The function must be fast, because the loop at rest
+  /// calls it often.
   virtual bool asks_for_frame() const = 0;
 
   /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;
-  /// Whether the laid-out frame contains motion, so that frames must be drawn at the full rate.
+  /// True if the laid-out frame contains motion, which needs the full frame rate.
   virtual bool is_moving() const = 0;
-  /// Whether the content has finished, which stops the loop.
+  /// True if the loop must stop.
   virtual bool is_over() const { return false; }
-  /// The area of the scene under the panes, in screen coordinates.
+  /// Area of the scene, in screen coordinates.
   virtual Box canvas() const = 0;
   /// Digest of the laid-out scene: equal digests mean equal pictures.
   virtual std::uint64_t canvas_digest() const = 0;
 
   /// Background color of the panes.
   virtual Colour ground() const = 0;
-  /// Paints the scene under the panes into the framebuffer, whose depth and stencil buffers are cleared in this area.
+  /// Paints the scene below the panes. The depth and stencil buffers have been cleared in this area.
   virtual void paint(const Canvas& canvas) = 0;
 
-  /// The state of the laid-out frame for an inspection.
+  /// Returns the state of the laid-out frame for an inspection.
   virtual nlohmann::json inspect() const = 0;
   /// Board time between the pose of this frame and the newest received pose; none if no pose is shown.
   virtual std::optional<double> pose_age_s() const = 0;
@@ -69,16 +69,16 @@ struct FrameLoopOptions {
   bool frames_report = false;        ///< print the measured frame rate at exit
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP stop the loop like the close button. The force is switched off, trial
-/// parameters are restored and settings are saved.
+/// After this call, SIGINT, SIGTERM and SIGHUP stop the loop like the close button. The program then switches the force
+/// off, restores trial parameters and saves the settings.
 void end_loop_at_signals();
 
 class FrameLoop {
  public:
   FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options);
 
-  /// Returns when the window is closed, the content has finished, a signal arrived or the screenshot is written. Throws
-  /// DisplayError.
+  /// Returns when the window is closed, the content stops the loop, a signal arrives or the screenshot is written.
+  /// Throws DisplayError.
   void run();
 
  private:

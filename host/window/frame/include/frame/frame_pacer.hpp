@@ -3,16 +3,16 @@
 
 namespace inkwell::window {
 
-/// Sleeps so that frames have a steady rate if the display does not limit the rate.
+/// Limits the frame rate by sleeping, in case the display does not limit the rate.
 class FramePacer {
  public:
-  /// `keeps_up`: assumption until frames were measured.
+  /// `keeps_up`: initial value until frames have been measured.
   FramePacer(double frames_per_second, bool keeps_up) : period_s_(1.0 / frames_per_second), keeps_up_(keeps_up) {}
   void wait();
-  /// No frames follow for a while: the time until the next `wait` does not count as a slow frame.
+  /// Announces a pause. The time until the next call of wait() then does not count as a slow frame.
   void rest() { half_second_began_s_ = 0.0; }
 
-  /// True while frames are on time. Permanently false once frames were a fifth too slow for half a second.
+  /// True while frames are on time. False permanently, once frames have been 20 % too slow for half a second.
   bool keeps_up() const { return keeps_up_; }
 
  private:

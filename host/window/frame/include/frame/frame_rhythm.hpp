@@ -1,11 +1,10 @@
-// Decides when the window lays out and draws frames. Without a graphics card drawing is expensive, so a window at rest
-// draws rarely. While something moves, frames have the full rate. While only resting signals scroll, there are a few
-// frames per second. An unchanged picture is not drawn.
+// Decides when the window lays out and draws frames. Drawing is slow without a graphics card. Motion is therefore drawn
+// at the full rate, scrolling signals at a few frames per second, and an unchanged picture not at all.
 #pragma once
 
 namespace inkwell::window {
 
-/// Information about a frame before it is drawn.
+/// Properties of a laid-out frame.
 struct FrameEvidence {
   bool input = false;    ///< from the user or the window system
   bool moves = false;    ///< visible motion without input
@@ -14,13 +13,13 @@ struct FrameEvidence {
 
 class FrameRhythm {
  public:
-  /// Whether a frame must be laid out now. `something_happened`: input, or a moving device.
+  /// True if a frame must be laid out now. `something_happened`: input, or a moving device.
   bool is_due(bool something_happened, double now_s) const;
-  /// Whether the laid-out frame must be drawn.
+  /// True if the laid-out frame must be drawn.
   bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
   /// Records the drawing time of a frame at rest. Slow drawing reduces the rate at rest.
   void took(double drawing_s);
-  /// Whether frames follow one another at the full rate.
+  /// True while frames are drawn at the full rate.
   bool is_lively(double now_s) const { return now_s < lively_until_s_; }
 
   static constexpr double lively_for_s = 0.5;  ///< after the last input or motion

@@ -12,8 +12,7 @@ class FramesReport {
  public:
   /// `display_period_s`: frame period of the display, the reference for pose ages.
   explicit FramesReport(double display_period_s) : display_period_s_(display_period_s) {}
-  /// Adds a frame at the full rate. `pose_age_s`: board time between its pose and the newest received pose when the
-  /// frame was shown.
+  /// Adds a frame at the full rate. `pose_age_s`: board time between the drawn pose and the newest received pose.
   void add(double period_s, double drawing_s, std::optional<double> pose_age_s);
   std::string text() const;
 

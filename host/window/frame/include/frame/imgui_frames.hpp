@@ -1,4 +1,4 @@
-// ImGui with its two back ends while the window is open, and its frames.
+// ImGui with its two back ends, and the frames of ImGui.
 #pragma once
 
 #include <vector>
@@ -25,9 +25,9 @@ class ImGuiFrames {
   void begin();
   ImVec2 size() const;  ///< of the window, in screen coordinates
   void end();
-  /// The panes of the finished frame.
+  /// Returns the panes of the finished frame.
   std::vector<DrawnPane> panes() const;
-  /// Draws the part of the frame that lies in the box into the framebuffer.
+  /// Draws the part of the frame inside the box into the framebuffer.
   void draw(const Box& box) const;
 
  private:

@@ -1,4 +1,4 @@
-// Common names for ImGui 1.86 (Debian 12) and ImGui from 1.89.8 on (Debian 13). Only this file and key_feed.cpp depend
+// Common names for ImGui 1.86 (Debian 12) and ImGui 1.89.8 or newer (Debian 13). Only this file and key_feed.cpp depend
 // on the version.
 #pragma once
 
@@ -22,10 +22,11 @@ inline constexpr KeyModifiers no_modifier = ImGuiMod_None, with_ctrl = ImGuiMod_
                               with_alt = ImGuiMod_Alt;
 inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeypadEnter;
 
-/// The key's index for ImGui's functions, such as IsKeyPressed.
+/// Returns the key index for functions such as ImGui::IsKeyPressed().
 inline ImGuiKey key_index(ImGuiKey key) { return key; }
 
-/// Items after an item may lie over it: call one function before and the other one after the item.
+/// Allows later items to overlap an item. Call the first function before the item and the second function after the
+/// item.
 inline void allow_overlap_before_item() { ImGui::SetNextItemAllowOverlap(); }
 inline void allow_overlap_after_item() {}
 
@@ -46,10 +47,11 @@ inline constexpr KeyModifiers no_modifier = ImGuiKeyModFlags_None, with_ctrl = I
                               with_shift = ImGuiKeyModFlags_Shift, with_alt = ImGuiKeyModFlags_Alt;
 inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeyPadEnter;
 
-/// The key's index for ImGui's functions, such as IsKeyPressed.
+/// Returns the key index for functions such as ImGui::IsKeyPressed().
 inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }
 
-/// Items after an item may lie over it: call one function before and the other one after the item.
+/// Allows later items to overlap an item. Call the first function before the item and the second function after the
+/// item.
 inline void allow_overlap_before_item() { ImGui::SetItemAllowOverlap(); }
 inline void allow_overlap_after_item() { ImGui::SetItemAllowOverlap(); }
 

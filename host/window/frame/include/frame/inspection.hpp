@@ -1,8 +1,8 @@
-// Inspection of the window for tests that simulate a user: positions of its parts, its texts, and pictures.
+// Inspection of the window for tests that simulate a user.
 //
-// With `--inspect`, each line on standard input gets a one-line JSON answer on standard output. The answer follows
-// after a complete frame that began after the line had arrived. `look` returns the visible named items and texts of
-// that frame, `picture FILE` writes a PNG file, `close` closes the window.
+// With `--inspect`, the window answers each line on standard input with one line of JSON on standard output. The answer
+// describes a frame that was started after the line had arrived. `look` returns the visible named items and texts,
+// `picture FILE` writes a PNG file, and `close` closes the window.
 #pragma once
 
 #include <memory>
@@ -14,29 +14,28 @@
 
 namespace inkwell::window {
 
-// Record the item that was drawn last, with the name of its pane, such as "status/STOP". Without an inspection they
-// cost only a comparison.
+// Record the last drawn item with the name of its pane, such as "status/STOP". Without an inspection, the functions do
+// nothing.
 void note_item(std::string_view name);
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum);
 void note_text(std::string_view text);
 
 class Inspection {
  public:
-  /// A separate thread reads standard input, so that the window never waits for it. That thread calls `wake` when a
-  /// line has arrived.
+  /// A separate thread reads standard input and calls `wake` after each line, so that the window never waits for input.
   explicit Inspection(void (*wake)());
   ~Inspection();
   Inspection(const Inspection&) = delete;
   Inspection& operator=(const Inspection&) = delete;
 
-  /// Whether the next frame must answer a request and therefore must be drawn.
+  /// True if the next frame must be drawn, because it answers a request.
   bool is_asked();
-  /// Whether a picture was requested, which justifies a slow frame.
+  /// True if a picture was requested.
   bool wants_picture() const;
-  /// Starts recording names. `origin`: corner of the window on the screen, the origin of the reported positions.
+  /// Starts recording items and texts. `origin`: corner of the window on the screen, which is added to all positions.
   void begin_frame(ImVec2 origin);
-  /// Answers the requests that arrived before the frame began. The frame is in the bound framebuffer. `more` is added
-  /// to the answer to `look`. False if the window must be closed.
+  /// Answers the requests that arrived before the frame. The bound framebuffer contains the frame. `more` is added to
+  /// the answer to `look`. Returns false if the window must be closed.
   bool end_frame(const nlohmann::json& more, int width, int height);
 
  private:

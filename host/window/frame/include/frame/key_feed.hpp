@@ -8,7 +8,7 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
-/// ImGui's GLFW back end. It receives only the keys that this class passes on.
+/// ImGui's GLFW back end, which receives only the keys that this class passes.
 class KeyFeed {
  public:
   /// Starts the back end. The ImGui context must exist, and the window's callbacks must be set.
@@ -19,7 +19,7 @@ class KeyFeed {
 
   /// Passes an event of the window to ImGui, except for the keys that stop the force.
   void take(const KeyEvent& event);
-  /// Call this between the back end's NewFrame() and ImGui's NewFrame().
+  /// Call between the NewFrame() of the back end and ImGui::NewFrame().
   void begin_frame();
 
  private:

@@ -1,10 +1,10 @@
-// Keys that ImGui must not receive: Ctrl+Tab, and the keys that stop the force. ImGui would use the latter to activate
-// the focused control or to close a dialog.
+// Keys that ImGui must not receive: Ctrl+Tab, the space bar and Escape. Otherwise the space bar would activate the
+// focused control, and Escape would close a dialog.
 #pragma once
 
 namespace inkwell::window {
 
-/// A key event as GLFW reports it.
+/// A key event from GLFW.
 struct KeyEvent {
   int key;        ///< GLFW_KEY_...
   int scancode;   ///< platform-specific
@@ -18,7 +18,7 @@ inline constexpr int tab_key = 258;                             // GLFW_KEY_TAB
 inline constexpr int key_release = 0;                           // GLFW_RELEASE
 inline constexpr int shift_modifier = 1, control_modifier = 2;  // GLFW_MOD_...
 
-/// True if the event moves the keyboard focus to another part of the window: Ctrl+Tab, with or without Shift.
+/// True if the event moves the keyboard focus to another pane: Ctrl+Tab, with or without Shift.
 constexpr bool is_next_part(const KeyEvent& event) {
   return event.key == tab_key && event.action != key_release && (event.modifiers & control_modifier) != 0;
 }

@@ -1,4 +1,4 @@
-// Maps letters to keys, so that shortcuts follow the keyboard layout. GLFW names keys after the American layout.
+// Maps letters to keys, so that shortcuts follow the keyboard layout. The key names of GLFW follow the American layout.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@ namespace inkwell::window {
 /// The GLFW key of each letter from a to z.
 using KeyLetters = std::array<int, 26>;
 
-/// `name_of(key)` returns the character of a key like glfwGetKeyName, or null. A letter without a key, as on a Greek
-/// keyboard, keeps its American key.
+/// Returns the keys of the current layout. `name_of(key)` returns the character of a key, or null. A letter without a
+/// key, as on a Greek keyboard, has its American key.
 template <class NameOf>
 KeyLetters key_letters(const NameOf& name_of) {
   constexpr int key_a = 'A', key_z = 'Z';         // GLFW_KEY_A to GLFW_KEY_Z

@@ -1,5 +1,5 @@
-// Retains short keystrokes. ImGui polls the key states once per frame and would miss a key that was pressed and
-// released between two frames.
+// Stores keys that are pressed and released between two frames. ImGui polls the key states once per frame and would
+// miss these keys.
 #pragma once
 
 #include <span>
@@ -13,8 +13,7 @@ class KeyTaps {
   /// Records that a key was pressed.
   void note(int key) { noted_.push_back(key); }
 
-  /// Called before each frame: shows keys that were pressed and released since the last frame as pressed for this
-  /// frame.
+  /// Marks the stored keys as pressed for one frame. Call before each frame.
   void apply(std::span<bool> keys_down) {
     for (int key : held_) keys_down[static_cast<std::size_t>(key)] = false;
     held_.clear();

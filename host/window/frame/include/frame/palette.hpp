@@ -1,8 +1,8 @@
-// All colors of the window. The hues are from Okabe and Ito's palette ("Color Universal Design", 2008), which people
-// with the common color deficiencies can distinguish. No information is shown by hue alone.
+// All colors of the window. People with common color deficiencies can distinguish the hues, which are from Okabe and
+// Ito ("Color Universal Design", 2008). No information is shown by hue alone.
 //
-// With WindowOptions::flat_colours the solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly
-// these colors on the screen. Tests can therefore find the parts. Both themes use the same colors.
+// With WindowOptions::flat_colours, the solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly
+// these colors on the screen, which tests use. Both themes use the same scene colors.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,17 @@ struct Colour {
 
 namespace scene_colours {
 inline constexpr Colour probe{230, 159, 0};        ///< the sphere: orange
-inline constexpr Colour proxy{86, 180, 233};       ///< position without penetration of the wall: sky blue
+inline constexpr Colour proxy{86, 180, 233};       ///< the proxy: sky blue
 inline constexpr Colour wall_touched{213, 94, 0};  ///< frame and glow of a wall in contact: vermilion
 inline constexpr Colour wall_idle{110, 132, 160};  ///< frame and grid of a wall without contact
-inline constexpr Colour force{213, 94, 0};         ///< the same color as the wall in contact
+inline constexpr Colour force{213, 94, 0};         ///< force arrow, in the color of a wall in contact
 inline constexpr Colour hand{0, 158, 115};         ///< the simulated hand and its spring: bluish green
 inline constexpr Colour axis_x{204, 121, 167};     ///< reddish purple
 inline constexpr Colour axis_y{0, 158, 115};
 inline constexpr Colour axis_z{86, 180, 233};
 }  // namespace scene_colours
 
-/// Lines of the scope, in this order.
+/// Colors of the scope lines, in drawing order.
 inline constexpr std::array<Colour, 6> line_colours_dark{
     {{86, 180, 233}, {230, 159, 0}, {0, 178, 130}, {219, 140, 182}, {240, 228, 66}, {226, 110, 40}}};
 inline constexpr std::array<Colour, 6> line_colours_light{
@@ -48,9 +48,9 @@ struct Palette {
   Colour line;  ///< between panes, around fields
   Colour text;
   Colour text_quiet;  ///< units, captions
-  Colour accent;      ///< active or selected; text on it has the pane color
+  Colour accent;      ///< active or selected item; its text has the color `pane`
   Colour good;
-  Colour on_good;  ///< text on good
+  Colour on_good;  ///< text on the color `good`
   Colour caution;
   Colour on_caution;
   Colour danger;  ///< stop, faults
@@ -120,7 +120,7 @@ inline constexpr Palette light_palette{
     .lines = line_colours_light,
 };
 
-/// Buttons under the mouse are slightly lighter, pressed buttons slightly darker.
+/// Returns the color of a hovered or pressed button. A negative `by` makes the color darker.
 constexpr Colour lighter(Colour colour, int by) {
   const auto up = [by](std::uint8_t part) { return static_cast<std::uint8_t>(std::clamp(part + by, 0, 255)); };
   return {up(colour.red), up(colour.green), up(colour.blue), colour.alpha};

@@ -1,5 +1,4 @@
-// Finds the differences between two pictures, so that only these are drawn. Most of a window does not change while a
-// signal scrolls through a plot, and without a graphics card every pixel costs time.
+// Finds the differences between two pictures, because drawing the whole window is slow without a graphics card.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +16,7 @@ struct Box {
 };
 
 Box common(const Box& a, const Box& b);
-/// The smallest box that contains both.
+/// Returns the smallest box that contains `a` and `b`.
 Box enclosing(const Box& a, const Box& b);
 
 /// Triangles that are drawn together.
@@ -28,7 +27,7 @@ struct DrawnPart {
 };
 
 struct DrawnPane {
-  const void* pane = nullptr;    ///< identity of the pane
+  const void* pane = nullptr;    ///< identifies the pane
   std::vector<DrawnPart> parts;  ///< in drawing order
   bool operator==(const DrawnPane&) const = default;
 };
@@ -36,13 +35,13 @@ struct DrawnPane {
 struct DrawnPicture {
   Box window;
   std::uint64_t ground = 0;  ///< background color
-  Box canvas;                ///< area of the scene under the panes, which is always painted as a whole
+  Box canvas;                ///< area of the scene, which is always painted completely
   std::uint64_t canvas_digest = 0;
   std::vector<DrawnPane> panes;
   bool operator==(const DrawnPicture&) const = default;
 };
 
-/// Disjoint boxes of whole pixels. Outside of them `now` equals `before`.
+/// Returns disjoint boxes of whole pixels. Outside of these boxes, `now` equals `before`.
 std::vector<Box> changes_between(const DrawnPicture& before, const DrawnPicture& now);
 
 }  // namespace inkwell::window

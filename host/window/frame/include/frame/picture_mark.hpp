@@ -1,18 +1,17 @@
-// Detects whether the window's buffer still contains the last picture. After a buffer swap OpenGL guarantees nothing:
-// it may be another buffer or a new one.
+// Detects whether the window's buffer still contains the last picture. After a buffer swap, OpenGL may provide a
+// different buffer.
 #pragma once
 
 #include <cstdint>
 
 namespace inkwell::window {
 
-/// Writes a number into an invisible location: the alpha value of the buffer's first pixel. This tests the actual
-/// buffer instead of relying on the driver. Reading waits for all drawing, so it is used only for software rendering,
-/// where a buffer is either complete or lost.
+/// Stores a number in the alpha value of the first pixel, which is invisible. Reading the number waits for all drawing,
+/// so the mark is used only with software rendering.
 class PictureMark {
  public:
   bool is_there() const;
-  /// Writes a number that differs from the previous ones.
+  /// Writes a number that differs from all previous numbers.
   void put();
 
  private:

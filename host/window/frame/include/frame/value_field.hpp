@@ -1,4 +1,4 @@
-// A field for a number that affects a machine: typed text has no effect until it is confirmed.
+// A field for a number. Typed text has no effect until the user confirms it.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace inkwell::window {
 
-/// The user's actions on a field in this frame.
+/// Actions of the user on a field in this frame.
 struct ValueEdit {
   bool drag_begins = false;
   std::optional<float> dragged_to;
@@ -19,13 +19,12 @@ struct ValueEdit {
   std::optional<std::string> typed;  ///< the new text, confirmed by Enter or by leaving the field
 };
 
-/// The fields of one pane. At most one of them is edited at a time.
+/// The number fields of one pane. The user edits at most one field at a time.
 class ValueFields {
  public:
-  /// A field with a drag handle on the left and a number that a click selects. Its background is filled up to the
-  /// position of the value in the range. Dragging the handle changes the value, with Shift ten times as fast and with
-  /// Ctrl a tenth as fast. Escape restores the text before typing. `name`: for inspections; the handle is "<name>
-  /// handle".
+  /// Draws a field with a drag handle and a number. The filled part of the background shows the value within its range.
+  /// Dragging changes the value, ten times faster with Shift and ten times slower with Ctrl. Escape restores the
+  /// previous text. `name` is the name of the field in inspections, and "<name> handle" that of the handle.
   ValueEdit draw(const char* id, const std::string& name, float value, const ValueRange& range, float width,
                  const Style& style);
 
@@ -41,8 +40,7 @@ class ValueFields {
   bool is_typed_in(ImGuiID field) const { return typing_ && typing_->field == field; }
 
   std::optional<Typing> typing_;  ///< in the field with the keyboard focus
-  std::optional<Typing> left_;    ///< in the field that lost the focus to a field above it in this frame; kept until
-                                  ///< that field is drawn
+  std::optional<Typing> left_;  ///< in a field that has lost the focus to a field that was already drawn in this frame
   float drag_start_ = 0;
   float dragged_points_ = 0;
 };

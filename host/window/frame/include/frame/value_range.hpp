@@ -1,4 +1,4 @@
-// The range of a number that is dragged or typed, its drag scale, and its text format.
+// Range, drag scale and text format of a number.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@ namespace inkwell::window {
 struct ValueRange {
   float minimum;
   float maximum;
-  int decimals;              ///< decimal places of the shown value, to which a drag also rounds
-  bool logarithmic = false;  ///< equal drag distances are equal ratios; needs minimum > 0
+  int decimals;              ///< number of decimals of the displayed and of the dragged value
+  bool logarithmic = false;  ///< equal drag distances change the value by equal ratios; requires minimum > 0
 
   bool contains(float value) const { return value >= minimum && value <= maximum; }
-  /// Position in the range: 0 at the minimum, 1 at the maximum.
+  /// Returns the position in the range: 0 at the minimum, 1 at the maximum.
   float part_of(float value) const;
-  /// The value after a drag over this number of screen points. A thousand points cover the whole range.
+  /// Returns the value after a drag by this number of points. 1000 points cover the whole range.
   float dragged(float from, float points) const;
   std::string text_of(float value) const;
 };

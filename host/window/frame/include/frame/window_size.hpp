@@ -10,13 +10,13 @@ struct ScreenSize {
   bool operator==(const ScreenSize&) const = default;
 };
 
-/// Smallest size at which nothing overlaps. Points are pixels of a display with 96 dots per inch.
+/// Smallest size without overlapping parts. A point is 1/96 inch.
 inline constexpr ScreenSize smallest_window_points{900, 560};
 
-/// `scale`, or the largest scale, at least 1, at which the smallest window fits on the display.
+/// Returns `scale`, or the largest scale of at least 1 that fits the smallest window onto the display.
 float fitting_scale(float scale, std::optional<ScreenSize> room);
 
-/// Size in pixels of a window with this size in points. `room`: usable area of the display, if known.
+/// Converts a window size from points to pixels. `room`: usable area of the display, if known.
 ScreenSize window_size(ScreenSize points, float scale, std::optional<ScreenSize> room);
 
 }  // namespace inkwell::window
