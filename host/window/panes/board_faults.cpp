@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto asked_every = 200ms;
-constexpr auto answer_limit = 2s;  // for a board that a debugger has stopped; closing the window waits equally long
+constexpr auto answer_limit = 2s;  // for a board that a debugger has stopped; also delays the close of the window
 
 }  // namespace
 

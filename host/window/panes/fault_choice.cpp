@@ -86,7 +86,7 @@ bool is_found(const protocol::InjectionInfo& row, std::string_view search) {
 }
 
 std::vector<std::string_view> wires() {
-  // The wires have the same names on all boards.
+  // All boards use the same wire names.
   std::vector<std::string_view> names;
   for (const board::PinUse& use : board::default_board.pin_uses())
     if (!board::default_board.is_usb_data(use.pin)) names.push_back(use.name);

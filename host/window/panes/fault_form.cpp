@@ -17,7 +17,7 @@ using protocol::InjectionPlace;
 constexpr float amount_unit_points = 46.0f;
 constexpr float label_part = 0.34f;  // of a field's row
 
-/// Label of the field for the fault's location; null if the fault has only one location.
+/// Returns the label of the location field; null if the fault has only one location.
 const char* place_label(InjectionPlace place) {
   switch (place) {
     case InjectionPlace::none: return nullptr;
@@ -62,7 +62,7 @@ bool FaultForm::draw(const Style& style) {
                          "Delay between Inject and the start of the fault, in board time.", typed_.after_s, style);
   entered |= draw_number("Duration", "duration", "until healed", "s",
                          "Time until the fault heals automatically, in board time.", typed_.for_s, style);
-  if (entered) take_keyboard();  // for the next fault
+  if (entered) take_keyboard();  // back to the first field, for the next fault
   if (coloured_button("Inject", style.palette->accent, style.palette->pane, {-1, 0})) entered = true;
   ImGui::Dummy({0, style.points(4)});
   ImGui::PopStyleVar();
@@ -76,7 +76,7 @@ bool FaultForm::draw_field(const Field& field, std::string& typed, const Style& 
   ImGui::SameLine();
   ImGui::SetCursorPosX(left + label_part * width);
   ImGui::SetNextItemWidth((1.0f - label_part) * width - field.beside);
-  // Waits until Enter is released, because otherwise the field would process the same key press.
+  // Waits until Enter is released. Otherwise the field would process the same key press.
   if (takes_keyboard_ && !is_enter_down()) {
     takes_keyboard_ = false;
     ImGui::SetKeyboardFocusHere();
@@ -131,7 +131,7 @@ void FaultForm::draw_wires(const Style& style) {
   if (!ImGui::BeginPopup("wires")) return;
   for (const std::string_view name : wires()) {
     if (ImGui::Selectable(std::string(name).c_str(), typed_.of == name)) {
-      // The second of two wires is appended after the plus sign.
+      // Appends the second wire after a plus sign.
       const bool is_second = info(typed_.fault).place == InjectionPlace::wires && !typed_.of.empty() &&
                              typed_.of.find('+') == std::string::npos;
       typed_.of = is_second ? fmt::format("{}+{}", typed_.of, name) : std::string(name);

@@ -1,4 +1,4 @@
-// The input fields of one fault (location, amount, times) and the button that injects it.
+// The input fields of a fault (location, amount, times) and the button that injects the fault.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ class FaultForm {
   FaultForm(protocol::InjectedFault fault, std::string of) : typed_{fault, std::move(of), {}, {}, {}} {}
 
   const TypedFault& typed() const { return typed_; }
-  /// Sets the keyboard focus to the first field when it is drawn next.
+  /// Moves the keyboard focus to the first field in the next frame.
   void take_keyboard() { takes_keyboard_ = true; }
-  /// Returns true if the user wants the fault to be injected now.
+  /// Returns true if the user injects the fault.
   bool draw(const Style& style);
 
  private:
@@ -29,7 +29,7 @@ class FaultForm {
     float beside;  ///< free width to the right of the field
   };
 
-  // Each returns true if Enter was pressed in one of the fields.
+  // These functions return true if the user pressed Enter in a field.
   bool draw_place(const Style& style);
   bool draw_field(const Field& field, std::string& typed, const Style& style);
   bool draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,

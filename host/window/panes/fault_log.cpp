@@ -11,11 +11,11 @@ namespace {
 
 using Phase = LoggedFault::Phase;
 
-/// A fault from an earlier firmware run has a period count that the answers do not reach. After this number of answers,
-/// such a fault is recorded without a time.
+/// Number of answers after which a fault is recorded without a time. After a reset, the period count of an earlier
+/// fault may never be reached.
 constexpr int patience_answers = 8;
 
-/// True for a fault that may stop the control interrupt. The firmware then counts too few periods until it restarts.
+/// True for a fault that may stop the control interrupt. The period count is then too low until the firmware restarts.
 bool stops_the_count(const device::PutInFault& put_in) {
   const auto fault = protocol::find_injection(put_in.fault);
   if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts continue
@@ -71,7 +71,7 @@ bool FaultLog::Pending::was_in(unsigned number) const { return std::ranges::find
 double FaultLog::period_s(const device::Injections& now) const {
   constexpr double nominal_s = 1.0 / protocol::servo_rate_Hz, drift_maximum = 0.02;
   if (!newest_ || newest_->period >= now.period) return nominal_s;
-  // Uses the measured period, because an injected fault can change the crystal frequency. After a board reset the
+  // The period is measured, because an injected fault can change the crystal frequency. After a board reset, the
   // nominal period is used.
   const double measured_s =
       (now.period_at_s - newest_->period_at_s) / static_cast<double>(now.period - newest_->period);
@@ -80,7 +80,7 @@ double FaultLog::period_s(const device::Injections& now) const {
 
 void FaultLog::place_pending(const device::Injections& now) {
   if (!pending_) return;
-  // The board counts all periods since its reset in 64 bits. The fault's count may have wrapped at 32 bits.
+  // The board's period count has 64 bits. The period count of the fault may have wrapped at 32 bits.
   const auto at_periods = static_cast<std::uint32_t>(pending_->fault.at_periods);
   const auto periods_ago = static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - at_periods);
   const double length_s = period_s(now);

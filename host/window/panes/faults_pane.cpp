@@ -1,4 +1,4 @@
-// The pane that injects faults into a virtual board and shows the faults that its firmware detects. Simulation only.
+// The pane that injects faults into a virtual board and shows the faults that the firmware detects.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -30,10 +30,10 @@ using FaultPhase = LoggedFault::Phase;
 
 constexpr const char* heading = "Fault injection";
 constexpr float log_part_maximum = 0.42f;  // of the pane's height
-constexpr float low_points = 440.0f;       // height below which the pane scrolls as a whole instead of each part
+constexpr float low_points = 440.0f;       // a lower pane scrolls completely instead of part by part
                                            // separately
 
-// Draws a word in small letters inside a frame.
+// Draws a word in a small font inside a frame.
 void draw_badge(std::string_view word, const Style& style) {
   ImGui::PushFont(style.fonts.caption);
   const ImVec2 size = ImGui::CalcTextSize(word.data(), word.data() + word.size());
@@ -98,7 +98,7 @@ class FaultsPane final : public Pane {
   std::optional<FaultForm> chosen_;
   bool search_takes_keyboard_ = false, chosen_is_to_be_seen_ = false;
   bool is_low_ = false;
-  float log_height_ = 0.0f;  ///< total height in the last frame
+  float log_height_ = 0.0f;  ///< total height in the previous frame
 };
 
 void FaultsPane::take(const BoardFaults::News& news) {
@@ -147,7 +147,7 @@ void FaultsPane::draw(const PaneFrame& frame) {
   ImGui::BeginDisabled(!gone_.empty());
   is_low_ = ImGui::GetContentRegionAvail().y < style.points(low_points);
   if (is_low_) {
-    ImGui::Separator();  // scrolled rows disappear below this line
+    ImGui::Separator();  // scrolled rows end at this line
     ImGui::BeginChild("all", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   }
   draw_log(style);

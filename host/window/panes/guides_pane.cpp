@@ -1,4 +1,4 @@
-// The pane that runs a guide: the next step, measured values, step response, and the buttons Confirm, Cancel and Apply.
+// The pane that runs a guide and shows its step, measured values and results.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -40,7 +40,7 @@ class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
       : desk_(around.desk), control_(around.control), simulated_arm_(around.simulated_arm) {}
-  /// Cancels a running guide, so that neither force nor trial parameters remain on the device.
+  /// Cancels a running guide, which switches the force off and restores trial parameters.
   ~GuidesPane() override { GuidesPane::cancel(); }
 
   std::string_view title() const override { return "Guides"; }
@@ -48,7 +48,7 @@ class GuidesPane final : public Pane {
   void draw(const PaneFrame& frame) override;
   /// Stops a running guide and switches the motors off.
   void cancel() override;
-  /// The guide has exclusive use of the scope stream while it needs signals.
+  /// Reserves the scope stream while the guide needs signals.
   PaneStream stream() const override { return {signals_, false}; }
   bool is_moving() const override { return is_running(); }
 
@@ -61,7 +61,7 @@ class GuidesPane final : public Pane {
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
   void draw_what_lasts(const Style& style) const;
-  /// Draws one line per proposal. The reason of a proposal is shown while the mouse hovers over the line.
+  /// Draws one line per proposal, with a tooltip that shows the reason of the proposal.
   void draw_proposals(const Style& style);
   void draw_curves(const Style& style);
   void draw_buttons(const Style& style);
@@ -216,7 +216,7 @@ void GuidesPane::draw_checks(const Style& style) {
     right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
                0.42f * width);
     if (check.expected.empty()) continue;
-    // The result is shown in words in addition to the color.
+    // Words show the result in addition to the color.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
          fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
   }
@@ -229,7 +229,7 @@ void GuidesPane::draw_result(const Style& style) {
                applied ? "Finished. The device uses the proposed values." : guide_->outcome());
   if (applied) draw_what_lasts(style);
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
-  // Order: decisions first, then the curves, then the log of the measurement.
+  // Decisions are drawn first, followed by the curves and the log of the measurement.
   if (guide_->phase() == Phase::finished && !guide_->findings().proposals.empty()) draw_proposals(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});

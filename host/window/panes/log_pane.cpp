@@ -1,5 +1,5 @@
-// The pane that lists the events of the device since the window was opened, or of the replayed recording. The newest
-// event is at the top, with UTC time and board time.
+// The pane that lists events with UTC time and board time. The events are those of the replayed recording or of the
+// device since the window was opened.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -26,7 +26,7 @@ using device::EventKind;
 constexpr std::array<const char*, device::event_kind_count + 1> shown_kinds{
     "All events", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
 
-/// One row, from the log of the device or of a recording.
+/// One row of the log.
 struct LogRow {
   EventKind kind;
   const std::string& text;
@@ -101,7 +101,7 @@ void LogPane::draw_rows(const Style& style) {
     draw_row(row, style);
   };
   if (const recording::Recording* recording = replayed_()) {
-    for (const recording::Mark& mark : recording->marks)  // in order of time, as in the replay
+    for (const recording::Mark& mark : recording->marks)  // in chronological order
       draw({mark.kind, mark.text, mark.clock_utc, recording->elapsed_s_at(mark.period)});
   } else {
     const device::EventLog& events = desk_.events();

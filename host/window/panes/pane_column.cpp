@@ -37,7 +37,7 @@ float title_width(const Pane& pane, const Style& style) {
                          : std::max(title_taken, style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x);
 }
 
-// Replaces the title, so that the state is visible whichever pane is shown.
+// Draws the state text in place of the title.
 void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is_shown, const Style& style) {
   const Palette& palette = *style.palette;
   const float width = style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x;
@@ -107,7 +107,7 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
   begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  // Each tab is as wide as its title plus an equal share of the spare width, so that long titles remain legible.
+  // The width of a tab is the width of its title plus an equal share of the spare width.
   const auto count = static_cast<float>(panes_.size());
   float spare = ImGui::GetContentRegionAvail().x - (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
   for (const auto& pane : panes_) spare -= title_width(*pane, style);

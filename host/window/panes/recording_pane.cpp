@@ -1,5 +1,4 @@
-// The pane that records: signals, file, start, stop and marks, with progress, size, free space and errors. The pane
-// also opens a recording for replay.
+// The pane that records signals with marks, and opens a recording for replay.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -41,7 +40,7 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
   right_text(colour, value, 0.55f * width);
 }
 
-/// Time until the disk is full, in words; empty while it is not known.
+/// Returns the time until the disk is full, as a text; empty while the time is unknown.
 std::string time_left(const RecorderStatus& status) {
   if (status.duration_s < 1 || status.bytes == 0) return {};
   const double left_s =
@@ -51,7 +50,7 @@ std::string time_left(const RecorderStatus& status) {
   return left_s < 48 * 3600.0 ? fmt::format("room for {:.0f} h", left_s / 3600) : "room for days";
 }
 
-// Red is reserved for STOP in this window, so only the dot of the button is red.
+// Only the dot of the button is red, because red buttons are reserved for STOP.
 bool record_button(const Style& style) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float height = style.points(34);
@@ -96,7 +95,7 @@ class RecordingPane final : public Pane {
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
   bool force_is_on() const { return protocol::force_is_on(desk_.view().state()); }
-  /// Asks for permission to switch the force off before a replay starts.
+  /// Asks for the permission to switch the force off before a replay.
   void draw_question(const Style& style);
 
   DeviceDesk& desk_;

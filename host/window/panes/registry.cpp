@@ -1,7 +1,6 @@
 #include "registry.hpp"
 
-// One line per pane in the order of the tabs: the function that creates the pane. The function has the name of its .cpp
-// file.
+// Functions that create the panes, in the order of the tabs. Each function has the name of its .cpp file.
 #define INKWELL_PANES(PANE) \
   PANE(tuning_pane)         \
   PANE(guides_pane)         \

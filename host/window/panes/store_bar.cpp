@@ -21,7 +21,7 @@ constexpr std::size_t listed_maximum = 12;
 constexpr const char* restore_question = "restore stored values";
 constexpr const char* reset_question = "factory reset";
 
-/// Lists values line by line, such as "Wall stiffness: 1500 N/m, stored is 800".
+/// Lists values line by line, such as "Wall stiffness: 1500 N/m, stored: 800".
 std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& view) {
   std::string lines;
   for (std::size_t i = 0; i < std::min(waiting.size(), listed_maximum); ++i) {
@@ -40,11 +40,11 @@ struct Question {
   const char* name;
   std::string title;
   std::string explanation;
-  const char* agree;  ///< text of the confirming button
+  const char* agree;  ///< text of the button that confirms
   bool is_grave;
 };
 
-/// Draws the question while it is open. The question closes when the device is disconnected.
+/// Draws the open question. The question closes when the device is disconnected.
 Answer draw_question(const Question& question, bool has_device, const Style& style) {
   const Palette& palette = *style.palette;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});

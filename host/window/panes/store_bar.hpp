@@ -10,10 +10,11 @@
 
 namespace inkwell::window {
 
-/// Stores the board's values when pressed. The help of the button shows why storing is currently impossible.
+/// Draws the button that stores the values on the board. Its tooltip shows the reason if the board cannot store values
+/// now.
 void store_button(DeviceDesk& desk, ImVec2 size, const Style& style);
 
-/// Draws a hollow dot, the mark of a value that is not stored.
+/// Draws a hollow dot, which marks a value that is not stored.
 void not_stored_mark(ImVec2 centre, const Style& style);
 
 /// The bar at the bottom of a pane.
@@ -25,7 +26,7 @@ class StoreBar {
   void draw(ParameterEditor& editor, const Style& style, double now_s);
 
  private:
-  /// Text below the title: the last error, the reason why storing is impossible, or a description.
+  /// Returns the text below the title: the last error, the reason for a refusal, or a description.
   std::string caption() const;
   void draw_title(const std::vector<protocol::Parameter>& waiting, const Style& style) const;
   void draw_buttons(const std::vector<protocol::Parameter>& waiting, const Style& style);

@@ -30,7 +30,7 @@ namespace {
 
 constexpr float unit_points = 46.0f;
 constexpr float reset_points = 20.0f;
-constexpr float rows_indent_points = 20.0f;  // aligns a row with the title to the right of the arrow
+constexpr float rows_indent_points = 20.0f;  // aligns a row with the title text, which follows an arrow
 
 std::array<const char*, 2> choice_names(Parameter parameter) {
   if (parameter == Parameter::transmission) return {"serial", "parallelogram"};
@@ -54,7 +54,7 @@ ValueRange range_of(const protocol::ParameterInfo& info) {
           .logarithmic = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f};
 }
 
-// Draws the symbol, two reversing arrows, because not every font contains it.
+// Draws the symbol instead of a letter, because some fonts do not contain this symbol.
 bool reset_button(const Style& style) {
   const float size = style.points(reset_points - 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -310,7 +310,7 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
       ++changed;
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
-  // A title starts to the left of its rows, directly after its arrow.
+  // A title starts directly after its arrow, to the left of its rows.
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(5)});
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);

@@ -16,7 +16,7 @@ constexpr double shrink_delay_s = 1.5;
 double tick_step(double extent, int wanted) {
   const double rough = extent / std::max(wanted, 1);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  // The nearest of 1, 2, 5 and 10 on a logarithmic scale.
+  // Selects the nearest of 1, 2, 5 and 10 on a logarithmic scale.
   const double factor = rough / power;
   return power * (factor < std::sqrt(2.0)    ? 1.0
                   : factor < std::sqrt(10.0) ? 2.0
@@ -72,7 +72,7 @@ AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
     range_ = wanted;
     small_since_s_ = now_s;
   } else if (!fits) {
-    // Grows immediately, and keeps the previous bound on a side with enough room.
+    // The range grows immediately. A bound remains if the data are within the bound.
     range_ = range_.extent() > 0.0
                  ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}
                  : wanted;

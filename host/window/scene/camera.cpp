@@ -75,7 +75,7 @@ float nearest_on_line(const Ray& ray, glm::vec3 point, glm::vec3 direction) {
   const float cosine = glm::dot(ray.direction, direction);
   const float determinant = 1.0f - cosine * cosine;
   const float along_line = glm::dot(offset, direction);
-  if (determinant < 1e-4f) return along_line;  // the line is parallel to the ray: all points are equally near
+  if (determinant < 1e-4f) return along_line;  // for parallel lines, all points have the same distance
   return (along_line - cosine * glm::dot(offset, ray.direction)) / determinant;
 }
 
@@ -83,7 +83,7 @@ Camera look_at_box(glm::vec3 minimum_m, glm::vec3 maximum_m) {
   Camera camera;
   const float radius_m = 0.5f * glm::length(maximum_m - minimum_m);
   camera.centre_m = 0.5f * (minimum_m + maximum_m);
-  camera.centre_m.z -= 0.25f * radius_m;  // slightly towards the arm, which is at the far side of the box
+  camera.centre_m.z -= 0.25f * radius_m;  // slightly towards the arm, which is behind the box
   camera.azimuth_rad = 0.56f;
   camera.elevation_rad = 0.36f;
   camera.distance_m = std::clamp(1.32f * radius_m / std::tan(0.5f * Camera::field_of_view_rad), nearest_m, farthest_m);

@@ -8,7 +8,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float nearest_w = 0.02f;  // lines are clipped nearer to the eye than this
+constexpr float nearest_w = 0.02f;  // lines closer to the eye are clipped
 constexpr float soft_edge_pixels = 0.5f;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Antialiased lines of a fixed pixel width, drawn as flat bands with soft edges in one draw call. Multisampling would
-// be too slow without a graphics card.
+// Antialiased lines with a fixed width in pixels, drawn as bands with soft edges. Multisampling would be too slow
+// without a graphics card.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ class LineBatch {
   LineBatch(const LineBatch&) = delete;
   LineBatch& operator=(const LineBatch&) = delete;
 
-  /// Adds a line between two points in view space. Both end colors have an alpha.
+  /// Adds a line between two points in view space. The color and its alpha are interpolated.
   void add(glm::vec3 from, glm::vec3 to, glm::vec4 from_colour, glm::vec4 to_colour, float width_pixels);
   /// Draws the lines in the order of their addition and clears the batch.
   void draw(const glm::mat4& to_clip, glm::vec2 viewport_pixels);
@@ -32,7 +32,7 @@ class LineBatch {
   struct Corner {
     glm::vec4 place;  // in clip space
     glm::vec4 colour;
-    glm::vec2 across;  // distance from the center line, and half the width, in pixels
+    glm::vec2 across;  // distance from the center line and half of the width, in pixels
   };
 
   std::vector<Segment> segments_;

@@ -67,13 +67,12 @@ Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_arou
   for (int step = 0; step <= steps; ++step) {
     const float part = static_cast<float>(step) / static_cast<float>(steps);
     const float angle = 2.0f * pi * static_cast<float>(turns) * part;
-    // The coils narrow towards the axis at both ends, where the spring is attached.
+    // The coil radius decreases to zero at both ends of the spring.
     const float radius = std::min({1.0f, part * 8.0f, (1.0f - part) * 8.0f});
     const glm::vec3 outward{std::cos(angle), std::sin(angle), 0.0f};
     for (int i = 0; i <= segments_around; ++i) {
       const float around = 2.0f * pi * static_cast<float>(i) / static_cast<float>(segments_around);
-      // The tube's circle lies in the plane of the axis and the outward direction. The circle is flattened along z
-      // because the mesh is later stretched to the length of the spring.
+      // The cross-section is flattened along z, because the mesh is later stretched to the length of the spring.
       const glm::vec3 normal = std::cos(around) * outward + std::sin(around) * glm::vec3{0.0f, 0.0f, 1.0f};
       const glm::vec3 offset =
           wire_radius * (std::cos(around) * outward + 0.06f * std::sin(around) * glm::vec3{0, 0, 1});

@@ -71,7 +71,7 @@ void Renderer::draw_sky(const Palette& palette) const {
 }
 
 void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
-  // The lines fade with their distance from the middle.
+  // The lines fade with the distance from the middle.
   const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
   const glm::vec4 colour = to_vector(look.palette.floor_line);
   const int count = static_cast<int>(floor_radius_m / floor_grid_m);
@@ -96,8 +96,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
 }
 
 void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) const {
-  // A vertical shadow on the floor shows the depth of the sphere. The stencil buffer darkens each pixel only once, even
-  // where bodies overlap.
+  // The stencil buffer darkens each pixel of the shadow only once, even where bodies overlap.
   glm::mat4 flattened{1.0f};
   flattened[1][1] = 0.0f;
   flattened[3][1] = scene.floor_height_m + 0.0005f;
@@ -119,7 +118,7 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     const WallView& wall = scene.walls[i];
     WallPicture picture{&wall, (wall.axis + 1) % 3, (wall.axis + 2) % 3, scene.box_minimum_m, {}, 0, 0, 0};
     if (wall.upper) picture.corner_m[wall.axis] = scene.box_maximum_m[wall.axis];
-    // Walls between the eye and the free space remain transparent.
+    // Walls between the eye and the inside of the box are transparent.
     const bool is_near = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * picture.corner_m) < 0.0f;
     const bool is_marked = look.marked_wall == static_cast<int>(i);
     const bool touched = wall.pushes_back;
@@ -204,7 +203,7 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   glEnable(GL_DEPTH_TEST);
   prepare_solids(camera, look);
   solids_.draw_opaque();
-  // Transparent parts are tested against the depth of the bodies and do not write depth.
+  // Transparent parts use the depth test but do not write depth.
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
   draw_floor(scene, look);

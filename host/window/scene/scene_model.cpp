@@ -14,7 +14,7 @@ using protocol::Parameter;
 namespace {
 
 constexpr float clearance_m = 0.005f;
-constexpr float base_height_m = 0.115f;  // of the drawn base, from the table to the shoulder
+constexpr float base_height_m = 0.115f;  // height of the shoulder above the table
 
 glm::vec3 to_glm(const control::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
 glm::vec3 to_glm(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
@@ -27,8 +27,8 @@ glm::vec3 up_of(control::Frame frame) {
 
 glm::mat3 workspace_to_view(control::Frame frame) {
   if (frame == control::Frame::omni) return glm::mat3{1.0f};
-  // In the paper's frame, x points from the base to the user, y to the user's right, and z up. The columns are the
-  // images of x, y and z.
+  // In the paper's frame, x points from the base to the user, y to the right of the user, and z up. The columns are the
+  // axes in view space.
   return {glm::vec3{0, 0, 1}, glm::vec3{1, 0, 0}, glm::vec3{0, 1, 0}};
 }
 

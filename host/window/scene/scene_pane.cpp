@@ -29,14 +29,14 @@ constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colour
 
 glm::vec2 to_glm(ImVec2 vector) { return {vector.x, vector.y}; }
 
-// Rectangle around a text.
+// Returns the rectangle around a text.
 Box plate_of(const Style& style, ImVec2 place, const std::string& content) {
   const ImVec2 taken = ImGui::CalcTextSize(content.c_str());
   const float pad = style.points(5);
   return {place.x - pad, place.y - pad * 0.5f, place.x + taken.x + pad, place.y + taken.y + pad * 0.5f};
 }
 
-// Draws a label on a background plate, so that it is legible over any picture.
+// Draws a label on a background, so that the label is legible in front of any picture.
 void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, const std::string& content) {
   const Box box = plate_of(style, place, content);
   list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, packed(style.palette->pane.with_alpha(205)),
@@ -116,7 +116,7 @@ void ScenePane::continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm:
 }
 
 void ScenePane::end_drag(const ScenePaneInput& input) {
-  // The hand keeps the stylus at the proxy position.
+  // After a drag, the hand holds the probe at the proxy position.
   if (drag_ == Drag::hand) input.hand->pull_to(scene_.proxy_m);
   if (drag_ == Drag::wall) input.editor.end_step();
   drag_ = Drag::none;
@@ -192,7 +192,7 @@ void ScenePane::draw_axes(ImDrawList& list, const Style& style) const {
   }
 }
 
-// Records the mouse positions of the sphere and the walls for inspections.
+// Records the positions of the sphere and of the wall handles for inspections.
 void ScenePane::note_handles() const {
   const auto note_point = [](std::string_view name, ImVec2 point) { note_place(name, point, point); };
   note_place("view", {origin_.x, origin_.y}, {origin_.x + size_.x, origin_.y + size_.y});
@@ -202,7 +202,7 @@ void ScenePane::note_handles() const {
                on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
 }
 
-// Draws the label below the proxy's sphere. The explanation is shown while the mouse hovers over the label.
+// Draws the label below the proxy, with a tooltip.
 void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
   const glm::vec2 proxy = to_glm(on_screen(scene_.proxy_m));
   const float radius =
@@ -249,7 +249,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
   if (force_N > 0.02f) {
     const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
     const std::string label = fmt::format("{:.2f} N", force_N);
-    // On the side opposite to the arrow's shaft.
+    // The label is on the side opposite to the shaft of the arrow.
     const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
     const float left =
         to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
@@ -262,7 +262,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     const float pull_N =
         static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
     if (pull_N > 0.25f) {
-      // On the side opposite to the sphere, away from the force arrow.
+      // The label is on the side opposite to the sphere.
       const ImVec2 place = on_screen(hand_view_->target_m);
       const std::string label = fmt::format("hand {:.1f} N", pull_N);
       const bool to_the_left = place.x < on_screen(scene_.probe_m).x;

@@ -1,9 +1,9 @@
-// Shaders of the scene. The shaders are simple because they also run on a CPU without a graphics card.
+// Shaders of the scene, which must also be fast on a CPU without a graphics card.
 #pragma once
 
 namespace inkwell::window::shaders {
 
-/// Background gradient over the whole viewport.
+/// Draws the background gradient.
 inline constexpr char sky_vertex[] = R"(#version 330 core
 uniform vec4 top;
 uniform vec4 bottom;
@@ -19,7 +19,7 @@ in vec3 shade;
 out vec4 colour;
 void main() { colour = vec4(shade, 1.0); })";
 
-/// All bodies in one batch: positions, normals and colors are already in scene coordinates.
+/// Draws all bodies. Positions and normals are already in view space.
 inline constexpr char solid_vertex[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -54,7 +54,7 @@ void main() {
   float sky = 0.5 + 0.5 * n.y;
   float facing = 1.0 - max(dot(n, to_eye), 0.0);
   float rim = facing * facing * facing;
-  // The 32nd power by squaring: pow() is dear without a graphics card.
+  // The 32nd power is computed by squaring, because pow() is slow without a graphics card.
   float gloss = max(dot(n, normalize(key + to_eye)), 0.0);
   gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss;
   vec3 shaded = base_colour.rgb * (0.34 + 0.26 * sky + 0.52 * diffuse) + shininess * (0.55 * gloss + 0.18 * rim);
@@ -71,7 +71,7 @@ uniform vec4 base_colour;
 out vec4 colour;
 void main() { colour = base_colour; })";
 
-/// A rectangle with a corner and two edges; `place` is in meters along the edges.
+/// Draws a rectangle from a corner and two edges. `place` is the position along the edges, in meters.
 inline constexpr char wall_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
@@ -84,7 +84,7 @@ void main() {
   gl_Position = to_clip * vec4(corner + part.x * edge_u + part.y * edge_v, 1.0);
 })";
 
-/// The surface of a wall, with a glow around the contact point.
+/// Draws the surface of a wall, with a glow around the contact point.
 inline constexpr char wall_fragment[] = R"(#version 330 core
 in vec2 place;
 uniform vec4 base_colour;
@@ -97,8 +97,8 @@ void main() {
   colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
 
-/// Lines are bands that are already in clip space. The distance across a band is in pixels, so its interpolation must
-/// not be perspective-corrected.
+/// Draws lines as bands, which are already in clip space. The distance across a band is in pixels and is therefore
+/// interpolated without perspective correction.
 inline constexpr char line_vertex[] = R"(#version 330 core
 layout(location = 0) in vec4 place;
 layout(location = 1) in vec4 end_colour;

@@ -1,5 +1,5 @@
-// The solid bodies of a frame in one vertex buffer. Transforming a few thousand vertices on the CPU costs less than one
-// draw call per body.
+// The solid bodies of a frame in one vertex buffer. The CPU transforms the vertices, because one draw call per body
+// would be slower.
 #pragma once
 
 #include <array>
@@ -20,8 +20,7 @@ class SolidBatch {
   SolidBatch(const SolidBatch&) = delete;
   SolidBatch& operator=(const SolidBatch&) = delete;
 
-  /// Sets the bodies of this frame in three groups: shadow casters, other opaque bodies and transparent bodies. With
-  /// `all_opaque` the third group is empty.
+  /// Sets the bodies of this frame. If `all_opaque` is true, transparent bodies are drawn as opaque bodies.
   void fill(const std::vector<Solid>& solids, bool all_opaque);
 
   void draw_shadow_casters() const { draw(0, shadow_casters_end_); }

@@ -18,7 +18,7 @@ Statistics statistics(const SignalSeries& series, std::uint64_t first, std::uint
   last = std::min(last, series.end());
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   Statistics result{0, nothing, nothing, nothing, nothing, nothing};
-  // Welford's algorithm avoids cancellation for a small ripple on a large mean.
+  // Welford's algorithm is accurate even for a small ripple on a large mean.
   double mean = 0.0;
   double squares_about_mean = 0.0;
   double squares = 0.0;
@@ -65,7 +65,8 @@ Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t
 
   Spectrum result{static_cast<double>(protocol::servo_rate_Hz) / static_cast<double>(count), {}};
   result.amplitudes.reserve(count / 2 + 1);
-  // A factor of 2 for the unused half of the spectrum, and a factor of 2 for the mean of the Hann window.
+  // A factor of 2 accounts for the unused half of the spectrum. Another factor of 2 accounts for the mean of the Hann
+  // window.
   const double scale = 4.0 / static_cast<double>(count);
   for (std::uint64_t i = 0; i <= count / 2; ++i)
     result.amplitudes.push_back(scale * std::hypot(output[i][0], output[i][1]));
@@ -73,7 +74,7 @@ Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t
 }
 
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel) {
-  // The extremes of a few thousand noise samples rarely exceed the extremes of ten thousand by this fraction.
+  // New noise samples rarely exceed the previous extremes by more than this fraction of the range.
   constexpr float noise_part = 0.25f;
   const float margin = std::max(static_cast<float>(value_of_a_pixel), noise_part * (before.maximum - before.minimum));
   return newest.minimum < before.minimum - margin || newest.maximum > before.maximum + margin;

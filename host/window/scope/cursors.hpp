@@ -1,4 +1,4 @@
-// Two cursors of the time plots, between which the scope measures.
+// Two cursors of the time plots, for measuring time and value differences.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@ class Cursors {
   bool are_shown() const { return are_shown_; }
   void toggle() { are_shown_ = !are_shown_; }
 
-  /// Draws the cursors into a time plot, which is ImGui's last item, and handles their drag.
+  /// Draws the cursors and handles their drag. The last ImGui item must be the time plot.
   void draw(const PlotArea& area, const Style& style);
-  /// Moves the first (0) or second (1) cursor by `steps` hundredths of the span.
+  /// Moves the first (0) or second (1) cursor by `steps` percent of the span.
   void step(std::size_t cursor, int steps);
-  /// True while a cursor is dragged; the plot is then not dragged.
+  /// True while the user drags a cursor, which prevents a drag of the plot.
   bool is_dragged() const { return dragged_ >= 0; }
 
-  /// Values of a signal at both cursors; NaN where the value is unknown.
+  /// Returns the values of a signal at both cursors; NaN if a value is unknown.
   std::array<double, 2> values(const SignalSeries& series, const Stretch& stretch) const;
-  /// Distance of the cursors, such as "12.5 ms, 80 Hz".
+  /// Returns the distance between the cursors, such as "12.5 ms, 80 Hz".
   std::string distance(double span_s) const;
 
  private:
   bool are_shown_ = false;
-  std::array<double, 2> parts_{-0.66, -0.33};  ///< as a fraction of the span, from the right end
+  std::array<double, 2> parts_{-0.66, -0.33};  ///< distance from the right end, as a negative fraction of the span
   int dragged_ = -1;
 };
 

@@ -21,7 +21,7 @@ constexpr std::size_t text_maximum = 400;
 
 bool is_of_a_name(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_'; }
 
-/// Returns all names in a formula, of signals and functions.
+/// Returns the names of all signals and functions in a formula.
 std::vector<std::string_view> names_in(std::string_view text) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < text.size();) {
@@ -36,7 +36,7 @@ std::vector<std::string_view> names_in(std::string_view text) {
   return names;
 }
 
-/// True if the text contains an assignment. muParser would assign the value to a signal.
+/// True if the text contains an assignment, which muParser would execute.
 bool assigns(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool compares_before = i > 0 && std::string_view("<>!=").find(text[i - 1]) != std::string_view::npos;
@@ -85,7 +85,7 @@ struct FormulaValues::Implementation {
   }
 
   std::vector<protocol::Signal> inputs;
-  std::vector<double> values;  ///< values of the inputs, which the parser reads by address
+  std::vector<double> values;  ///< values of the inputs, which the parser reads
   mu::Parser parser;
   double share = 1.0;              ///< share of the new value in the filter output
   std::optional<double> filtered;  ///< empty before the first value and after a lost value

@@ -1,4 +1,4 @@
-// Menu of the scope's layouts: selection, and saving, renaming and deleting user layouts.
+// Menu that selects the layout of the scope, and saves, renames and deletes user layouts.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class LayoutMenu {
   void draw_choices(ScopeLayout& layout);
   void ask_for_name(NameTask task, const std::string& suggestion);
   void draw_name(ScopeLayout& layout, const Style& style);
-  /// Returns false and shows the reason if the name is refused.
+  /// Applies the typed name. Returns false and shows the reason if the name is invalid.
   bool give_name(ScopeLayout& layout);
 
   OwnLayouts own_;

@@ -18,14 +18,14 @@ float width_of(const std::string& label, const Style& style) {
   return style.fonts.caption->CalcTextSizeA(style.fonts.caption->FontSize, 1e4f, 0, label.c_str()).x;
 }
 
-constexpr float beside_label_points = 24.0f;  // width of the color stroke and of the gap between two signals
+constexpr float beside_label_points = 24.0f;  // width of a color mark and of a gap
 
-// Index of the first signal on the y axis. The first signal of an xy plot is shown at the x axis.
+// Returns the index of the first signal on the y axis. In an xy plot, the first signal is on the x axis.
 std::size_t first_on_y_axis(const ScopePlot& plot) {
   return plot.kind == PlotKind::xy && plot.signals.size() > 1 ? 1 : 0;
 }
 
-// The unit is shown next to the plot's title if all signals have the same unit.
+// Returns the signal names. The names omit the unit if all signals have the same unit.
 std::vector<std::string> names_on_y_axis(const ScopePlot& plot) {
   const bool unit_is_told = !common_unit(plot).empty();
   std::vector<std::string> names;
@@ -49,13 +49,13 @@ bool are_different(std::vector<std::string> words) {
   return std::ranges::adjacent_find(words) == words.end();
 }
 
-/// Labels of one legend, shortened to the available width.
+/// Labels of a legend, shortened to the available width.
 class LegendLabels {
  public:
   LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room)
       : plot_(plot), frame_(frame), room_(room), names_(names_on_y_axis(plot)) {
     if (fits(names_)) return;
-    // In a narrow plot the title shows the rest of the name.
+    // In a narrow plot, each label is only the last word of the name.
     if (const std::vector<std::string> words = last_words(plot); words.size() > 1 && are_different(words))
       names_ = words;
     if (fits(names_)) return;
@@ -63,7 +63,8 @@ class LegendLabels {
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
-  /// With cursors, adds as many values as fit: both values and the difference, only the difference, or none.
+  /// While the cursors are shown, adds the values at the cursors and their difference, or only the difference, if the
+  /// width is sufficient.
   std::vector<std::string> labels() const {
     if (!frame_.cursors.are_shown() || plot_.kind != PlotKind::time) return names_;
     for (const bool in_full : {true, false}) {

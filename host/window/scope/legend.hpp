@@ -1,4 +1,4 @@
-// Number format of the scope, and the legend line above a plot: signal colors, names and values at the cursors.
+// Number format of the scope, and the legend above a plot.
 #pragma once
 
 #include <string>
@@ -10,23 +10,23 @@
 
 namespace inkwell::window {
 
-/// Formats four digits, or a dash for NaN.
+/// Formats a number with four digits; returns a dash for NaN.
 std::string formatted(double value);
 
-/// Name without unit: "force_N" -> "force".
+/// Returns the name without the unit: "force_N" -> "force".
 std::string short_name(const ScopeSignal& signal);
 
-/// Returns the unit if all signals of the y axis have the same; otherwise empty.
+/// Returns the common unit of all signals on the y axis; empty if the units differ.
 std::string common_unit(const ScopePlot& plot);
 
 Colour line_colour(const Style& style, std::size_t index);
-/// Color of the same signal in an overlaid recording.
+/// Returns the color of a signal in an overlaid recording.
 Colour laid_over_colour(const Style& style, std::size_t index);
 
-/// Width of the complete line above a plot.
+/// Returns the width of the complete legend.
 float legend_width(const ScopePlot& plot, const Style& style);
 
-/// Draws the line above a plot: the unit on the left and the signals on the right, shortened to `width`.
+/// Draws the legend above a plot, shortened to `width`.
 void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFrame& frame);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The menu of a plot's title: kind and signals of the plot.
+// The menu that selects the type and the signals of a plot.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace inkwell::window {
 
-/// Draws the menu while it is open. Returns true if the plot is to be removed.
+/// Draws the open menu. Returns true if the user removes the plot.
 bool draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed, const Style& style);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// A plot of the scope on the screen, with one view class per kind of plot.
+// Views, which draw the plots of the scope. Each plot type has a view class.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace inkwell::window {
 
-/// Data that all plots of the scope share in a frame.
+/// Data of a frame for all plots of the scope.
 struct ScopeFrame {
   const Style& style;
-  Timeline& timeline;  ///< the mouse moves its stretch
-  Stretch stretch;     ///< displayed stretch
+  Timeline& timeline;  ///< the mouse moves its displayed section
+  Stretch stretch;     ///< displayed section
   Cursors& cursors;
   bool with_statistics;
   std::uint64_t judged_end;  ///< end of the history in the previous frame
-  bool& has_motion;          ///< set to true if a signal leaves its range; scrolling alone does not count
+  bool& has_motion;          ///< set to true if a signal leaves its range, but not for scrolling
 };
 
-/// Draws a plot and stores its state between frames.
+/// View of a plot, with state that persists between frames.
 class PlotView {
  public:
   explicit PlotView(ScopePlot plot) : plot_(std::move(plot)) {}
@@ -34,9 +34,9 @@ class PlotView {
 
   const ScopePlot& plot() const { return plot_; }
 
-  /// Height of the numbers above the plot.
+  /// Returns the height of the statistics above the plot.
   virtual float numbers_height(const ScopeFrame&) const { return 0.0f; }
-  /// Draws into the area and determines its axis ranges. ImGui's last item covers the area.
+  /// Draws the plot into the area and determines its axis ranges. The last ImGui item must cover the area.
   virtual void draw(PlotArea area, ScopeFrame& frame) = 0;
 
  protected:
@@ -49,7 +49,7 @@ std::unique_ptr<PlotView> time_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> spectrum_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> xy_view(const ScopePlot& plot);
 
-/// Period for recomputing statistics and spectra, chosen so that the numbers remain readable.
+/// Update period of statistics and spectra, so that a user can read the numbers.
 inline constexpr double computed_every_s = 0.2;
 
 }  // namespace inkwell::window

@@ -94,7 +94,7 @@ void ScopePane::follow_layout() {
 }
 
 void ScopePane::draw_plots(ScopeFrame& frame) {
-  // If the rows do not fit, as many legible rows as possible are shown, and the pane scrolls.
+  // If the pane is too small for all rows, it shows as many legible rows as possible and scrolls.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -12,7 +12,7 @@ using protocol::Signal;
 
 namespace {
 
-/// A group extends from its first signal to the signal before the next group's first.
+/// First signal of a group. The group extends to the first signal of the next group.
 struct GroupBegin {
   Signal first;
   std::string_view title;

@@ -13,8 +13,8 @@ constexpr int bits_per_level = 4;
 constexpr std::size_t branching = std::size_t{1} << bits_per_level;
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
-// Skips NaN (lost samples), because every comparison with NaN is false. The functions are inline because they run for
-// every sample of every plot in each frame; fmin and fmax would be calls.
+// Returns the smaller number and ignores NaN (a lost sample). fmin() and fmax() are slower, because the compiler does
+// not inline these functions.
 float smaller(float a, float b) { return b < a || a != a ? b : a; }
 float larger(float a, float b) { return b > a || a != a ? b : a; }
 Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), larger(a.maximum, b.maximum)}; }
@@ -30,7 +30,7 @@ SignalSeries::SignalSeries(std::size_t capacity, std::uint64_t first)
 void SignalSeries::append(float value) {
   samples_[end_ & (capacity_ - 1)] = value;
   ++end_;
-  // A complete block is computed from the sixteen blocks of the level below.
+  // A complete block contains sixteen blocks of the level below.
   std::uint64_t completed = end_;
   for (std::size_t k = 0; k < levels_.size() && (completed & (branching - 1)) == 0; ++k) {
     const std::uint64_t first = completed - branching;
@@ -54,7 +54,7 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
   first = std::max(first, begin());
   last = std::min(last, end_);
   while (first < last) {
-    // Selects the highest level at which a whole block starts here and fits.
+    // Selects the largest complete block that starts at `first`.
     std::size_t level = 0;
     int shift = 0;
     while (level < levels_.size() && (first & ((std::uint64_t{branching} << shift) - 1)) == 0 &&
@@ -63,7 +63,7 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
       ++level;
     }
     if (level == 0) {
-      // Single samples, at most to the start of the next block.
+      // Reads single samples up to the start of the next block.
       const std::uint64_t stop = std::min(last, (first | (branching - 1)) + 1);
       for (; first < stop; ++first) {
         const float sample = (*this)[first];
@@ -170,8 +170,8 @@ void SignalHistory::append(const device::ScopeSamples& samples, const device::Sc
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns) {
   std::vector<Extremes> result(columns, {nothing, nothing});
   const double width = (last - first) / static_cast<double>(columns);
-  // Wide columns end at block boundaries. Otherwise reading single samples at the edges would take most of the time,
-  // and a sixteenth of a column is invisible.
+  // The edges of wide columns are rounded to block boundaries, because reading single samples at the edges would be
+  // slow.
   const double grain = width < branching * branching ? 1.0 : branching;
   const auto edge = [&](std::size_t column) {
     const double at = first + width * static_cast<double>(column);

@@ -1,4 +1,4 @@
-// Lines of signals in a plot, from single samples to minutes.
+// Draws signals as lines in a plot.
 #pragma once
 
 #include <plot/plot.hpp>
@@ -6,8 +6,8 @@
 
 namespace inkwell::window {
 
-/// Draws the samples [first, last) of a signal over the whole width. Columns with many samples are drawn from minimum
-/// to maximum, so that no spike is lost.
+/// Draws the samples [first, last) of a signal. A pixel column with many samples is drawn from minimum to maximum, so
+/// that every spike is visible.
 void draw_signal(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
                  Colour colour, const Style& style);
 

@@ -20,7 +20,7 @@ namespace {
 constexpr float list_points = 206.0f;
 constexpr char payload_type[] = "scope signal";
 
-/// Draws a row of this width that can be dragged into a plot.
+/// Draws a row that the user can drag into a plot.
 void draw_row(const ScopeSignal& signal, ScopeLayout& layout, float width, const Style& style) {
   const std::string name(signal.name());
   const std::string label = fmt::format("{}##{}", fitted(name, width), name);
@@ -76,7 +76,7 @@ void SignalList::draw(ScopeLayout& layout, const Style& style) {
 void SignalList::draw_signals(ScopeLayout& layout, const Style& style) {
   const std::vector<SignalGroup> groups = signal_groups(search_);
   for (const SignalGroup& group : groups) {
-    // A search opens the groups of its results. Without a search the closed groups are an overview.
+    // During a search, the groups are initially open.
     const std::string title = fmt::format("{}###{}{}", group.title, group.title, search_.empty() ? "" : " found");
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(2)});
     const bool is_open = ImGui::CollapsingHeader(title.c_str(), search_.empty() ? 0 : ImGuiTreeNodeFlags_DefaultOpen);

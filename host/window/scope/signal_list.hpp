@@ -1,4 +1,4 @@
-// The signal list next to the plots, with search, drag and drop, and formulas.
+// The signal list next to the plots, with search and formulas.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class SignalList {
   bool is_shown() const { return is_shown_; }
   void toggle() { is_shown_ = !is_shown_; }
 
-  /// Draws the list to the left of the following item while it is shown, and the formula dialog while it is open.
+  /// Draws the list, if it is shown, to the left of the next item. Also draws the formula dialog, if it is open.
   void draw(ScopeLayout& layout, const Style& style);
 
  private:

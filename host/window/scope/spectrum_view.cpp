@@ -1,4 +1,4 @@
-// Amplitude over frequency, both logarithmic.
+// View of amplitude over frequency, with two logarithmic axes.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-// Signals over time, with trigger level, cursors and statistics. The mouse moves the time range.
+// View of signals over time, with trigger level, cursors and statistics.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -89,7 +89,7 @@ class TimeView final : public PlotView {
                  frame.style.points(1));
   }
 
-  // Wheel: zoom. Drag: move into the past. Double click: return to the newest samples.
+  // The wheel zooms, a drag moves into the past, and a double click returns to the newest samples.
   static void take_mouse(const PlotArea& area, ScopeFrame& frame) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
@@ -100,7 +100,7 @@ class TimeView final : public PlotView {
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) frame.timeline.pause(false);
   }
 
-  // Draws the statistics above the plot, where they cover no data.
+  // Draws the statistics above the plot.
   void draw_statistics(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame) {
     if (const double now_s = ImGui::GetTime(); now_s - computed_at_s_ > computed_every_s) {
       computed_at_s_ = now_s;

@@ -37,7 +37,7 @@ void Timeline::pause(bool paused) {
 
 void Timeline::set_trigger(const TriggerSettings& settings) {
   TriggerSettings same_place = settings;
-  same_place.pre_trigger = trigger_settings_.pre_trigger;  // pre_trigger only moves the event within the picture
+  same_place.pre_trigger = trigger_settings_.pre_trigger;  // a change of pre_trigger does not need a new event
   if (same_place != trigger_settings_) trigger_.arm();
   trigger_settings_ = settings;
 }
@@ -54,7 +54,7 @@ Stretch Timeline::stretch() {
       return {first, first + span, static_cast<double>(*event)};
     }
   }
-  // With steps of whole parts of the span, each sample stays in its column, and the scrolling picture does not shimmer.
+  // The section moves in whole steps, so that each sample stays in its column. Otherwise scrolling lines would flicker.
   const double part = std::max(1.0, std::floor(span / parts_of_span));
   const double last = std::floor(end / part) * part;
   return {last - span, last, last};

@@ -1,4 +1,4 @@
-// The scope's controls: pause, displayed time, cursors, statistics, trigger.
+// The controls of the scope: pause, time span, cursors, statistics and trigger.
 #pragma once
 
 #include <frame/style.hpp>

@@ -24,7 +24,7 @@ void Trigger::arm() {
 
 void Trigger::advance(const SignalSeries& series, const TriggerSettings& settings, double span) {
   if (settings.mode == TriggerMode::off) return;
-  // After arming or after a restart of the history, only new samples count.
+  // After arm() or a restart of the history, only new samples are searched.
   if (looked_at_ > series.end()) looked_at_ = series.end();
   if (settings.mode == TriggerMode::single && event_) return;
   const auto after = static_cast<std::uint64_t>(span * (1.0 - static_cast<double>(settings.pre_trigger)));

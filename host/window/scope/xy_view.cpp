@@ -1,4 +1,4 @@
-// Signals over the first signal.
+// View of signals over the first signal.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,7 +35,7 @@ class XyView final : public PlotView {
   }
 
  private:
-  /// An overlaid recording is drawn below and in paler colors.
+  /// Draws the signals of one source. `over`: the overlaid recording, in paler colors.
   void draw_lane(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame, bool over, std::uint64_t first,
                  std::uint64_t last) const {
     const SignalHistory& history = frame.timeline.history();

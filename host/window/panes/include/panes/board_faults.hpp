@@ -34,9 +34,9 @@ class BoardFaults {
   void heal(const std::string& fault, const std::string& of);
   void heal_all();
 
-  /// Returns the news since the last call in order. Of consecutive answers only the newest is returned.
+  /// Returns the news since the last call. An answer replaces the answer directly before it.
   std::vector<News> take_news();
-  /// True if there is news other than a repeated answer.
+  /// True if the news contains more than a repetition of the last answer.
   bool has_changed() const;
 
  private:
@@ -52,7 +52,7 @@ class BoardFaults {
   std::condition_variable_any asked_;
   std::vector<Request> requests_;
   std::vector<News> news_;
-  std::vector<device::PutInFault> seen_;  ///< faults of the last answer that was returned
+  std::vector<device::PutInFault> seen_;  ///< faults of the last returned answer
   bool is_gone_ = false;                  ///< last reported state
   std::jthread thread_;                   ///< last member, because the thread uses all members above
 };

@@ -1,4 +1,4 @@
-// User input for finding and injecting a fault, and texts that describe faults.
+// Search for faults, conversion of typed fields to a request, and texts about faults.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace inkwell::window {
 
-/// Returns why no fault can be injected and what to do; empty if faults can be injected.
+/// Returns the reason why no fault can be injected, and the remedy; empty if faults can be injected.
 std::string_view obstacle(const device::SessionStatus& status, bool knows_control_port);
 
-/// "Bridge legs"
+/// Returns a title such as "Bridge legs".
 std::string_view title_of(protocol::InjectionPart part);
 
 /// True if each word of the search occurs in the fault's name, part or help, ignoring case. An empty search matches
 /// every fault.
 bool is_found(const protocol::InjectionInfo& row, std::string_view search);
 
-/// Wires that faults can be injected into, with their names in the board's facts.
+/// Returns the names of all wires into which faults can be injected.
 std::vector<std::string_view> wires();
 
-/// Contents of the input fields. An empty field is unspecified.
+/// Contents of the input fields. An empty field selects the default of the board.
 struct TypedFault {
   protocol::InjectedFault fault;
   std::string of, amount, after_s, for_s;
@@ -33,10 +33,10 @@ struct TypedFault {
 /// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks everything else.
 protocol::InjectionRequest request_of(const TypedFault& typed);
 
-/// "motor 2, 0.01", "encoders[1].a"; empty if the fault has neither location nor amount.
+/// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.
 std::string place_and_amount(const device::PutInFault& put_in);
 
-/// "0.05 ms", "12.4 ms", "1.35 s"
+/// Returns a text such as "0.05 ms", "12.4 ms" or "1.35 s".
 std::string duration_text(double duration_s);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Faults injected into the virtual board, and the faults that the firmware detected afterwards. Simulation only.
+// Log of the faults that were injected into the virtual board and of the faults that the firmware then detected.
 #pragma once
 
 #include <cstdint>
@@ -26,16 +26,16 @@ struct LoggedFault {
 
 class FaultLog {
  public:
-  /// Number of past faults that are still shown.
+  /// Number of past faults in the log.
   static constexpr std::size_t over_maximum = 4;
 
-  /// Adds a newly injected fault. The fault may be over before the next answer of the board.
+  /// Adds an injected fault, which the next answer of the board may no longer contain.
   void add(const device::PutInFault& put_in);
-  /// Processes an answer of the board. A board time before that of the last answer means another board, and the log is
-  /// cleared.
+  /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
+  /// the log is cleared.
   void take(const device::Injections& now);
-  /// The device is in a fault. The fault is assigned to injected faults after a later answer has reported the board's
-  /// period count.
+  /// Records a fault of the device. A later answer, which reports the period count, assigns the fault to injected
+  /// faults.
   void notice(const device::NoticedFault& fault);
   bool waits_for_answer() const { return pending_.has_value(); }
 
@@ -45,8 +45,8 @@ class FaultLog {
  private:
   struct Pending {
     device::NoticedFault fault;
-    std::vector<unsigned> in = {};  ///< numbers of the faults known to be active at the time of detection
-    int answers = 0;                ///< answers whose period count was below that of the fault
+    std::vector<unsigned> in = {};  ///< numbers of the faults that were active at the detection
+    int answers = 0;                ///< number of answers with a period count below the count of the fault
     bool was_in(unsigned number) const;
   };
 

@@ -1,4 +1,4 @@
-// Interface of a pane of the right column.
+// Interface of a pane in the right column.
 #pragma once
 
 // To add a pane:
@@ -33,19 +33,19 @@ namespace inkwell::window {
 /// Constructor argument of a pane. All referenced objects outlive the pane.
 struct PaneSurroundings {
   DeviceDesk& desk;
-  /// Saved path of the parameter file that was loaded or saved last.
+  /// Path of the last loaded or saved parameter file, which the settings store.
   std::filesystem::path& parameters_file;
-  std::filesystem::path parameters_to_send;  ///< sent once a device is connected; empty: none
-  /// Control socket of the virtual board, for its simulated hand and for fault injection; empty for a real device.
+  std::filesystem::path parameters_to_send;  ///< file that is sent once a device is connected; empty: none
+  /// Control socket of the virtual board; empty for a real device.
   std::optional<device::SocketAddress> control;
-  /// Arm of the virtual board, if known from a source other than the device.
+  /// Simulated arm; empty: the arm in the device's parameters.
   std::optional<protocol::ParameterSet> simulated_arm;
-  /// Replays a recording instead of the device. Throws device::Error if the recording cannot be read.
+  /// Starts the replay of a recording. Throws device::Error if the recording cannot be read.
   std::function<void(const std::filesystem::path&)> replay;
   bool starts_with_replay = false;
   /// Returns the replayed recording; null if none is open.
   std::function<const recording::Recording*()> replayed;
-  /// Moves the replay to a time since the first sample of the recording.
+  /// Moves the replay to a time in seconds after the first sample.
   std::function<void(double)> seek;
 };
 
@@ -56,7 +56,7 @@ struct PaneNews {
   double now_s;
 };
 
-/// Data with which a pane is drawn.
+/// Data for drawing a pane.
 struct PaneFrame {
   const Style& style;
   ParameterEditor& editor;  ///< edits the parameters of the device or of the replayed recording
@@ -73,30 +73,29 @@ class Pane {
   Pane(const Pane&) = delete;
   Pane& operator=(const Pane&) = delete;
 
-  /// Text of the tab. In lower case the text is the pane's name in inspections.
+  /// Text of the tab. The lower-case text is the pane's name in inspections.
   virtual std::string_view title() const = 0;
-  /// Called when a key selects the pane. Returns true if the pane sets the keyboard focus; otherwise the first control
-  /// receives it.
+  /// Called when a key selects the pane. If the function returns false, the first control receives the keyboard focus.
   virtual bool take_keyboard() { return false; }
-  /// Called once per frame, whether or not the pane is shown.
+  /// Called once per frame, even while a different pane is shown.
   virtual void follow(const PaneNews&) {}
-  /// Draws the content while the pane is shown. The pane's ImGui window is open.
+  /// Draws the content into the current ImGui window. Called while the pane is shown.
   virtual void draw(const PaneFrame& frame) = 0;
-  /// Stops all device actions of the pane, on a stop by the user or before a device change.
+  /// Stops all device actions of the pane. Called when the user stops the force or changes the device.
   virtual void cancel() {}
 
-  /// Streamed in addition to the scope's signals while the pane is shown and no pane reserves the stream. PaneNews
-  /// contains the samples.
+  /// Returns signals that are streamed in addition to the scope's signals while the pane is shown and no pane reserves
+  /// the stream. PaneNews contains the samples.
   virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
   /// Reserves the scope stream, for example during a guide or a recording.
   virtual PaneStream stream() const { return {}; }
-  /// Short state text for the tab; empty if the pane is idle.
+  /// Returns a short state text for the tab; empty if the pane is idle.
   virtual std::string running() const { return {}; }
-  /// True if values in the pane are not stored. The tab is marked while another pane is shown.
+  /// True if values in the pane are not stored. A mark on the tab then indicates this while another pane is shown.
   virtual bool has_values_to_store() const { return false; }
   /// True if the content changes without input.
   virtual bool is_moving() const { return false; }
-  /// The first pane that returns true is shown initially. If none does, the first pane is shown.
+  /// The window initially shows the first pane that returns true or, without such a pane, the first pane.
   virtual bool is_shown_at_start() const { return false; }
 };
 

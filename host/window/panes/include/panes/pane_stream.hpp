@@ -8,13 +8,13 @@
 
 namespace inkwell::window {
 
-/// Request of a pane that replaces the scope's selection: exactly these signals, in this order.
+/// Request of a pane for a stream with exactly these signals, in this order.
 struct PaneStream {
   std::vector<protocol::Signal> signals;  ///< empty: no request
-  bool feeds_scope = true;                ///< the scope's signals are included, so that the scope continues
+  bool feeds_scope = true;                ///< `signals` includes the signals of the scope
 };
 
-/// Appends those of `more` that are not yet in `signals`, up to the size limit of a selection.
+/// Appends the signals in `more` that `signals` does not contain, up to the size limit of a selection.
 std::vector<protocol::Signal> joined(std::vector<protocol::Signal> signals, std::span<const protocol::Signal> more);
 
 }  // namespace inkwell::window

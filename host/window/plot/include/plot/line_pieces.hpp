@@ -1,5 +1,4 @@
-// Splits a line for drawing: ImGui joins two segments with a miter, which thins them to nothing where the line
-// reverses.
+// Splits a line at sharp turns, because ImGui's miter joints make the line invisible where it reverses.
 #pragma once
 
 #include <cmath>
@@ -9,7 +8,7 @@
 
 namespace inkwell::window {
 
-/// Splits the points at each turn of more than 120 degrees. Adjacent pieces share the point of the turn.
+/// Splits the points at each turn of more than 120 degrees. Adjacent pieces share the turning point.
 template <class Point>
 std::vector<std::span<const Point>> pieces_between_turns(std::span<const Point> line) {
   constexpr float sharpest_cosine = -0.5f;

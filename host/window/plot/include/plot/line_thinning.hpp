@@ -8,9 +8,9 @@
 
 namespace inkwell::window {
 
-/// Accepts points in pixels and keeps the points at which the line bends. No removed point is farther than about
-/// `invisible_pixels` from the remaining line. Where the line runs to the left, only points that almost equal the
-/// previous point are removed.
+/// Receives points in pixels and keeps the points at which the line bends. The distance between a removed point and the
+/// remaining line is at most about `invisible_pixels`. Where x decreases, only points that almost equal the previous
+/// point are removed.
 template <class Point>
 class LineThinning {
  public:
@@ -25,7 +25,7 @@ class LineThinning {
     if (std::abs(point.x - before.x) < invisible_pixels && std::abs(point.y - before.y) < invisible_pixels) return;
     if (waits_) {
       const float slope = (point.y - kept_.back().y) / (point.x - kept_.back().x);
-      // A straight line to the new point would miss a removed point or a reversal.
+      // Keeps the waiting point, because a straight line to the new point would omit a bend.
       if (!(point.x > waiting_.x && lowest_slope_ <= slope && slope <= highest_slope_)) {
         kept_.push_back(waiting_);
         waits_ = false;
@@ -40,7 +40,7 @@ class LineThinning {
     waits_ = true;
   }
 
-  /// Returns the points that were kept, including the last point, and starts a new line.
+  /// Returns the remaining points, including the last point, and starts a new line.
   std::vector<Point> take() {
     if (waits_) kept_.push_back(waiting_);
     waits_ = false;
@@ -49,7 +49,7 @@ class LineThinning {
 
  private:
   std::vector<Point> kept_;
-  Point waiting_{};  ///< newest point, whose removal is not decided yet
+  Point waiting_{};  ///< newest point, which may still be removed
   bool waits_ = false;
   float lowest_slope_ = 0, highest_slope_ = 0;  ///< range of slopes from the last kept point that passes all removed
                                                 ///< points

@@ -14,7 +14,7 @@
 
 namespace inkwell::window {
 
-/// A rectangle of the screen with a range on each axis.
+/// A rectangle on the screen, with a range on each axis.
 struct PlotArea {
   ImVec2 minimum;  ///< top left corner
   ImVec2 maximum;  ///< bottom right corner
@@ -27,7 +27,7 @@ struct PlotArea {
   float to_y(double value) const { return maximum.y - static_cast<float>(y.part(value)) * height(); }
 };
 
-/// Rounded to whole pixels, which needs a third of the triangles in ImGui.
+/// Rounded to whole pixels, because ImGui then needs only a third of the triangles.
 inline float line_thickness(const Style& style) { return std::round(style.points(1.5f)); }
 
 /// Collects the points of a line and draws them at each gap.
@@ -52,12 +52,12 @@ class Polyline {
   LineThinning<ImVec2> line_;
 };
 
-/// Draws background, grid and the numbers of both axes. `x_unit` and `y_unit` are drawn at the ends of the axes.
+/// Draws the background, the grid and the numbers at the axes. `x_unit` and `y_unit` are drawn at the ends of the axes.
 /// `x_is_logarithm`: x values are exponents of ten, and the axis shows the powers.
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
                const std::string& y_unit, bool x_is_logarithm = false);
 
-/// Connects points in axis units; NaN makes a gap.
+/// Connects points, which are in axis units. NaN makes a gap.
 void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pair<double, double>> points,
                  Colour colour, const Style& style);
 

@@ -16,22 +16,22 @@ struct AxisRange {
   double part(double value) const { return (value - minimum) / extent(); }
 };
 
-/// Returns about `wanted` multiples of 1, 2 or 5 times a power of ten within the range.
+/// Returns about `wanted` ticks within the range, at a distance of 1, 2 or 5 times a power of ten.
 std::vector<double> ticks(const AxisRange& range, int wanted);
 
-/// Height of an axis around constant zero for a unit: a small amount for a haptic arm, e.g. 2 cm. Returns 2 for an
+/// Returns the height of an axis for a signal that is constantly zero, such as 2 cm for lengths. Returns 2 for an
 /// unknown unit.
 double extent_around_zero(std::string_view unit);
 
-/// Returns the smallest range between such multiples that contains the data with a margin. A constant gets a range of a
-/// fifth of its value. Constant zero or missing data (NaN) gets `around_zero`.
+/// Returns the smallest range between two ticks that contains the data and a margin. The range around a constant is a
+/// fifth of its value. The range for constant zero or missing data (NaN) is `around_zero`.
 AxisRange enclosing_range(double minimum, double maximum, double around_zero = 2.0);
 
 /// Formats a tick value with enough digits to distinguish adjacent ticks, e.g. "0.25", "1500", "2e-06".
 std::string tick_label(double value, double step);
 
-/// Follows the data, but shrinks only after the data have been smaller for a while, so that the axis does not jitter.
-/// The first change replaces the estimated range around a constant.
+/// Axis range that grows immediately and shrinks after a delay, so that the axis does not jitter. The first change of a
+/// constant replaces its estimated range.
 class SteadyRange {
  public:
   explicit SteadyRange(double around_zero = 2.0) : around_zero_(around_zero) {}

@@ -1,4 +1,4 @@
-// Triangle meshes of the solids, computed once on the CPU.
+// Triangle meshes of the solids.
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,14 @@ struct Mesh {
 /// Unit sphere around the origin.
 Mesh sphere(int rings, int segments);
 
-/// Body of revolution about z from z = 0 to z = 1 with flat ends. The radius is 1 at z = 0 and `end_radius` at z = 1.
-/// `end_radius` 1 gives a cylinder, and 0 a cone.
+/// Cone or cylinder about the z axis, from z = 0 to z = 1, with flat ends. The radius is 1 at z = 0 and `end_radius` at
+/// z = 1.
 Mesh tapered_cylinder(float end_radius, int segments);
 
-/// Helical spring about z from z = 0 to z = 1 with coil radius 1, drawn as a tube. The hand's spring uses this mesh.
+/// Helical spring about the z axis, from z = 0 to z = 1, with coil radius 1.
 Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_around);
 
-/// Returns the transformation of a mesh along z from 0 to 1 to the line between two points.
+/// Returns the transformation that maps a mesh from z = 0 to z = 1 onto the line between two points.
 glm::mat4 between(glm::vec3 from, glm::vec3 to, float radius);
 
 }  // namespace inkwell::window

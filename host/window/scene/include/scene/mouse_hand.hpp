@@ -1,5 +1,5 @@
-// The simulated hand of a virtual board, moved by the mouse. A separate thread communicates with the board, so that the
-// window never blocks.
+// The simulated hand of a virtual board, which the mouse moves. A separate thread communicates with the board, so that
+// the window never blocks.
 #pragma once
 
 #include <condition_variable>
@@ -15,12 +15,12 @@
 
 namespace inkwell::window {
 
-/// Typical stiffness and damping of a human hand on the stylus, and the limit of its force.
+/// Typical stiffness, damping and force limit of a human hand on the stylus.
 inline constexpr double hand_stiffness_N_per_m = 150.0;
 inline constexpr double hand_damping_Ns_per_m = 2.0;
 inline constexpr float hand_pull_maximum_N = 2.8f;
 
-/// Limits the hand's target to the distance from the probe that the maximum force allows.
+/// Limits the distance between target and probe, because the force of the hand is limited.
 glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m);
 
 class MouseHand {
@@ -28,13 +28,13 @@ class MouseHand {
   explicit MouseHand(device::SocketAddress control);
   ~MouseHand();
 
-  /// Grasps the stylus, after removing it from the inkwell if necessary, and pulls it to a workspace position.
+  /// Grasps the stylus and pulls the probe to a workspace position. Removes the stylus from the inkwell if necessary.
   void pull_to(glm::vec3 target_m);
   void let_go();
   void put_into_inkwell();
   void press_buttons(bool first, bool second);
 
-  /// Target of the hand while it grasps the stylus.
+  /// Returns the target of the hand; empty if the hand does not grasp the stylus.
   std::optional<glm::vec3> target_m() const;
   bool is_docked() const;
   std::string error() const;  ///< empty while the board answers

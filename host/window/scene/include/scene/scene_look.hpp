@@ -7,7 +7,7 @@
 
 namespace inkwell::window {
 
-/// Part of the framebuffer in pixels, with the origin at the bottom left as in OpenGL.
+/// Part of the framebuffer in pixels. The origin is at the bottom left, as in OpenGL.
 struct Viewport {
   int x, y, width, height;
 };
@@ -15,8 +15,8 @@ struct Viewport {
 struct SceneLook {
   const Palette& palette;
   bool flat_colours;               ///< no lighting; wall frames are opaque
-  bool smooth;                     ///< multisampling in a separate buffer: slow without a graphics card
-  bool is_as_before;               ///< the scene has not changed since the last call and need not be redrawn
+  bool smooth;                     ///< multisampling, which is slow without a graphics card
+  bool is_as_before;               ///< the scene has not changed since the last call
   std::optional<int> marked_wall;  ///< wall under the mouse: index into SceneModel::walls
 };
 

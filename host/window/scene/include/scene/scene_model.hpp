@@ -1,5 +1,4 @@
-// Geometry of the scene, computed from the newest pose and the parameters. The computation uses the firmware's code
-// (inkwell_control), so that the picture agrees with the device.
+// Geometry of the scene, computed from pose and parameters with the firmware's code (inkwell_control).
 #pragma once
 
 #include <array>
@@ -19,22 +18,22 @@ struct WallView {
   bool upper;           ///< at the maximum of the box along this axis
   glm::vec3 inward;     ///< unit normal towards the free space
   float penetration_m;  ///< penetration depth of the sphere, 0 in free space
-  bool pushes_back;     ///< in contact while the device's force is on
+  bool pushes_back;     ///< in contact, and the force is on
 };
 
-/// All vectors in workspace axes and meters.
+/// Geometry of the scene. All vectors are in workspace axes and meters.
 struct SceneModel {
   glm::vec3 shoulder_m;
   glm::vec3 elbow_m;
   glm::vec3 probe_m;  ///< center of the sphere
-  glm::vec3 proxy_m;  ///< center of the sphere on the surface of the walls
+  glm::vec3 proxy_m;  ///< proxy, where the sphere is drawn
   bool in_contact;
   float sphere_radius_m;
   glm::vec3 box_minimum_m;
   glm::vec3 box_maximum_m;
   std::array<WallView, 6> walls;  ///< x lower, x upper, y lower, ...
-  glm::vec3 force_N;              ///< force on the hand that the device requests from the motors
-  glm::vec3 stylus_direction;     ///< from the probe to the hand's end of the stylus
+  glm::vec3 force_N;              ///< force that the device exerts on the hand
+  glm::vec3 stylus_direction;     ///< from the probe to the end of the stylus in the hand
   glm::vec3 stylus_side;          ///< direction of the buttons
   glm::vec3 arm_side;             ///< normal of the plane of both links
   bool parallelogram;
@@ -43,20 +42,20 @@ struct SceneModel {
   control::Frame frame;
 };
 
-/// Computes the scene for a pose. Without a referenced pose the arm is drawn in the inkwell.
+/// Computes the scene for a pose. Without a referenced pose, the stylus is drawn in the inkwell.
 SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::ParameterSet& parameters);
 
-/// True if the difference is visible in the scene.
+/// True if the two poses look different in the scene.
 bool looks_different(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
 
-/// Rotation from workspace axes to view space (x right, y up, z towards the user). The rotation depends on the frame.
+/// Returns the rotation from workspace axes to view space, which depends on the frame.
 glm::mat3 workspace_to_view(control::Frame frame);
 
-/// Parameter that sets the position of a wall.
+/// Returns the parameter that sets the position of a wall.
 protocol::Parameter wall_parameter(int axis, bool upper);
 
-/// Position of a dragged wall along its axis, rounded to millimeters. The position is limited to the parameter's range,
-/// and the two walls leave room for the sphere.
+/// Returns the position of a dragged wall, rounded to millimeters. The position is within the parameter's range, and
+/// the sphere fits between the two walls.
 float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool upper, float wanted_m);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// The pane with arm, sphere and walls, and its mouse interaction.
+// The pane that shows arm, sphere and walls, and handles the mouse.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct ScenePaneInput {
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
   bool is_replay = false;    ///< pose and parameters are from a recording
-  bool offers_force = true;  ///< false while another question has to be answered first
+  bool offers_force = true;  ///< false while the user must answer a question first
 };
 
 class Renderer;
@@ -33,11 +33,11 @@ class ScenePane {
   ScenePane();
   ~ScenePane();
 
-  /// Handles the mouse and draws the labels above the picture of draw_scene(). Returns true if the user asks for the
-  /// force.
+  /// Handles the mouse and draws the labels above the picture of draw_scene(). Returns true if the user switches the
+  /// force on.
   bool draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(const Viewport& viewport, SceneLook look) const;
-  /// Adds the part of the picture that depends on the mouse and the simulated hand.
+  /// Adds the state of mouse and simulated hand to the digest.
   void add_to(PictureDigest& digest) const;
   void reset_view() { view_is_to_be_reset_ = true; }
 
@@ -45,7 +45,7 @@ class ScenePane {
   enum class Drag : std::uint8_t { none, orbit, pan, hand, wall };
 
   void handle_mouse(const ScenePaneInput& input);
-  /// Shift with the arrow keys rotates the view, Ctrl+Shift moves it, and Ctrl moves the simulated hand.
+  /// Shift with the arrow keys rotates the view, Ctrl+Shift moves the view, and Ctrl moves the simulated hand.
   void handle_keys(const ScenePaneInput& input);
   void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
   void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);
@@ -58,7 +58,7 @@ class ScenePane {
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
-  /// Shows why the force is off, with a button. Returns true if the button was pressed.
+  /// Draws the button that switches the force on. Returns true if the button was pressed.
   bool draw_force_offer(const ScenePaneInput& input) const;
   void draw_replay_frame(const Style& style) const;
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
@@ -67,7 +67,7 @@ class ScenePane {
   SceneModel scene_{};
   std::optional<HandView> hand_view_;
   Camera camera_;
-  bool view_is_to_be_reset_ = true;  // in the next frame, from the box at that time
+  bool view_is_to_be_reset_ = true;  // in the next frame, to show the whole box
   glm::vec2 origin_{0.0f};           // of the pane, in screen coordinates
   glm::vec2 size_{1.0f};
   Drag drag_ = Drag::none;

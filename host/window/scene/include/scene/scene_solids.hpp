@@ -1,4 +1,4 @@
-// Solid bodies of the scene: shape, placement and color.
+// The solid bodies of the scene.
 #pragma once
 
 #include <cstdint>
@@ -28,12 +28,12 @@ struct HandView {
   bool held;  ///< the mouse currently drags the hand
 };
 
-/// Returns all bodies in meters of view space. Bodies with an alpha below 255 come last.
+/// Returns all bodies in view space. Transparent bodies are last.
 std::vector<Solid> solids_of(const SceneModel& scene, const std::optional<HandView>& hand, const Palette& palette);
 
 /// Length of the force arrow per newton.
 inline constexpr float force_arrow_m_per_N = 0.022f;
-/// Tip of the force arrow, in workspace axes.
+/// Returns the tip of the force arrow, in workspace axes.
 glm::vec3 force_arrow_tip_m(const SceneModel& scene);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Statistics and spectrum of a stretch of a signal.
+// Statistics and spectrum of a section of a signal.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace inkwell::window {
 
-/// Lost samples are omitted. If no sample remains, `count` is 0 and the other members are NaN.
+/// Statistics without the lost samples. If no sample remains, `count` is 0 and all other members are NaN.
 struct Statistics {
   std::uint64_t count;
   double minimum;
@@ -26,12 +26,11 @@ struct Spectrum {
   std::vector<double> amplitudes;
 };
 
-/// Uses the newest power of two of samples in [first, last), at most 32768. The mean is removed. A Hann window reduces
-/// leakage, and its amplitude loss is compensated. Returns an empty spectrum for fewer than 16 samples or if a sample
-/// was lost.
+/// Returns the spectrum of the newest samples in [first, last), without the mean, with a Hann window. The number of
+/// samples is a power of two, at most 32768. The spectrum is empty for fewer than 16 samples or after a lost sample.
 Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// True if the newest samples of a signal leave its previous range by more than the usual effect of noise.
+/// True if the newest samples leave the previous range of the signal by more than noise usually does.
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
 
 }  // namespace inkwell::window

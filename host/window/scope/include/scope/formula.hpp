@@ -15,34 +15,34 @@ struct Formula {
   static constexpr double low_pass_maximum_Hz = 5000.0;
 
   std::string name;  ///< different from all signal names
-  std::string text;  ///< expression of signal names, numbers, + - * / ^ ( ), and functions such as sqrt and abs
+  std::string text;  ///< expression with signal names, numbers, + - * / ^ ( ), and functions such as sqrt and abs
   std::string unit;  ///< "1" for a dimensionless value
-  /// Corner frequency of the first-order low-pass filter of the result; 0 disables the filter.
+  /// Corner frequency of a first-order low-pass filter for the result; 0 disables the filter.
   double low_pass_Hz = 0.0;
   bool operator==(const Formula&) const = default;
 };
 
-/// Returns the signals in the text, each once.
+/// Returns the signals in the text, without repetitions.
 std::vector<protocol::Signal> inputs_of(std::string_view text);
 
-/// Derives the unit if the text only adds and subtracts signals with the same unit. Otherwise the result is empty, and
-/// the author has to enter the unit.
+/// Derives the unit if the text only adds and subtracts signals with the same unit. Otherwise returns an empty text,
+/// and the user has to enter the unit.
 std::string unit_told_by(std::string_view text);
 
-/// Returns why the formula is invalid and what to do; empty if it is valid.
+/// Returns the error of the formula and the remedy; empty if the formula is valid.
 std::string refusal_of(const Formula& formula);
 
 /// Evaluates a formula for consecutive control periods.
 class FormulaValues {
  public:
-  /// Requires a formula without a refusal.
+  /// Requires a formula for which refusal_of() is empty.
   explicit FormulaValues(const Formula& formula);
   FormulaValues(FormulaValues&&) noexcept;
   FormulaValues& operator=(FormulaValues&&) noexcept;
   ~FormulaValues();
 
   const std::vector<protocol::Signal>& inputs() const;
-  /// Evaluates the formula for the input values of one control period. NaN (a lost sample) stays NaN.
+  /// Evaluates the formula for the input values of one control period. The result for a lost sample (NaN) is NaN.
   float next(std::span<const float> values);
 
  private:

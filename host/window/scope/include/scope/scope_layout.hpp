@@ -1,4 +1,4 @@
-// Contents of the scope's plots, and the built-in layouts.
+// Layouts: the plots of the scope and their signals.
 #pragma once
 
 // To add a layout, add a row to built_in_layouts() in host/window/scope/scope_layout.cpp.
@@ -26,7 +26,7 @@ namespace inkwell::window {
 enum class PlotKind : std::uint8_t {
   time,      ///< signals over time
   spectrum,  ///< amplitude of the signals over frequency
-  xy,        ///< the second and each further signal over the first signal
+  xy,        ///< all other signals over the first signal
 };
 inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind::xy) + 1;  // xy is the last kind
 
@@ -41,29 +41,30 @@ struct ScopeLayout {
   std::string name;
   int columns = 2;
   std::vector<ScopePlot> plots;
-  std::vector<Formula> formulas = {};  ///< formulas available to the plots, whether or not a plot shows them
+  std::vector<Formula> formulas = {};  ///< all formulas of the layout, including formulas without a plot
   bool operator==(const ScopeLayout&) const = default;
 };
 
-/// "contact", "paper" (figures 11 to 14), "wall" (force over penetration), "currents", "overview" (eight plots) and
-/// "interrupt".
+/// Returns the layouts "contact", "paper" (figures 11 to 14), "wall" (force over penetration), "currents", "overview"
+/// (eight plots) and "interrupt".
 std::span<const ScopeLayout> built_in_layouts();
-/// Returns the built-in layout of this name, or the first built-in layout if there is none.
+/// Returns the built-in layout with this name, or the first built-in layout if no layout has this name.
 const ScopeLayout& built_in_layout(std::string_view name);
 
-/// Layouts that the user has saved. Built-in layouts cannot be renamed or changed.
+/// Layouts that the user has saved.
 class OwnLayouts {
  public:
   OwnLayouts() = default;
-  explicit OwnLayouts(std::vector<ScopeLayout> layouts);  ///< layouts with a refused name are omitted
+  explicit OwnLayouts(std::vector<ScopeLayout> layouts);  ///< layouts with an invalid name are omitted
 
   std::span<const ScopeLayout> all() const { return layouts_; }
   const ScopeLayout* find(std::string_view name) const;
 
-  /// Returns why no layout can be saved under this name; empty if it can. Saving replaces a user layout with this name.
+  /// Returns the reason why no layout can be saved under this name; empty if the name is valid. The name of a user
+  /// layout is valid.
   static std::string refusal(std::string_view name);
   void save(ScopeLayout layout);
-  /// Returns why the layout cannot be renamed; empty on success.
+  /// Renames the layout. Returns an error message; empty on success.
   std::string rename(std::string_view from, std::string_view to);
   void remove(std::string_view name);
 
@@ -73,26 +74,27 @@ class OwnLayouts {
   std::vector<ScopeLayout> layouts_;
 };
 
-/// Finds a user layout or a built-in layout by name; null if there is none.
+/// Returns the user layout or built-in layout with this name, or null.
 const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own);
 /// Returns all layout names, separated by commas.
 std::string layout_names(const OwnLayouts& own);
-/// Finds a user layout or a built-in layout by name. Returns the first built-in layout if there is none.
+/// Returns the user layout or built-in layout with this name, or the first built-in layout.
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
 
-/// Finds a signal of the device or of one of the formulas by name.
+/// Finds a device signal or a formula by name.
 std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas);
-/// Replaces the formula with the name `before` in the layout and its plots, or adds the formula if there is none.
+/// Replaces the formula named `before` in the layout and its plots, or adds the new formula if no formula has this
+/// name.
 void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before);
-/// Removes the formula from the layout and its plots. A plot without signals is removed.
+/// Removes the formula from the layout and its plots, and then removes plots without signals.
 void remove_formula(ScopeLayout& layout, std::string_view name);
-/// Returns the formulas that the plots show, each once.
+/// Returns the formulas that the plots show, without repetitions.
 std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);
 
-/// Returns how to make an empty plot show data; empty if the plot shows data.
+/// Returns advice for a plot without data; empty if the plot shows data.
 std::string hint_for(const ScopePlot& plot, const SignalHistory& history);
 
-/// Returns each signal of the layout once, up to the stream's limit. Further signals are omitted.
+/// Returns the signals of the layout without repetitions, up to the stream's limit.
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout);
 
 }  // namespace inkwell::window

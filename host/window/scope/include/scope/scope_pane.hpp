@@ -24,33 +24,33 @@ class ScopePane {
   ~ScopePane();
 
   void draw(ImVec2 place, ImVec2 size, const Style& style);
-  /// Adds samples from the device. While the scope is paused, received samples are discarded, so that the shown samples
-  /// remain. `over`: samples of an overlaid recording for the same periods; null if there is none.
+  /// Adds samples from the device or a recording. A paused scope discards received samples. `over`: samples of an
+  /// overlaid recording for the same periods; null: no overlay.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
-  /// Clears the received samples, because the next samples do not continue them.
+  /// Clears the history before samples that do not continue the previous samples.
   void start_anew() { timeline_.start_anew(); }
   double span_s() const { return timeline_.span_s(); }
 
-  /// Signals that the plots and the trigger need.
+  /// Returns the signals that the plots and the trigger need.
   std::vector<protocol::Signal> signals() const;
-  /// Returns the current settings, which are saved.
+  /// Returns the settings to save.
   ScopeSettings settings() const;
-  /// True if a signal left its range since the last call. Scrolling alone does not count.
+  /// True if a signal has left its range since the last call. Scrolling does not count as motion.
   bool take_motion() { return std::exchange(has_motion_, false); }
 
  private:
-  /// Creates the views of new plots. Unchanged plots keep their views and the state of these views.
+  /// Creates the views of new plots. The views of unchanged plots remain.
   void follow_layout();
-  /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
+  /// Handles the arrow keys. With Shift, they move and zoom the time range. With Ctrl, they move the cursors.
   void take_keys();
   void draw_controls(const Style& style);
   void draw_plots(ScopeFrame& frame);
-  /// Adds a signal that is dropped onto the plot.
+  /// Adds a signal that the user drops onto the plot.
   void take_dropped_signal(ScopePlot& plot);
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
-  /// Returns true if the plot is to be removed.
+  /// Returns true if the user removes the plot.
   bool draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame);
 
   Timeline timeline_;

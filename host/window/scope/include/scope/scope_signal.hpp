@@ -1,4 +1,4 @@
-// A signal in a plot: a signal of the device, or the result of a formula.
+// A signal in a plot, which is a device signal or the result of a formula.
 #pragma once
 
 #include <memory>
@@ -15,15 +15,15 @@ class ScopeSignal {
   ScopeSignal(protocol::Signal signal) : signal_(signal) {}
   explicit ScopeSignal(Formula formula) : formula_(std::make_shared<const Formula>(std::move(formula))) {}
 
-  /// Null for a signal of the device.
+  /// Returns null for a device signal.
   const Formula* formula() const { return formula_.get(); }
-  /// Valid only for a signal of the device.
+  /// Requires a device signal.
   protocol::Signal of_device() const { return signal_; }
 
   std::string_view name() const { return formula_ ? std::string_view(formula_->name) : info(signal_).name; }
   std::string_view unit() const;
   std::string_view help() const { return formula_ ? std::string_view(formula_->text) : info(signal_).help; }
-  /// Signals that have to be streamed for this signal.
+  /// Returns the device signals that this signal needs.
   std::vector<protocol::Signal> inputs() const;
 
   bool operator==(const ScopeSignal& other) const;
@@ -33,8 +33,7 @@ class ScopeSignal {
   std::shared_ptr<const Formula> formula_;
 };
 
-/// True for a setpoint that other signals follow, such as a current reference. A setpoint is drawn above the noise of
-/// these signals.
+/// True for a setpoint, such as a current reference. A setpoint is drawn in front of the noisy signals that follow it.
 bool is_reference(const ScopeSignal& signal);
 /// Returns the indices of the signals in drawing order.
 std::vector<std::size_t> drawing_order(const std::vector<ScopeSignal>& signals);
@@ -44,8 +43,8 @@ struct SignalGroup {
   std::string_view title;
   std::vector<protocol::Signal> signals;
 };
-/// Returns the streamable signals in groups. Each word of the search has to occur in the signal's name or help, or in
-/// the group title. An empty search matches every signal.
+/// Returns the streamable signals in groups. Each word of the search must occur in the name, the help or the group
+/// title of a signal. An empty search matches every signal.
 std::vector<SignalGroup> signal_groups(std::string_view search);
 
 }  // namespace inkwell::window

@@ -20,7 +20,7 @@
 
 namespace inkwell::window {
 
-/// Minimum and maximum of a stretch; both are NaN if every sample was lost.
+/// Minimum and maximum of several samples. Minimum and maximum are NaN if every sample was lost.
 struct Extremes {
   float minimum;
   float maximum;
@@ -33,11 +33,11 @@ class SignalSeries {
 
   void append(float value);
 
-  std::uint64_t end() const { return end_; }  ///< index one past the newest sample, counted from the first ever
+  std::uint64_t end() const { return end_; }  ///< index of the next sample
   std::uint64_t begin() const { return std::max(first_, end_ > capacity_ ? end_ - capacity_ : 0); }
   float operator[](std::uint64_t index) const { return samples_[index & (capacity_ - 1)]; }
 
-  /// Extremes of [first, last), limited to the stored samples.
+  /// Returns the extremes of the stored samples in [first, last).
   Extremes extremes(std::uint64_t first, std::uint64_t last) const;
 
  private:
@@ -52,17 +52,17 @@ class SignalSeries {
   std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
 };
 
-/// Signals from one source: the device or a recording.
+/// Samples of all signals from one source, which is the device or a recording.
 class SignalLane {
  public:
   explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
 
   const std::vector<protocol::Signal>& signals() const { return signals_; }
-  /// Clears the samples and sets other signals. The next sample gets the index `first`.
+  /// Clears the samples and sets new signals. The next sample has the index `first`.
   void begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first);
-  /// Adds the results of formulas, also for the stored samples.
+  /// Adds the results of formulas, which are also computed for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
-  /// Appends values of signals(), period by period.
+  /// Appends samples. `values` contains all signals of the first period, then of the second period, and so on.
   void append(std::span<const float> values);
   void append_lost(std::uint64_t count);
 
@@ -85,19 +85,19 @@ class SignalLane {
   std::vector<protocol::Signal> signals_;
   std::vector<SignalSeries> series_;
   std::vector<ScopeSignal> formulas_;
-  std::vector<Derived> derived_;  ///< formulas whose inputs are all among the signals
-  std::vector<float> inputs_;     ///< reused buffer for the inputs of one formula in one period
+  std::vector<Derived> derived_;  ///< formulas with known inputs
+  std::vector<float> inputs_;     ///< buffer for the inputs of a formula
 };
 
-/// The streamed signals, and the signals of an overlaid recording. Index 0 is the first control period since the
-/// selection.
+/// History of the streamed signals and of an overlaid recording. Index 0 is the first control period after the signals
+/// were selected.
 class SignalHistory {
  public:
   explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
       : capacity_(capacity), shown_(capacity), over_(capacity) {}
 
-  /// Appends samples. Other signals in `samples` clear the history. Lost samples become NaN, so that a gap is visible.
-  /// `over`: samples of the overlaid recording for the same periods; null if there is none.
+  /// Appends samples. If `samples` contains different signals, the history is cleared first. Lost samples are stored as
+  /// NaN. `over`: samples of the overlaid recording for the same periods; null: no overlay.
   void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   void clear();
   /// Sets the formulas that are computed in addition to the signals.
@@ -113,8 +113,8 @@ class SignalHistory {
   SignalLane shown_, over_;
 };
 
-/// Returns one pair per column for drawing [first, last) in `columns` columns. The column widths differ by at most a
-/// sixteenth. Each sample belongs to exactly one column.
+/// Divides [first, last) into `columns` columns and returns the extremes of each column. The widths of the columns
+/// differ by at most a sixteenth. Each sample belongs to exactly one column.
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
 
 }  // namespace inkwell::window

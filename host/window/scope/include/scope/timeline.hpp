@@ -1,4 +1,4 @@
-// Time range that the scope shows: the newest samples, an event, or the past.
+// Time range of the scope.
 #pragma once
 
 #include <scope/scope_settings.hpp>
@@ -7,14 +7,14 @@
 
 namespace inkwell::window {
 
-/// Part of the history, in samples; `zero` is the origin of its axis.
+/// Section of the history, in samples. `zero` is the origin of the time axis.
 struct Stretch {
   double first;
   double last;
   double zero;
 
   double span() const { return last - first; }
-  /// Indices of samples.
+  /// Returns the index of the first sample.
   std::uint64_t first_index() const { return first > 0.0 ? static_cast<std::uint64_t>(first) : 0; }
   std::uint64_t last_index() const { return last > 0.0 ? static_cast<std::uint64_t>(last) : 0; }
 };
@@ -23,27 +23,27 @@ class Timeline {
  public:
   Timeline(double span_s, const TriggerSettings& trigger) : trigger_settings_(trigger), span_s_(span_s) {}
 
-  /// Adds samples from the device. While the timeline is paused, received samples are discarded, so that the shown
-  /// samples remain. `over`: samples of an overlaid recording for the same periods; null if there is none.
+  /// Adds samples from the device or a recording. A paused timeline discards received samples. `over`: samples of an
+  /// overlaid recording for the same periods; null: no overlay.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
-  /// Clears the received samples, because the next samples do not continue them.
+  /// Clears the history before samples that do not continue the previous samples.
   void start_anew();
   const SignalHistory& history() const { return history_; }
 
-  /// Returns the stretch to be shown. Searches for trigger events first.
+  /// Searches for trigger events and returns the displayed section.
   Stretch stretch();
 
   double span_s() const { return span_s_; }
   void set_span_s(double span_s) { span_s_ = span_s; }
-  /// Zooms by steps of the mouse wheel; positive steps show less. While paused, the point at `right_part` of the span
-  /// from the right end stays fixed.
+  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the point at the fraction
+  /// `right_part` of the span, from the right end, does not move.
   void zoom(double steps, double right_part);
 
   bool is_paused() const { return paused_; }
   void pause(bool paused);
-  /// Pauses and moves the stretch into the past by a fraction of the span, within the stored samples.
+  /// Pauses and moves the displayed section into the past by a fraction of the span, within the stored samples.
   void drag(double part);
 
   const TriggerSettings& trigger() const { return trigger_settings_; }
@@ -57,7 +57,7 @@ class Timeline {
   TriggerSettings trigger_settings_;
   double span_s_;
   bool paused_ = false;
-  double paused_last_ = 0.0;  ///< right end of the stretch while paused
+  double paused_last_ = 0.0;  ///< right end of the displayed section while paused
 };
 
 }  // namespace inkwell::window

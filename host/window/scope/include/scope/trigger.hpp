@@ -1,4 +1,4 @@
-// The scope's trigger, which finds the event that a picture is aligned to.
+// The scope's trigger, which finds the event for the alignment of the plots.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace inkwell::window {
 enum class TriggerEdge : std::uint8_t { rising, falling };
 enum class TriggerMode : std::uint8_t {
   off,     ///< the newest samples scroll
-  normal,  ///< each new event replaces the picture
+  normal,  ///< each new event replaces the previous event
   single,  ///< the first event remains until the trigger is armed again
 };
 
@@ -20,7 +20,7 @@ struct TriggerSettings {
   protocol::Signal signal = protocol::Signal::force_N;
   TriggerEdge edge = TriggerEdge::rising;
   float level = 0.1f;
-  float pre_trigger = 0.2f;  ///< part of the picture before the event, 0..1
+  float pre_trigger = 0.2f;  ///< fraction of the span before the event, 0 to 1
   bool operator==(const TriggerSettings&) const = default;
 };
 
@@ -32,14 +32,14 @@ std::optional<std::uint64_t> find_crossing(const SignalSeries& series, std::uint
 class Trigger {
  public:
   void arm();  ///< clears the event
-  /// Examines the new samples of the series; `span` is the length of the picture in samples.
+  /// Examines the new samples of the series. `span` is the displayed number of samples.
   void advance(const SignalSeries& series, const TriggerSettings& settings, double span);
-  /// Index of the event whose picture is complete, if any.
+  /// Returns the index of the last event with a complete span, if any.
   std::optional<std::uint64_t> event() const { return event_; }
 
  private:
   std::uint64_t looked_at_ = 0;
-  std::optional<std::uint64_t> coming_;  // event whose picture is not complete yet
+  std::optional<std::uint64_t> coming_;  // event with an incomplete span
   std::optional<std::uint64_t> event_;
 };
 
