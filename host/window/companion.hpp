@@ -30,7 +30,8 @@ class Companion final : public FrameContent {
   /// `problem`: error of the last start of a virtual board; empty: no error.
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
-  /// Handles the keys. Escape, F12 and, outside of text fields, the space bar switch the force off immediately.
+  /// Handles the keys. Escape, F12 and the space bar switch the force off immediately. The space bar has no effect in
+  /// text fields.
   void key(const KeyEvent& event) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;

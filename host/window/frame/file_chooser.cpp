@@ -40,7 +40,7 @@ void FileChooser::enter(const fs::path& folder) {
   listed_at_s_ = -list_again_after_s;
 }
 
-/// Draws one button per parent folder, which opens this folder.
+/// Draws a button for each parent folder.
 void FileChooser::draw_places(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(4)});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(4), style.points(2)});

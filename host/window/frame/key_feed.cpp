@@ -39,7 +39,7 @@ void follow_keyboard_layout(ImGuiIO& io) {
 }
 
 void set_up_keys() {
-  // This ImGui version activates controls only by Space.
+  // This ImGui version activates controls only with the space bar.
   ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
 }
 

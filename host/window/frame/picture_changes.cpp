@@ -56,7 +56,7 @@ std::vector<Box> changes_between(const DrawnPicture& before, const DrawnPicture&
   for (std::size_t i = 0; i < now.panes.size(); ++i) {
     const Box change = change_of(before.panes[i], now.panes[i]);
     if (change.is_empty()) continue;
-    // One extra pixel for antialiased edges of triangles.
+    // The box includes an extra pixel for the antialiased edges of triangles.
     const Box whole_pixels{std::floor(change.left) - 1, std::floor(change.top) - 1, std::ceil(change.right) + 1,
                            std::ceil(change.bottom) + 1};
     boxes.push_back(common(whole_pixels, now.window));

@@ -25,7 +25,7 @@ bool prefers_wayland() {
   const std::string_view choice = variable(choice_variable).empty() ? "x11" : variable(choice_variable);
   if (choice != "x11" && choice != "wayland")
     throw DisplayError(std::string(choice_variable) + " is `" + std::string(choice) +
-                       "`. Set it to x11 or wayland, or leave it unset.");
+                       "`. Set the variable to x11 or wayland, or unset the variable.");
   return choice == "wayland";
 }
 

@@ -40,7 +40,7 @@ class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
       : desk_(around.desk), control_(around.control), simulated_arm_(around.simulated_arm) {}
-  /// Cancels a running guide, which switches the force off and restores trial parameters.
+  /// Cancels a running guide, so that the force is switched off and trial parameters are restored.
   ~GuidesPane() override { GuidesPane::cancel(); }
 
   std::string_view title() const override { return "Guides"; }

@@ -1,4 +1,4 @@
-// The pane that lists events with UTC time and board time. The events are those of the replayed recording or of the
+// The pane that lists events with UTC time and board time. The events are from the replayed recording, or from the
 // device since the window was opened.
 #include <algorithm>
 #include <array>

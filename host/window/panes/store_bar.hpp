@@ -10,8 +10,7 @@
 
 namespace inkwell::window {
 
-/// Draws the button that stores the values on the board. Its tooltip shows the reason if the board cannot store values
-/// now.
+/// Draws the button that stores the values on the board. The tooltip shows why the board cannot store values now.
 void store_button(DeviceDesk& desk, ImVec2 size, const Style& style);
 
 /// Draws a hollow dot, which marks a value that is not stored.

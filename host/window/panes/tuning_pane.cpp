@@ -54,7 +54,7 @@ ValueRange range_of(const protocol::ParameterInfo& info) {
           .logarithmic = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f};
 }
 
-// Draws the symbol instead of a letter, because some fonts do not contain this symbol.
+// Draws the arrow symbol with lines, because some fonts do not contain the symbol.
 bool reset_button(const Style& style) {
   const float size = style.points(reset_points - 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();

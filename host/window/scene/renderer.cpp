@@ -14,7 +14,7 @@ constexpr float floor_radius_m = 0.8f;
 constexpr float floor_grid_m = 0.1f;
 constexpr float wall_grid_m = 0.04f;
 
-// A wall and its drawing attributes, in view space.
+// A wall and its drawing attributes.
 struct WallPicture {
   const WallView* wall;
   int u, v;            // axes along the wall

@@ -31,7 +31,7 @@ class Renderer {
 
  private:
   void show_target(const Viewport& viewport) const;
-  /// Returns false if the target already has this size, so that its picture is still valid.
+  /// Returns false if the target already has this size and its picture is still valid.
   bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;

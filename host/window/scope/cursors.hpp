@@ -15,11 +15,11 @@ class Cursors {
   bool are_shown() const { return are_shown_; }
   void toggle() { are_shown_ = !are_shown_; }
 
-  /// Draws the cursors and handles their drag. The last ImGui item must be the time plot.
+  /// Draws the cursors and handles dragging. The last ImGui item must be the time plot.
   void draw(const PlotArea& area, const Style& style);
   /// Moves the first (0) or second (1) cursor by `steps` percent of the span.
   void step(std::size_t cursor, int steps);
-  /// True while the user drags a cursor, which prevents a drag of the plot.
+  /// True while the user drags a cursor. The plot then cannot be dragged.
   bool is_dragged() const { return dragged_ >= 0; }
 
   /// Returns the values of a signal at both cursors; NaN if a value is unknown.

@@ -1,4 +1,4 @@
-// Views, which draw the plots of the scope. Each plot type has a view class.
+// Views that draw the plots of the scope. Each plot type has a view class.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ std::unique_ptr<PlotView> time_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> spectrum_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> xy_view(const ScopePlot& plot);
 
-/// Update period of statistics and spectra, so that a user can read the numbers.
+/// Update period of statistics and spectra, which must be readable.
 inline constexpr double computed_every_s = 0.2;
 
 }  // namespace inkwell::window

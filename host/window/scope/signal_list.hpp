@@ -23,7 +23,7 @@ class SignalList {
   bool is_shown() const { return is_shown_; }
   void toggle() { is_shown_ = !is_shown_; }
 
-  /// Draws the list, if it is shown, to the left of the next item. Also draws the formula dialog, if it is open.
+  /// Draws the visible list to the left of the next item, and the open formula dialog.
   void draw(ScopeLayout& layout, const Style& style);
 
  private:

@@ -1,4 +1,4 @@
-// View of signals over the first signal.
+// View that plots all other signals over the first signal.
 #include <algorithm>
 #include <cmath>
 #include <string>

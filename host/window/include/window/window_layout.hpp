@@ -32,7 +32,7 @@ struct LayoutNeeds {
 
 WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSettings& settings, float scale);
 
-/// Applies a drag of a splitter to the right or down, in points, within the available room.
+/// Moves a splitter to the right or down, within the available room. `dragged_points` is the distance.
 void drag_column_splitter(float dragged_points, ImVec2 window, float scale, WindowSettings& settings);
 void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings);
 

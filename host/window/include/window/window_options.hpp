@@ -15,7 +15,7 @@
 
 namespace inkwell::window {
 
-/// Recording that the window replays instead of the device after its start.
+/// Recording that the window replays after the start.
 struct ReplayRequest {
   std::filesystem::path recording;  ///< empty: no replay
   std::filesystem::path over = {};  ///< recording that is overlaid; empty: none
@@ -41,7 +41,7 @@ struct WindowOptions {
   std::optional<protocol::ParameterSet> simulated_arm;
 
   /// Image for boards that run different firmware; empty: none. `board` is the address of the board. An empty serial
-  /// number selects the connected board.
+  /// number selects the chosen board.
   std::filesystem::path firmware;
   device::Address board;
 

@@ -33,8 +33,7 @@ WindowSettings read_settings(const std::filesystem::path& file);
 std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file);
 
 std::string format_settings(const WindowSettings& settings);
-/// Keeps the default of each setting that is unreadable or invalid, so that a damaged file does not prevent the window
-/// from opening.
+/// Uses the default for each unreadable or invalid setting, so that the window opens despite a damaged file.
 WindowSettings parse_settings(const std::string& text);
 
 }  // namespace inkwell::window

@@ -34,7 +34,7 @@ class ReplayBar {
   /// Call once per frame. Passes the samples of the elapsed time to the scope.
   void follow(double now_s, ScopePane& scope);
   std::optional<device::Pose> pose() const { return replay_->pose(); }
-  /// Returns an editor for the recorded parameters, whose edits are not sent to any device.
+  /// Returns an editor for the recorded parameters. The edits are not sent to any device.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
 

@@ -42,7 +42,7 @@ class DeviceDesk {
   /// Returns the current pose, which may be newer than the view. Empty while not connected.
   std::optional<device::Pose> newest_pose() const { return session_->newest_pose(); }
 
-  /// Requests another device, or any device if the number is empty. follow_choice() then connects to the device.
+  /// Requests another device, or any device if the serial number is empty. follow_choice() then connects to the device.
   void choose(const std::string& serial_number) { choice_ = serial_number; }
   bool has_choice() const { return choice_.has_value(); }
   /// Closes the session with the present device and connects to the chosen device.

@@ -72,12 +72,12 @@ class ParameterEditor {
   std::optional<Step> open_step_;
 };
 
-/// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without group and unit.
+/// Returns the name in words, without group and unit: "wall_stiffness_N_per_m" -> "Wall stiffness".
 std::string label_of(const protocol::ParameterInfo& info);
-/// The label that includes the group: "Box minimum x".
+/// Returns the name in words with the group, such as "Box minimum x".
 std::string full_label_of(protocol::ParameterInfo info);
 
-/// Number of decimals that resolves about 1/10,000 of the parameter's range.
+/// Returns the number of decimals for a resolution of about 1/10,000 of the parameter's range.
 int decimals_of(const protocol::ParameterInfo& info);
 
 /// A complete set of contact parameters for one type of wall.

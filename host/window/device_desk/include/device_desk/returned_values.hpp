@@ -19,12 +19,12 @@ class ReturnedValues {
 
   /// Call once per frame.
   void follow(const DeviceView& view, double now_s);
-  /// True while the card is shown. If the values are equal, the card is shown for some seconds. Otherwise the card is
-  /// shown until the user decides or the values change.
+  /// True while the card is shown. Equal values are shown for a few seconds, and different values until the user
+  /// decides or the values change.
   bool is_shown() const { return is_shown_; }
   /// True while the user has to decide which values are used.
   bool waits_for_user() const { return is_shown_ && !rows_.empty(); }
-  /// Empty if the device has the same values as before.
+  /// Returns the changed values; empty if no value has changed.
   const std::vector<Row>& rows() const { return rows_; }
   /// Returns the changes that restore the previous values.
   std::vector<device::ParameterChange> changes_back() const;

@@ -21,7 +21,7 @@
 
 namespace inkwell::window {
 
-/// Drawing target of the scene, which lies below the panes.
+/// Drawing target for the scene.
 struct Canvas {
   float pixels_per_unit;  ///< pixels per unit of screen coordinates
   int height_pixels;
@@ -53,7 +53,7 @@ class FrameContent {
 
   /// Background color of the panes.
   virtual Colour ground() const = 0;
-  /// Paints the scene below the panes. The depth and stencil buffers have been cleared in this area.
+  /// Paints the scene below the panes. The depth and stencil buffers of the scene area are already clear.
   virtual void paint(const Canvas& canvas) = 0;
 
   /// Returns the state of the laid-out frame for an inspection.
@@ -69,8 +69,8 @@ struct FrameLoopOptions {
   bool frames_report = false;        ///< print the measured frame rate at exit
 };
 
-/// After this call, SIGINT, SIGTERM and SIGHUP stop the loop like the close button. The program then switches the force
-/// off, restores trial parameters and saves the settings.
+/// After this call, SIGINT, SIGTERM and SIGHUP stop the loop, as the close button does. The program then switches the
+/// force off, restores trial parameters and saves the settings.
 void end_loop_at_signals();
 
 class FrameLoop {

@@ -12,7 +12,7 @@ class FramePacer {
   /// Announces a pause. The time until the next call of wait() then does not count as a slow frame.
   void rest() { half_second_began_s_ = 0.0; }
 
-  /// True while frames are on time. False permanently, once frames have been 20 % too slow for half a second.
+  /// True while frames are on time. Permanently false after half a second of frames that were 20 % too slow.
   bool keeps_up() const { return keeps_up_; }
 
  private:

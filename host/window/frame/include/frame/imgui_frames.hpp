@@ -1,4 +1,4 @@
-// ImGui with its two back ends, and the frames of ImGui.
+// ImGui with its two back ends.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,4 @@
-// Keys that ImGui must not receive: Ctrl+Tab, the space bar and Escape. Otherwise the space bar would activate the
-// focused control, and Escape would close a dialog.
+// Filters the keys for ImGui, which must not receive Ctrl+Tab and the keys that stop the force.
 #pragma once
 
 namespace inkwell::window {
@@ -23,10 +22,10 @@ constexpr bool is_next_part(const KeyEvent& event) {
   return event.key == tab_key && event.action != key_release && (event.modifiers & control_modifier) != 0;
 }
 
-/// True if ImGui may receive the event. The space bar never passes: text fields receive its character separately.
+/// True if ImGui may receive the event. The space bar never passes, because text fields receive characters separately.
 /// Ctrl+Tab never passes: if Ctrl is released before Tab, ImGui would treat a long frame as a repeated Tab. Escape
-/// passes only if `can_cancel`, that is, a control is in use or a dialog or menu is open. Otherwise Escape would clear
-/// the keyboard focus. A release always passes, so that no key remains pressed for ImGui.
+/// passes only if `can_cancel` is true, which means that a control is in use or that a dialog or menu is open.
+/// Otherwise Escape would clear the keyboard focus. A release always passes, so that no key remains pressed for ImGui.
 constexpr bool is_for_imgui(const KeyEvent& event, bool can_cancel) {
   if (event.key == space_bar || is_next_part(event)) return false;
   return event.key != escape_key || event.action == key_release || can_cancel;

@@ -1,5 +1,5 @@
-// Keyboard navigation in the window. Ctrl+Tab moves the focus between panes, and ImGui moves the focus within a pane
-// with the arrow keys. With a modifier, the arrow keys move the content of a pane.
+// Keyboard navigation in the window. Ctrl+Tab moves the focus between panes, and the arrow keys move the focus within a
+// pane. With a modifier, the arrow keys move the content of a pane.
 #pragma once
 
 #include <string>
@@ -48,10 +48,10 @@ struct KeySteps {
 KeySteps key_steps(KeyModifiers modifiers);
 /// Returns key_steps() if the current pane has the focus, and zeros otherwise.
 KeySteps key_steps_in_part(KeyModifiers modifiers);
-/// Prevents that arrow keys with a modifier move the focus. Call between ImGui::NewFrame() and the first pane.
+/// Prevents arrow keys with a modifier from moving the focus. Call between ImGui::NewFrame() and the first pane.
 void keep_modified_arrows();
 
-/// Scrolls a child window without focusable items by Page Up and Page Down if its pane has the focus.
+/// Lets Page Up and Page Down scroll the current child window, which has no focusable items.
 void scroll_by_page_keys();
 
 }  // namespace inkwell::window

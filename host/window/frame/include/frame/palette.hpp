@@ -1,8 +1,7 @@
 // All colors of the window. People with common color deficiencies can distinguish the hues, which are from Okabe and
-// Ito ("Color Universal Design", 2008). No information is shown by hue alone.
-//
-// With WindowOptions::flat_colours, the solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly
-// these colors on the screen, which tests use. Both themes use the same scene colors.
+// Ito ("Color Universal Design", 2008). No information is shown by hue alone. With WindowOptions::flat_colours, the
+// solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly these colors on the screen. Both
+// themes use the same scene colors.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +37,7 @@ inline constexpr std::array<Colour, 6> line_colours_dark{
 inline constexpr std::array<Colour, 6> line_colours_light{
     {{0, 114, 178}, {213, 94, 0}, {0, 140, 102}, {184, 88, 140}, {150, 118, 0}, {60, 60, 70}}};
 
-/// The surfaces, lines and texts of one theme.
+/// Colors of one theme.
 struct Palette {
   Colour ground;  ///< background
   Colour pane;

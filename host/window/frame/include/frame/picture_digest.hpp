@@ -15,7 +15,7 @@ class PictureDigest {
     const std::string_view bytes{static_cast<const char*>(data), size};
     value_ = value_ * 0x9E3779B97F4A7C15u + std::hash<std::string_view>{}(bytes);
   }
-  /// Adds a value, whose type must have no padding bytes.
+  /// Adds a value. The type of the value must have no padding bytes.
   template <class Value>
   void add(const Value& value) {
     static_assert(!std::is_pointer_v<Value>, "an address does not identify the content");

@@ -6,7 +6,7 @@
 
 namespace inkwell::window {
 
-/// Stores a number in the alpha value of the first pixel, which is invisible. Reading the number waits for all drawing,
+/// Stores a number in the invisible alpha value of the first pixel. Reading the number waits for all drawing,
 /// so the mark is used only with software rendering.
 class PictureMark {
  public:

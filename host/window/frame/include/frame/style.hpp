@@ -21,7 +21,7 @@ struct Style {
   float points(float count) const { return count * scale; }
 };
 
-/// Loads Inter or, if it is not installed, DejaVu or ImGui's built-in font.
+/// Loads the first available font: Inter, DejaVu or ImGui's built-in font.
 Fonts load_fonts(float scale);
 
 void apply_theme(const Palette& palette, float scale);

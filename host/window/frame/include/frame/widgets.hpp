@@ -11,7 +11,7 @@ namespace inkwell::window {
 void text(Colour colour, std::string_view content);
 void text(ImFont* font, Colour colour, std::string_view content);
 void wrapped_text(Colour colour, std::string_view content);
-/// Draws right-aligned text. `width` is the distance from the cursor to the right end.
+/// Draws right-aligned text. `width` is the distance from the cursor to the right end of the text.
 void right_text(Colour colour, std::string_view content, float width);
 
 /// Returns the text, shortened with an ellipsis if necessary. Default: the current font.
@@ -20,7 +20,7 @@ std::string fitted(std::string_view content, float width, ImFont* font = nullptr
 /// Draws a triangle with an exclamation mark and returns its width.
 float warning_sign(ImVec2 corner, Colour colour, const Style& style);
 
-/// Prevents that the up and down arrow keys move the focus while the last item has the focus.
+/// Prevents the up and down arrow keys from moving the focus away from the last item.
 void keep_vertical_arrows();
 
 /// True while a dialog dims the rest of the window.

@@ -34,7 +34,7 @@ class BoardFaults {
   void heal(const std::string& fault, const std::string& of);
   void heal_all();
 
-  /// Returns the news since the last call. An answer replaces the answer directly before it.
+  /// Returns all news since the last call. A newer answer replaces a directly preceding answer.
   std::vector<News> take_news();
   /// True if the news contains more than a repetition of the last answer.
   bool has_changed() const;

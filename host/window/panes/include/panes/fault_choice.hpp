@@ -30,7 +30,7 @@ struct TypedFault {
   std::string of, amount, after_s, for_s;
 };
 
-/// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks everything else.
+/// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks the request.
 protocol::InjectionRequest request_of(const TypedFault& typed);
 
 /// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.

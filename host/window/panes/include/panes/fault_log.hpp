@@ -1,4 +1,4 @@
-// Log of the faults that were injected into the virtual board and of the faults that the firmware then detected.
+// Log of injected faults and of the faults that the firmware detected afterwards.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,7 @@ struct LoggedFault {
   enum class Phase : std::uint8_t { to_come, in, over };
   struct Noticed {
     protocol::Fault fault;
-    /// Board time from the start of the injected fault to the end of the control period that detected it; empty if
-    /// unknown.
+    /// Board time from the start of the injected fault to the end of the detecting control period; empty if unknown.
     std::optional<double> after_s;
   };
 
@@ -34,8 +33,8 @@ class FaultLog {
   /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
   /// the log is cleared.
   void take(const device::Injections& now);
-  /// Records a fault of the device. A later answer, which reports the period count, assigns the fault to injected
-  /// faults.
+  /// Records a fault of the device. The log assigns the fault to injected faults once an answer has reached the period
+  /// count of the fault.
   void notice(const device::NoticedFault& fault);
   bool waits_for_answer() const { return pending_.has_value(); }
 

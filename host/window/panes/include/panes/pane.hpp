@@ -2,12 +2,11 @@
 #pragma once
 
 // To add a pane:
-// 1. Write host/window/panes/NAME_pane.cpp with a class derived from Pane and the function NAME_pane() that creates
-//    it. title() is the text of the tab.
+// 1. Write host/window/panes/NAME_pane.cpp with a class derived from Pane and the function NAME_pane(), which creates
+//    the pane. title() is the text of the tab.
 // 2. Add the line PANE(NAME_pane) to host/window/panes/registry.cpp.
-// 3. Return the displayed signals from shown_signals(). follow() receives their samples together with other
-//    signals: find the column in ScopeSamples::signals. Override stream() only if the pane needs the stream
-//    exclusively.
+// 3. Return the displayed signals from shown_signals(). follow() receives the samples of all streamed signals, in the
+//    order of ScopeSamples::signals. Override stream() only if the pane needs the stream exclusively.
 // 4. Put code that needs no display into the library inkwell_window_panes_parts, with tests in
 //    tests/host/window/panes.
 // 5. Add a system test to tests/system and a picture to tests/system/pictures.cpp.
@@ -91,11 +90,11 @@ class Pane {
   virtual PaneStream stream() const { return {}; }
   /// Returns a short state text for the tab; empty if the pane is idle.
   virtual std::string running() const { return {}; }
-  /// True if values in the pane are not stored. A mark on the tab then indicates this while another pane is shown.
+  /// True if values in the pane are not stored. The tab is then marked while another pane is shown.
   virtual bool has_values_to_store() const { return false; }
   /// True if the content changes without input.
   virtual bool is_moving() const { return false; }
-  /// The window initially shows the first pane that returns true or, without such a pane, the first pane.
+  /// The window initially shows the first pane that returns true. Default: the first pane.
   virtual bool is_shown_at_start() const { return false; }
 };
 

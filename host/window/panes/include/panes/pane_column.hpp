@@ -15,11 +15,11 @@ class PaneColumn {
   void follow(const PaneNews& news);
   void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
   void cancel();
-  /// Shows the pane of this tab if the tab exists. The first tab is 0. Returns the name of the pane that should receive
-  /// the keyboard focus; empty if the pane has set the focus.
+  /// Shows the pane of this tab if the tab exists. Tabs are counted from 0. Returns the name of the pane that should
+  /// receive the keyboard focus; empty if the pane has set the focus.
   std::string show(std::size_t tab);
 
-  /// Returns the stream of the first pane that reserves the stream. Without a reservation, the stream contains the
+  /// Returns the stream of the first pane with a reservation. Without a reservation, the stream contains the
   /// signals of the scope and of the shown pane, up to the size limit of a selection.
   PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
   bool is_moving() const;

@@ -1,4 +1,4 @@
-// Splits a line at sharp turns, because ImGui's miter joints make the line invisible where it reverses.
+// Splits a line at sharp turns, because ImGui's miter joints make a line invisible at a reversal.
 #pragma once
 
 #include <cmath>

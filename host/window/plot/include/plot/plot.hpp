@@ -27,7 +27,7 @@ struct PlotArea {
   float to_y(double value) const { return maximum.y - static_cast<float>(y.part(value)) * height(); }
 };
 
-/// Rounded to whole pixels, because ImGui then needs only a third of the triangles.
+/// Returns the thickness in whole pixels, because ImGui then needs only a third of the triangles.
 inline float line_thickness(const Style& style) { return std::round(style.points(1.5f)); }
 
 /// Collects the points of a line and draws them at each gap.

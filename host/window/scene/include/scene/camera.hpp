@@ -25,7 +25,7 @@ struct Camera {
   glm::vec3 direction() const;  ///< viewing direction
   glm::mat4 view() const;
   glm::mat4 projection(float aspect_ratio) const;
-  /// Returns the size of a pixel at a point in meters.
+  /// Returns the size in meters of a pixel at the depth of a point.
   float metres_per_pixel(glm::vec3 at_m, float view_height_pixels) const;
   /// Returns the ray through a pixel; (0,0) is the top left corner.
   Ray ray(glm::vec2 pixel, glm::vec2 view_size_pixels) const;

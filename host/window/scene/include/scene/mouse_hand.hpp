@@ -1,4 +1,4 @@
-// The simulated hand of a virtual board, which the mouse moves. A separate thread communicates with the board, so that
+// The mouse as the simulated hand of a virtual board. A separate thread communicates with the board, so that
 // the window never blocks.
 #pragma once
 

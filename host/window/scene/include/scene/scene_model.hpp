@@ -48,7 +48,7 @@ SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::
 /// True if the two poses look different in the scene.
 bool looks_different(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
 
-/// Returns the rotation from workspace axes to view space, which depends on the frame.
+/// Returns the rotation from workspace axes to view space for a frame.
 glm::mat3 workspace_to_view(control::Frame frame);
 
 /// Returns the parameter that sets the position of a wall.

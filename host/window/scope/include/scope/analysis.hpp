@@ -26,11 +26,12 @@ struct Spectrum {
   std::vector<double> amplitudes;
 };
 
-/// Returns the spectrum of the newest samples in [first, last), without the mean, with a Hann window. The number of
-/// samples is a power of two, at most 32768. The spectrum is empty for fewer than 16 samples or after a lost sample.
+/// Returns the spectrum of the newest samples in [first, last). The mean is removed, and a Hann window is applied. The
+/// number of samples is a power of two, at most 32768. The spectrum is empty for fewer than 16 samples or if a sample
+/// was lost.
 Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// True if the newest samples leave the previous range of the signal by more than noise usually does.
+/// True if the newest samples exceed the previous range of the signal by more than typical noise.
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// A signal computed from other signals with a formula, such as force_x_N - program_force_x_N.
+// A signal that a formula computes from other signals, such as force_x_N - program_force_x_N.
 #pragma once
 
 #include <memory>

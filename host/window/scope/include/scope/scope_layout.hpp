@@ -60,8 +60,8 @@ class OwnLayouts {
   std::span<const ScopeLayout> all() const { return layouts_; }
   const ScopeLayout* find(std::string_view name) const;
 
-  /// Returns the reason why no layout can be saved under this name; empty if the name is valid. The name of a user
-  /// layout is valid.
+  /// Returns the reason why no layout can be saved under this name; empty if the name is valid. Saving under the name
+  /// of a user layout replaces this layout.
   static std::string refusal(std::string_view name);
   void save(ScopeLayout layout);
   /// Renames the layout. Returns an error message; empty on success.

@@ -43,7 +43,7 @@ class ScopePane {
  private:
   /// Creates the views of new plots. The views of unchanged plots remain.
   void follow_layout();
-  /// Handles the arrow keys. With Shift, they move and zoom the time range. With Ctrl, they move the cursors.
+  /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
   void take_keys();
   void draw_controls(const Style& style);
   void draw_plots(ScopeFrame& frame);

@@ -1,4 +1,4 @@
-// A signal in a plot, which is a device signal or the result of a formula.
+// A signal in a plot: a device signal or the result of a formula.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,8 @@ class ScopeSignal {
   std::shared_ptr<const Formula> formula_;
 };
 
-/// True for a setpoint, such as a current reference. A setpoint is drawn in front of the noisy signals that follow it.
+/// True for a setpoint, such as a current reference. A setpoint is drawn in front of the noisy signals that follow the
+/// setpoint.
 bool is_reference(const ScopeSignal& signal);
 /// Returns the indices of the signals in drawing order.
 std::vector<std::size_t> drawing_order(const std::vector<ScopeSignal>& signals);

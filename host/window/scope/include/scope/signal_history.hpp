@@ -1,8 +1,6 @@
-// The last minutes of the scope's signals, stored for fast drawing of any stretch.
-//
-// Each signal has a ring of samples, and rings with the minimum and maximum of 16, 256, 4096... samples. The extremes
-// of any stretch then need a few dozen look-ups. The cost of a plot therefore depends on its number of pixels, not of
-// samples.
+// The last minutes of the scope's signals, stored for fast drawing of any section. Each signal has a ring of samples,
+// and rings with the minimum and maximum of 16, 256, 4096... samples. The extremes of any section then need a few dozen
+// look-ups. The cost of a plot therefore depends on the number of pixels instead of the number of samples.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +50,7 @@ class SignalSeries {
   std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
 };
 
-/// Samples of all signals from one source, which is the device or a recording.
+/// Samples from one source: the device or a recording.
 class SignalLane {
  public:
   explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
@@ -60,7 +58,7 @@ class SignalLane {
   const std::vector<protocol::Signal>& signals() const { return signals_; }
   /// Clears the samples and sets new signals. The next sample has the index `first`.
   void begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first);
-  /// Adds the results of formulas, which are also computed for the stored samples.
+  /// Sets the formulas and computes their results, including the results for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
   /// Appends samples. `values` contains all signals of the first period, then of the second period, and so on.
   void append(std::span<const float> values);

@@ -37,8 +37,8 @@ class Timeline {
 
   double span_s() const { return span_s_; }
   void set_span_s(double span_s) { span_s_ = span_s; }
-  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the point at the fraction
-  /// `right_part` of the span, from the right end, does not move.
+  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the point below the mouse does
+  /// not move. `right_part` is its distance from the right end as a fraction of the span.
   void zoom(double steps, double right_part);
 
   bool is_paused() const { return paused_; }
