@@ -181,8 +181,8 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   ImGui::EndDisabled();
   help_on_hover("Force",
                 input.is_replay ? "Close the replay first. The window shows a recording instead of the arm."
-                                : "While the force is on, walls and programs push the hand. The force rises slowly and "
-                                  "switches off immediately.",
+                                : "While the force is on, walls and programs push the hand. The force rises slowly "
+                                  "after switch-on and drops immediately after switch-off.",
                 style);
   outcome.toggle_scope = toggle_button("Scope", input.scope_is_shown, style, make_room(scope_points));
   outcome.toggle_theme = button(style.palette == &dark_palette ? "Light theme" : "Dark theme", make_room(theme_points));

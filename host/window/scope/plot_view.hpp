@@ -49,7 +49,7 @@ std::unique_ptr<PlotView> time_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> spectrum_view(const ScopePlot& plot);
 std::unique_ptr<PlotView> xy_view(const ScopePlot& plot);
 
-/// Update period of statistics and spectra, which must be readable.
+/// Update period of the displayed statistics and spectra.
 inline constexpr double computed_every_s = 0.2;
 
 }  // namespace inkwell::window

@@ -23,8 +23,8 @@ constexpr bool is_next_part(const KeyEvent& event) {
 }
 
 /// True if ImGui may receive the event. The space bar never passes, because text fields receive characters separately.
-/// Ctrl+Tab never passes: if Ctrl is released before Tab, ImGui would treat a long frame as a repeated Tab. Escape
-/// passes only if `can_cancel` is true, which means that a control is in use or that a dialog or menu is open.
+/// Ctrl+Tab never passes, because ImGui would detect a repeated Tab if Ctrl is released before Tab in a long frame.
+/// Escape passes only if `can_cancel` is true, which means that a control is in use or that a dialog or menu is open.
 /// Otherwise Escape would clear the keyboard focus. A release always passes, so that no key remains pressed for ImGui.
 constexpr bool is_for_imgui(const KeyEvent& event, bool can_cancel) {
   if (event.key == space_bar || is_next_part(event)) return false;

@@ -33,8 +33,8 @@ class FaultLog {
   /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
   /// the log is cleared.
   void take(const device::Injections& now);
-  /// Records a fault of the device. The log assigns the fault to injected faults once an answer has reached the period
-  /// count of the fault.
+  /// Records a fault of the device. The log assigns the fault to injected faults once the board has reported a later
+  /// period count.
   void notice(const device::NoticedFault& fault);
   bool waits_for_answer() const { return pending_.has_value(); }
 

@@ -42,7 +42,7 @@ glm::vec3 on_view_plane(const Camera& camera, const Ray& ray, glm::vec3 point_m)
 /// Returns the t for which `point + t * direction` is nearest to the ray; `direction` is a unit vector.
 float nearest_on_line(const Ray& ray, glm::vec3 point, glm::vec3 direction);
 
-/// Returns a camera that shows the whole box from slightly above.
+/// Returns a camera that shows the whole box from a position slightly above.
 Camera look_at_box(glm::vec3 minimum_m, glm::vec3 maximum_m);
 
 }  // namespace inkwell::window
