@@ -1,5 +1,5 @@
 // Decides when the window lays out and draws frames. Drawing is slow without a graphics card. Motion is therefore drawn
-// at the full rate, scrolling signals at a few frames per second, and an unchanged picture not at all.
+// at the full rate, and scrolling signals are drawn at a few frames per second. An unchanged picture is not drawn.
 #pragma once
 
 namespace inkwell::window {
