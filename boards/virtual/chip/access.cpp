@@ -7,15 +7,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Device and system regions. The default memory map forbids execution there and requires aligned accesses.
+/// Device and system regions, in which the default memory map forbids execution and requires aligned accesses.
 bool is_of_devices(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;
 }
 
 }  // namespace
 
-// Unicorn's own memory protection unit is not used, because it does not know which addresses respond. The engine caches
-// the rights of a page. The engine checks single accesses only in a page that an MPU region divides.
+// The memory protection unit of Unicorn is not used, because Unicorn does not know which addresses respond. The engine
+// caches the access rights of each page. The engine checks single accesses only in pages that an MPU region divides.
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
@@ -42,7 +42,7 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
     if (!core_coupled_on_ && byte - ccm_base < ccm_bytes) machine_.violations.violate(Rule::ccm_clock_off);
     return true;
   }
-  // A started read cannot be aborted by an interrupt.
+  // An interrupt cannot abort a read that has started.
   if (access == Access::load && flash_is_busy_ && is_in_flash(address)) machine_.flash->hold_up();
   return false;
 }
@@ -54,7 +54,8 @@ int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
-  // While the flash is busy, its pages have no read right. The first read then reaches refuses(), which waits.
+  // While the flash is busy, its pages have no read right. The first read of a busy flash therefore calls refuses(),
+  // which waits.
   const bool waits = flash_is_busy_ && is_in_flash(page);
   if (!waits && !refusal_of(page, Access::load, role)) rights |= may_read;
   if (!refusal_of(page, Access::store, role)) rights |= may_write;
@@ -62,7 +63,7 @@ int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role
   return rights;
 }
 
-// Device and Strongly-ordered memory from the default map or an MPU region (ARMv7-M, A3.2.1 and A3.5).
+// True for Device and Strongly-ordered memory (ARMv7-M, A3.2.1 and A3.5).
 bool Processor::is_device(std::uint32_t address, Role role) const {
   const auto& protection = machine_.memory_protection;
   const bool on_private_bus = address - private_bus_base < private_bus_bytes;

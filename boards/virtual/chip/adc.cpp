@@ -60,7 +60,7 @@ unsigned Adc::sampling_cycles(unsigned channel) const {
 
 void Adc::start_injected(Ticks now) {
   if (!is_on() || stopped_ || group_ == Group::injected) return;
-  // An injected group interrupts a regular one, whose conversion is repeated afterwards.
+  // An injected group interrupts a regular group. The interrupted conversion is repeated afterwards.
   resume_regular_ = group_ == Group::regular;
   group_ = Group::injected;
   sr_ |= adc.sr.jstrt.mask();
@@ -123,9 +123,9 @@ std::uint32_t Adc::convert(double voltage_V) const {
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
-/// Charges the sampling capacitor, which starts with the voltage of the previous channel. First the sampling capacitor
-/// shares charge with the capacitor at the pin through the switch. Then the source replaces the lost charge (data
-/// sheet, figure "Typical connection diagram using the ADC", with the largest switch resistance).
+/// Charges the sampling capacitor, whose initial voltage is that of the previous channel. First the switch connects the
+/// sampling capacitor to the capacitor at the pin, and the two share their charge. Then the source recharges both
+/// capacitors (data sheet, figure "Typical connection diagram using the ADC", with the largest switch resistance).
 double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;
   const double both_F = source.capacitance_F + sampling_F;
@@ -137,7 +137,7 @@ double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   return sampled_V_;
 }
 
-/// Random value that firmware does not mistake for a valid result for long.
+/// Value of an invalid conversion: random, so that firmware errors become visible.
 std::uint32_t Adc::nonsense(Ticks now) const {
   return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
 }
@@ -220,7 +220,7 @@ void Adc::finish_injected(Ticks now) {
 void Adc::finish_regular(Ticks now) {
   const bool checks_overrun = adc.cr2.dma.in(cr2_) || adc.cr2.eocs.in(cr2_) || adcs_.shares_dma();
   if (checks_overrun && (sr_ & end_of_conversion) != 0) {
-    // The old result was not read. There are no DMA requests until firmware clears OVR.
+    // Firmware has not read the previous result. The converter sends no DMA requests until firmware clears OVR.
     sr_ |= overrun;
     regular_rank_ = 0;
     idle();

@@ -14,7 +14,7 @@ namespace inkwell::virtual_board {
 
 class Adcs;
 
-/// VREFINT of this simulated part at any supply voltage; the data sheet allows 1.18 V to 1.24 V.
+/// VREFINT of the simulated chip, independent of the supply voltage; the data sheet allows 1.18 V to 1.24 V.
 inline constexpr double internal_reference_V = 1.19;
 /// Start-up time and shortest sampling time of VREFINT and the temperature sensor.
 inline constexpr Ticks internal_source_time = 10 * (ticks_per_s / 1'000'000);
@@ -42,7 +42,7 @@ class Adc final : public TimedPart {
   int regular_trigger() const { return adc.cr2.exten.in(cr2_) ? static_cast<int>(adc.cr2.extsel.of(cr2_)) : -1; }
   void start_injected(Ticks now);
   void start_regular(Ticks now);
-  /// Starts a regular group later, for a slave in an interleaved mode.
+  /// Starts the regular group of a slave converter at `when`, in an interleaved mode.
   void start_regular_at(Ticks when);
   unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
   /// True if the processor must stop for the result of this group.
@@ -100,7 +100,7 @@ class Adcs final : public RegisterBlock {
   /// Sets the pointer to RCC_APB2ENR, which has one clock bit per converter.
   void clock_by(const std::uint32_t* enable_register) { enable_register_ = enable_register; }
   void reset() override;
-  /// A match of timer channel 1 to 4, or trigger_output of timers.hpp.
+  /// Handles a compare match of timer channel 1 to 4, or the trigger output (trigger_output of timers.hpp).
   void timer_trigger(unsigned timer, unsigned channel) {
     if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
   }
@@ -121,7 +121,7 @@ class Adcs final : public RegisterBlock {
   bool interleaved() const;
   /// Time between two starts of the same converter, unless the converter is still busy.
   Ticks interleaving_turn() const { return group_size() * interleaving_delay(); }
-  /// Adds a result for the common data register.
+  /// Queues a result for the common data register.
   void share(std::uint32_t result);
   void note_injected_sequence(Ticks now);
   void start_injected(unsigned index, Ticks now);

@@ -72,7 +72,7 @@ struct AdcCommonRegisters {
 };
 inline constexpr AdcCommonRegisters adc_common;
 
-/// ADC_CCR.MULTI without its highest bit, which includes the third converter.
+/// ADC_CCR.MULTI without its highest bit, which adds the third converter to the mode.
 enum class MultiMode : std::uint8_t {
   independent = 0,
   regular_and_injected = 1,   ///< both groups simultaneous

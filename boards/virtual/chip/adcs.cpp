@@ -71,7 +71,7 @@ bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
 }
 
-// RM0090, "Multi ADC mode": mode 1 transfers single results, mode 2 two results as half-words, mode 3 two as bytes.
+// RM0090, "Multi ADC mode": mode 1 transfers one result, mode 2 two results as half-words, mode 3 two results as bytes.
 void Adcs::share(std::uint32_t result) {
   shared_.push_back(result);
   const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);

@@ -35,8 +35,8 @@ constexpr Bus::Window window() {
   return {base, bytes, read_window<base>, write_window<base>};
 }
 
-/// Smallest allowed write in bytes, per name prefix of the peripheral (reference manual). Peripherals that also work
-/// with smaller writes, such as the data registers of serial ports, have no row.
+/// Smallest allowed write in bytes, by the first letters of the peripheral's name (RM0090). Peripherals that accept
+/// byte writes, such as serial ports, have no row.
 unsigned narrowest_write(std::string_view name) {
   struct Row {
     std::string_view begin;
@@ -137,7 +137,7 @@ void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned si
     return;
   }
   if (!is_clocked(*slot, address)) return;
-  // A bridge to an APB turns every write into a word with repeated bytes (RM0090, "AHB/APB bridges").
+  // An APB bridge converts every narrow write to a word with repeated bytes (RM0090, "AHB/APB bridges").
   if (size < slot->narrowest_write && address < apb_end) {
     const std::uint32_t repeated = size == 1 ? 0x0101'0101u * (value & 0xFF) : 0x0001'0001u * (value & 0xFFFF);
     slot->peripheral->write((address & ~3u) - slot->base, repeated, 4);

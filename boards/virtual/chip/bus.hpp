@@ -13,7 +13,8 @@ namespace inkwell::virtual_board {
 
 class SystemControl;
 
-/// A block of 32-bit registers. Narrow reads return a part of the word; narrow writes replace a part of `stored`.
+/// A block of 32-bit registers. A narrow read returns part of the word, and a narrow write replaces part of the word
+/// from stored().
 class RegisterBlock : public Peripheral {
  public:
   std::uint32_t read(std::uint32_t offset, unsigned size) final {
@@ -31,7 +32,7 @@ class RegisterBlock : public Peripheral {
  protected:
   virtual std::uint32_t read_word(std::uint32_t offset) = 0;
   virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
-  /// Register value for merging a narrow write, without the side effects of a read.
+  /// Register value into which a narrow write is merged, without the side effects of a read.
   virtual std::uint32_t stored(std::uint32_t) const { return 0; }
   /// Declared registers: shown<...>() of the register map.
   virtual std::span<const MapEntry> registers() const { return {}; }
@@ -41,7 +42,7 @@ class Bus {
  public:
   Bus(Machine& machine, SystemControl& system_control);
 
-  /// Peripherals whose clock is off in `*enable_register & enable_mask` read 0 and ignore writes.
+  /// While `*enable_register & enable_mask` is 0, the peripheral has no clock: it reads 0 and ignores writes.
   void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
            const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
   void reset_peripherals();
@@ -53,7 +54,7 @@ class Bus {
     uc_cb_mmio_write_t write;
   };
   static const Window windows[6];
-  /// True if one of the windows contains the address.
+  /// True if an address window of the bus contains the address.
   static bool answers(std::uint32_t address) {
     for (const Window& window : windows)
       if (address - window.base < window.bytes) return true;

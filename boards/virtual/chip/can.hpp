@@ -1,5 +1,5 @@
-// CAN1 and CAN2 with a transceiver but without a bus (RM0090, "Controller area network"). Mode changes work. No node
-// acknowledges a frame, so the error counter rises until the controller is error passive. In loop-back mode the
+// CAN1 and CAN2 with a transceiver but without a bus (RM0090, "Controller area network"). Mode changes work. Because no
+// node acknowledges a frame, the error counter rises until the controller is error passive. In loop-back mode the
 // controller receives its own frames through the filters.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace inkwell::virtual_board {
 
 class Can final : public RegisterBlock, public Freezable {
  public:
-  /// Interrupts occupy four consecutive positions: transmission, FIFO 0, FIFO 1, errors and mode changes. CAN2 uses
-  /// the filters of CAN1 (`first`).
+  /// The interrupts of a controller have four consecutive vectors: transmission, FIFO 0, FIFO 1, and errors with mode
+  /// changes. CAN2 uses the filters of CAN1 (`first`).
   Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position, const Can* first = nullptr)
       : machine_(machine),
         events_(events),
@@ -24,7 +24,7 @@ class Can final : public RegisterBlock, public Freezable {
     constexpr unsigned first_stop_bit = 25;  // DBG_CAN1_STOP
     machine.debug_halt.add(*this, DebugHalt::apb1, first_stop_bit + number - 1);
   }
-  /// The bus freezes too if CAN_MCR.DBF is set. An interrupted frame restarts.
+  /// Freezes the bus only if CAN_MCR.DBF is set. An interrupted frame restarts.
   void freeze(bool frozen) override {
     frozen_ = frozen && can.mcr.dbf.in(word(can.mcr));
     if (frozen_ && sending_ != 0) events_.cancel(std::exchange(sending_, 0));
@@ -97,7 +97,7 @@ class Can final : public RegisterBlock, public Freezable {
     const std::uint64_t quanta = 3 + can.btr.ts1.of(timing) + can.btr.ts2.of(timing);
     return machine_.clocks.pclk1.duration(count * quanta * (can.btr.brp.of(timing) + 1));
   }
-  // A mode change takes effect after eleven recessive bits. The bus is always recessive.
+  // A mode change takes effect after eleven recessive bits. The bus has no other node and is always recessive.
   void change_mode() {
     if (changing_ != 0) events_.cancel(changing_);
     changing_ = events_.at(machine_.timeline.now() + bits(11), [this] {
@@ -142,7 +142,7 @@ class Can final : public RegisterBlock, public Freezable {
       update();
     });
   }
-  /// Mailbox with the lowest identifier among the pending ones.
+  /// Pending mailbox with the lowest identifier.
   unsigned next_mailbox() {
     unsigned next = 0;
     std::uint32_t lowest = ~0u;
@@ -167,7 +167,7 @@ class Can final : public RegisterBlock, public Freezable {
     frame.length |= can.rdtr.fmi.with(match->index);
     fifos_[match->fifo].put(frame, can.mcr.rflm.in(word(can.mcr)));
   }
-  // Each missing acknowledgment adds 8, until the controller is error passive (ISO 11898-1).
+  // Each missing acknowledgment adds 8 to the error counter, until the controller is error passive (ISO 11898-1).
   void miss_acknowledgement() {
     constexpr std::uint32_t no_acknowledgement = 3, warning = 96, passive = 128;
     std::uint32_t& errors = word(can.esr);

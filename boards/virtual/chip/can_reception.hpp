@@ -20,8 +20,7 @@ struct CanFrame {
   std::uint32_t low, high;
 };
 
-/// Part of an identifier that a 16-bit filter compares (RM0090, "Filter bank scale configuration - register
-/// organization").
+/// Identifier bits that a 16-bit filter compares (RM0090, "Filter bank scale configuration - register organization").
 struct CanHalfFilter {
   Field exid{"EXID", 0, 3}, ide{"IDE", 3}, rtr{"RTR", 4}, stid{"STID", 5, 11};
   /// Identifier in the format of a 16-bit filter, which has only the three highest bits of EXID.
@@ -33,7 +32,7 @@ struct CanHalfFilter {
 };
 inline constexpr CanHalfFilter can_half_filter;
 
-/// Filter banks of both controllers, in the registers of CAN1: FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
+/// Filter banks of CAN1 and CAN2, in the registers of CAN1: FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
 struct CanFilters {
   static constexpr unsigned banks = 28;
   struct Bank {
@@ -48,7 +47,8 @@ struct CanFilters {
     unsigned fifo;
     unsigned index;  ///< FMI: counts all filters of the FIFO, including inactive ones
   };
-  /// Finds the filter with the highest priority: 32-bit before 16-bit, list before mask, lower number first.
+  /// Finds the matching filter with the highest priority: 32-bit before 16-bit, list before mask, low before high
+  /// number.
   std::optional<Match> match(std::uint32_t identifier, unsigned controller) const {
     if (initialising) return {};
     const unsigned begin = controller == 1 ? 0 : first_of_second_controller;
@@ -117,7 +117,7 @@ class CanFifo {
     frames_.push_back(frame);
     if (frames_.size() == depth) flags_ |= can.rfr.full.mask();
   }
-  /// RIxR, RDTxR, RDLxR or RDHxR.
+  /// Returns RIxR, RDTxR, RDLxR or RDHxR.
   std::uint32_t word(unsigned number) const {
     if (frames_.empty()) return 0;
     const CanFrame& frame = frames_.front();

@@ -65,7 +65,7 @@ void Chip::load_elf(const std::filesystem::path& path) {
 }
 
 void Chip::reset(ResetCause cause) {
-  // A running processor must stop before the reset.
+  // The reset waits until the running processor has stopped.
   if (parts_->execution.running()) {
     parts_->machine.request_reset(cause);
     parts_->processor.end_slice();
@@ -123,7 +123,7 @@ bool Chip::flip_bit(std::uint32_t address, unsigned bit) {
   std::uint8_t* place = parts_->machine.memory.at(address, 1);
   if (place == nullptr) return false;
   *place = static_cast<std::uint8_t>(*place ^ 1u << (bit & 7));
-  // Discards translated blocks, including a block that overlaps the byte.
+  // Discards the translated blocks that contain the byte.
   parts_->processor.forget_code(address & ~3u, 4);
   return true;
 }
@@ -207,7 +207,7 @@ std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->ma
 std::span<std::uint8_t> Chip::flash() { return {parts_->machine.memory.flash(), flash_bytes}; }
 
 std::uint64_t Chip::state_hash() const {
-  // FNV-1a over the memories and the core registers.
+  // FNV-1a hash of the memories and the core registers.
   std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
   const auto add = [&](const std::uint8_t* data, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ data[i]) * 0x100'0000'01B3;

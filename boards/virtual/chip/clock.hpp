@@ -1,4 +1,4 @@
-// Exact conversion between the cycles of a clock and ticks of board time.
+// Exact conversion between clock cycles and ticks of board time.
 #pragma once
 
 #include <chip/interfaces.hpp>
@@ -10,10 +10,10 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 
-/// A clock period lasts numerator / denominator ticks. Most clocks of the chip divide ticks_per_s, so the denominator
-/// is 1. The other clocks stay exact as fractions.
+/// A clock whose period is numerator / denominator ticks. The denominator is 1 if the frequency divides ticks_per_s, as
+/// for most clocks of the chip.
 struct Clock {
-  /// The clock of a crystal with a frequency deviation has a large numerator and denominator.
+  /// A crystal with a frequency deviation leads to a large numerator and denominator.
   __extension__ using Wide = unsigned __int128;
 
   std::uint64_t numerator = 0;  ///< 0: the clock is stopped
@@ -38,7 +38,7 @@ struct Clock {
     if (denominator == 1) return time / numerator;
     return static_cast<std::uint64_t>(Wide{time} * denominator / numerator);
   }
-  /// Number of whole periods of `divider` cycles within `time`.
+  /// Number of whole `divider`-cycle periods within `time`.
   std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
 };
 

@@ -16,7 +16,7 @@ struct DacRegisters {
   struct : Register {
     Field swtrig{"SWTRIG#", 0, 1, Access::w, {2, 1, 1}};
   } swtrigr{{"SWTRIGR", 0x04}};
-  // Value of a channel in three formats, for one channel and for both.
+  // Holding registers in three formats, for each channel and for both channels.
   struct : Register {
     Field dhr{"DACC#DHR", 0, 12};
   } dhr12r{{"DHR12R#", 0x08, 0, {2, 12, 1}}};
@@ -84,8 +84,8 @@ class Dac final : public RegisterBlock {
 
  private:
   static constexpr unsigned bits = 12;  ///< resolution; shorter formats have the upper bits
-  /// Calls `use(field, channel, index in the field)` for each channel of a holding register. Returns false for other
-  /// registers.
+  /// Calls `use(field, channel, index in the field)` for each channel of a holding register. Returns false if the
+  /// register is not a holding register.
   template <class Use>
   static bool at_form(std::uint32_t offset, Use use) {
     const auto of_one = [&](const auto& form) {

@@ -11,7 +11,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// True for registers of peripherals and of the core (RM0090, memory map).
+/// True for peripheral registers and core registers (RM0090, memory map).
 bool are_registers(std::uint32_t address, std::size_t bytes) {
   struct Window {
     std::uint32_t base, bytes;
@@ -22,7 +22,7 @@ bool are_registers(std::uint32_t address, std::size_t bytes) {
   return false;
 }
 
-/// Size of the widest register access at `address` with at most `bytes` bytes.
+/// Size of the widest aligned register access at `address`, at most `bytes` bytes.
 unsigned access_size(std::uint32_t address, std::size_t bytes) {
   if (address % 4 == 0 && bytes >= 4) return 4;
   return address % 2 == 0 && bytes >= 2 ? 2 : 1;

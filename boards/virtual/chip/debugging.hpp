@@ -12,9 +12,9 @@ struct Debugging {
   bool attached = false;
   bool steps = false;
   std::set<std::uint32_t> breakpoints;
-  /// Address of resumption, at which the stop has already been reported.
+  /// Address at which the program resumes; the stop at this address has already been reported.
   std::optional<std::uint32_t> resumed_at;
-  /// Address of a watch point that the current instruction has accessed.
+  /// Address of the watch point that the current instruction has accessed.
   std::optional<std::uint32_t> touched;
   DebugStop last_stop;
 

@@ -1,4 +1,5 @@
-// Fault at a division by zero if CCR.DIV_0_TRP is set (ARMv7-M, A7.7.127 and B3.2.8). Unicorn always returns 0.
+// Raises a fault at a division by zero if CCR.DIV_0_TRP is set (ARMv7-M, A7.7.127 and B3.2.8). Unicorn always returns
+// 0.
 #include <utility>
 
 #include "processor.hpp"

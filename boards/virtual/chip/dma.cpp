@@ -6,11 +6,11 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Flags of all streams are stored at the bit positions of stream 0 in LISR.
+/// The flags of every stream are stored at the LISR bit positions of stream 0.
 constexpr std::uint32_t transfer_error = dma.lisr.teif.mask(), half = dma.lisr.htif.mask(),
                         complete = dma.lisr.tcif.mask();
 constexpr std::uint32_t all_flags = dma.lisr.feif.mask() | dma.lisr.dmeif.mask() | transfer_error | half | complete;
-/// First flag bit of each of the four streams.
+/// First flag bit of each stream in LISR or HISR.
 constexpr unsigned flag_shift[4] = {dma.lisr.feif.position(0), dma.lisr.feif.position(1),
                                     dma.lisr.feif_upper.position(0), dma.lisr.feif_upper.position(1)};
 constexpr std::uint32_t first_stream = dma.cr, stream_bytes = dma.cr.stride;
@@ -31,7 +31,7 @@ constexpr Request timer_requests[] = {
 };
 constexpr Request adc_requests[] = {{0, 0, 2, 0, 0}, {0, 0, 2, 4, 0}, {1, 0, 2, 2, 1},
                                     {1, 0, 2, 3, 1}, {2, 0, 2, 0, 2}, {2, 0, 2, 1, 2}};
-// Source 0 receives, source 1 transmits.
+// `source` is 0 for reception and 1 for transmission.
 constexpr Request usart_requests[] = {
     {1, 0, 2, 2, 4}, {1, 0, 2, 5, 4}, {1, 1, 2, 7, 4}, {2, 0, 1, 5, 4}, {2, 1, 1, 6, 4}, {3, 0, 1, 1, 4},
     {3, 1, 1, 3, 4}, {3, 1, 1, 4, 7}, {4, 0, 1, 2, 4}, {4, 1, 1, 4, 4}, {5, 0, 1, 0, 4}, {5, 1, 1, 7, 4},
@@ -82,7 +82,8 @@ bool DmaController::load(std::uint32_t address, unsigned size, std::uint32_t& va
     return true;
   }
   const std::uint8_t* place = machine_.memory.at(address, size);
-  // The CCM is on the processor's data bus only (RM0090, "System architecture").
+  // DMA cannot access the CCM, which is connected to the data bus of the processor only (RM0090, "System
+  // architecture").
   if (place == nullptr || (address >= ccm_base && address < system_base)) return false;
   std::memcpy(&value, place, size);
   return true;

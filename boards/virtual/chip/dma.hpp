@@ -15,7 +15,7 @@ class DmaController final : public RegisterBlock {
  public:
   DmaController(Machine& machine, Bus& bus, unsigned number);
   void reset() override;
-  /// Handles a request on a channel of a stream. Returns false if the stream does not accept it.
+  /// Handles a request on a channel of a stream. Returns false if the stream does not accept the request.
   bool request(unsigned stream, unsigned channel);
   /// True if the stream is enabled for the channel and has an interrupt enabled.
   bool interrupts_for(unsigned index, unsigned channel) const {

@@ -5,7 +5,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Flags of four streams: two in the lower half of the word, two in the upper half.
+/// Flags of four streams: two streams in the lower half-word, two streams in the upper half-word.
 template <unsigned lowest>
 struct DmaFlags : Register {
   Field feif{"FEIF#", 0, 1, Access::r, {2, 6, lowest}}, feif_upper{"FEIF#", 16, 1, Access::r, {2, 6, lowest + 2}};

@@ -1,4 +1,4 @@
-// Reader for the parts of an ELF file that are needed for programming (ELF for the ARM architecture, AAELF32).
+// Reads the load segments of an ELF file (ELF for the ARM architecture, AAELF32).
 #include <elf.h>
 
 #include <algorithm>
@@ -42,11 +42,11 @@ void check_header(const Elf32_Ehdr& header, const std::string& name) {
     throw ChipError(name + " has no load segments. Link it with a linker script for the STM32F405.");
 }
 
-/// Load segments of the firmware in the file.
+/// Load segments of an ELF file.
 struct Image {
   std::span<const char> file;
   std::vector<Elf32_Phdr> segments;
-  /// Returns the byte at `address`. Later segments override earlier ones; without a segment the flash is erased.
+  /// Returns the byte at `address`, from the last segment that contains the address, or 0xFF (erased flash).
   std::uint8_t byte(std::uint32_t address) const {
     std::uint8_t value = 0xFF;
     for (const auto& segment : segments)
@@ -124,7 +124,7 @@ std::string program_elf(std::span<const char> file, const std::string& name, Mem
   if (segments.empty()) throw ChipError(name + " has nothing to load. Link it with a linker script for the STM32F405.");
   const std::string oddity = check_vectors({file, segments}, name, memory);
 
-  // Only a complete file may replace the flash contents.
+  // The flash contents are replaced only after all checks of the file have passed.
   for (const auto& segment : segments) erase_sectors_of(segment, memory);
   for (const auto& segment : segments)
     std::memcpy(memory.at(segment.p_paddr, segment.p_filesz), file.data() + segment.p_offset, segment.p_filesz);

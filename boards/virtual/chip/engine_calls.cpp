@@ -33,7 +33,7 @@ namespace {
 
 thread_local EngineCalls* in_use = nullptr;
 
-/// Functions of the engine; null if this version does not have the function.
+/// Functions of the engine; null for functions that the installed version does not have.
 struct Engine {
   using PageFunction = void(void* processor, std::uint32_t address);
   using Function = void(void* processor);
@@ -64,7 +64,7 @@ const Engine& engine() {
   return functions;
 }
 
-/// Instruction that the engine translates on this thread.
+/// Instruction that the engine is translating on this thread.
 struct Translated {
   std::uint32_t block = 0, address = 0;
   std::uint16_t first = 0, second = 0;
@@ -81,7 +81,7 @@ struct Translated {
 };
 thread_local Translated translated;
 
-/// Role from the translation regime index of an M-profile processor.
+/// Converts the translation regime index of an M-profile processor to a role.
 EngineCalls::Role role_of(unsigned index) {
   constexpr unsigned privileged = 1, negative_priority = 2;
   return {(index & privileged) != 0, (index & negative_priority) != 0};
@@ -94,7 +94,7 @@ int aligned_if_needed(int operation) {
                                                                                            : operation;
 }
 
-/// The engine would split a misaligned device access into two accesses without a report.
+/// Without this check the engine would silently split a misaligned device access into two accesses.
 void check_alignment(std::uint32_t address, unsigned bytes, EngineCalls::Access access, std::uint32_t operation,
                      std::uintptr_t return_address) {
   constexpr std::uint32_t index_mask = 0xF;
@@ -120,7 +120,7 @@ void EngineCalls::forget_pages() {
 
 using inkwell::virtual_board::EngineCalls;
 
-// The attributes of an access are a structure that fits one register.
+// `attributes` is a structure of the engine that fits in one register.
 void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::uint64_t physical,
                                  std::uint64_t attributes, int rights, int index, std::uint32_t bytes) {
   using namespace inkwell::virtual_board;
@@ -129,7 +129,7 @@ void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::ui
   in_use->remember_processor(processor);
   const std::uint32_t page = address & ~(page_bytes - 1);
   const int allowed = in_use->rights_in_page(page, page_bytes, role_of(index));
-  // The engine does not cache an entry that is smaller than a page, so it checks each access.
+  // The engine does not cache an entry that is smaller than a page, so the engine checks each access to this page.
   if (allowed < 0)
     return engine().set_page(processor, address, physical, attributes, rights, index, not_the_whole_page);
   engine().set_page(processor, address, physical, attributes, rights & allowed, index, bytes);
@@ -159,9 +159,9 @@ void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int
 
 std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
   using namespace inkwell::virtual_board;
-  // For a fault inside a block the engine reports the program counter of the first instruction. Before such an
-  // instruction this function therefore returns a branch to itself, which ends the block. A new block then starts with
-  // the instruction.
+  // For a fetch fault inside a block the engine reports the program counter of the first instruction. For an
+  // instruction that would fault inside a block, this function therefore returns a self-branch, which ends the block.
+  // The next block then starts with the faulting instruction.
   constexpr std::uint32_t branch_to_itself = 0xE7FE;
   const bool may_end = in_use != nullptr && address != translated.block && translated.begins_at(address);
   if (may_end && !in_use->may_fetch(address)) return branch_to_itself;
@@ -181,7 +181,7 @@ void* tb_gen_code_arm(void* processor, std::uint32_t address, std::uint32_t segm
   return engine().translate(processor, address, segment, flags, block_flags);
 }
 
-// The engine has no interrupt controller and always answers no.
+// The engine has no interrupt controller, so its original function always returns false.
 bool armv7m_nvic_neg_prio_requested_arm(void*, bool) {
   using namespace inkwell::virtual_board;
   return in_use != nullptr && in_use->runs_above_faults();

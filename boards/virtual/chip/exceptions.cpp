@@ -1,4 +1,4 @@
-// Exception entry and return of the processor, and its cycle counters.
+// Exception entry and exception return of the processor, and the cycle counters of exceptions.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -9,15 +9,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-// The extended frame has S0 to S15, FPSCR and an unused word after the basic frame.
+// The extended frame contains the basic frame, then S0 to S15, FPSCR and an unused word.
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
 constexpr unsigned basic_words = 8, float_words = 17;
 constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
-// EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 the process stack.
+// EXC_RETURN (ARMv7-M, table B1-8): bit 4 selects the basic frame, bit 3 thread mode, bit 2 the process stack.
 constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
                         exc_return_process_stack = 1u << 2;
 
-// Lists for batched access, because each call of the engine is slow.
+// Register lists for batched access, because each call of the engine is slow.
 int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,   UC_ARM_REG_R2, UC_ARM_REG_R3,     UC_ARM_REG_R12,
                          UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
 int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
@@ -88,8 +88,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
                                xpsr.padded.with(aligned) | current_exception_;
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
-  // Floats are stacked immediately, even with lazy stacking in FPCCR. Firmware sees a difference only in its own stack.
-  // If stacking is refused, the stacking waits for the next FPU instruction.
+  // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Firmware can detect this only in its
+  // stack memory. Refused stacking is repeated at the next FPU instruction.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
   if (stacks) {
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
@@ -125,20 +125,20 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
 void Processor::resume_if_then_block(std::uint32_t status) {
   resumed_bytes_ = 0;
   if ((status & xpsr.if_then()) == 0) return;
-  // Lower half of ITSTATE: the lowest set bit marks the end of the block (ARMv7-M, B1.4.2).
+  // Lower half of ITSTATE: the lowest set bit marks the end of the if-then block (ARMv7-M, B1.4.2).
   const std::uint32_t state = xpsr.if_then_state(status);
   resumed_at_ = program_counter_ & ~1u;
   for (int left = 4 - std::countr_zero(state); left > 0; --left)
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
 }
 
-// Fast check for the usual case, because every exception needs this check.
+// Fast check, because every exception runs it.
 bool Processor::takes_any_frame(std::uint32_t address, std::uint32_t bytes) const {
   return !machine_.memory_protection.is_on(false) && core_coupled_on_ &&
          machine_.memory.ram_at(address, bytes) != nullptr;
 }
 
-// A frame starts at a word address, and access rights change only at multiples of 32 bytes.
+// A frame starts at a word address, and access rights change only at addresses that are multiples of 32.
 std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsigned words, Access access,
                                                    Role as) const {
   constexpr std::uint32_t granule_bytes = 32;
@@ -149,8 +149,8 @@ std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsign
   return {};
 }
 
-// Unicorn also applies the write restrictions of unprivileged threads to writes by this program. Handlers may write
-// CONTROL.
+// Unicorn applies the write restrictions of unprivileged threads also to register writes by the virtual board. In
+// handler mode, writes to CONTROL are allowed.
 void Processor::lift_privilege() {
   const std::uint32_t control = read(UC_ARM_REG_CONTROL);
   write(UC_ARM_REG_IPSR, exception_hard_fault);
@@ -237,13 +237,13 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
   write(UC_ARM_REG_XPSR_NZCVQG, (status & (xpsr.flags() | xpsr.if_then())) | xpsr.thumb.mask() | exception);
-  // The flags are written last, because this write rebuilds Unicorn's internal copies of the flags.
+  // APSR is written last, because this write makes Unicorn update its internal copies of the flags.
   write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());
   program_counter_ = words[6];
   resume_if_then_block(status);
   timing_.redirect();
   if (extended) {
-    // A context that was never stacked needs no unstacking.
+    // An FPU context that was never stacked needs no unstacking.
     if (!timing_.lazy_stacking_due()) wait(timing_.costs()[Cost::float_unstacking]);
     timing_.stack_lazily(false);
   }

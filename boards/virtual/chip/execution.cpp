@@ -95,7 +95,8 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // The processor is stopped here, so the circuit advances after half a period. This avoids an extra stop later.
+    // The processor is stopped here, so the circuit already advances after half a period. This avoids a later stop of
+    // the processor.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;
@@ -125,7 +126,7 @@ Stop Execution::run_slices(Ticks when) {
     }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
     exception_may_be_due_ |= processor_.take_masks_opened();
-    // During a debugger step interrupts are held off.
+    // During a debugger step, interrupts stay pending.
     if (!machine_.debugging.steps) {
       exception_may_be_due_ |= machine_.nvic.take_changed();
       if (std::exchange(exception_may_be_due_, false)) take_exception();
@@ -157,13 +158,13 @@ void Execution::take_exception() {
 
 bool Execution::wakes() const {
   if (state_ == State::locked_up || state_ == State::exited) return false;
-  // PRIMASK does not prevent wake-up by an interrupt (ARMv7-M, "Wait For Interrupt").
+  // An interrupt wakes the processor even if PRIMASK is set (ARMv7-M, "Wait For Interrupt").
   Masks masks = processor_.masks();
   masks.primask = false;
   return machine_.nvic.next(masks) != exception_none;
 }
 
-// Only the core stops. The cycle counter continues while it has a clock and no probe halts the core.
+// Only the core stops. The cycle counter continues while its clock runs and no debug probe halts the core.
 void Execution::stand_until(Ticks when, Ticks goes_on_at) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
@@ -216,8 +217,8 @@ void Execution::enter(unsigned exception, bool stacks) {
   if (entry != Processor::Entry::started) enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
 }
 
-// The context that could not be stacked is lost. The resulting fault starts at the moved stack pointer (ARMv7-M,
-// B1.5.9). A less urgent exception waits for the end of the fault.
+// The context that could not be stacked is lost. The handler of the stacking fault starts at the decremented stack
+// pointer (ARMv7-M, B1.5.9). A less urgent exception stays pending until the fault handler returns.
 void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   const std::string what =
       std::string(is_protected ? "the memory protection unit refuses the stack" : "the stack is not in RAM") +
@@ -236,7 +237,7 @@ void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   enter(exception_hard_fault, false);
 }
 
-// A fault inside the handler of another fault would hide the original cause.
+// A fault inside a fault handler is not recorded, because it would hide the original cause.
 void Execution::note_fault(const std::string& what) {
   for (const unsigned handler :
        {exception_hard_fault, exception_memory_fault, exception_bus_fault, exception_usage_fault})
@@ -273,7 +274,7 @@ void Execution::handle_breakpoint() {
       stopped_by_debugger_ = true;
       return;
     }
-    // Without a debugger a breakpoint is a fault (ARMv7-M, C1.4.1).
+    // Without a debugger, a BKPT instruction raises HardFault (ARMv7-M, C1.4.1).
     system_control_.record_fault(0, scb.hfsr.debugevt.mask());
     return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
   }
@@ -304,7 +305,7 @@ void Execution::order_boot_loader() {
   processor_.write(UC_ARM_REG_R3, bytes / 4);
 }
 
-// The unreadable frame stays on the stack, and the resulting fault reuses it (ARMv7-M, B1.5.8 and B1.5.9).
+// The unreadable frame remains on the stack, and the fault handler reuses this frame (ARMv7-M, B1.5.8 and B1.5.9).
 void Execution::handle_lost_frame(bool is_protected) {
   const std::string what = is_protected ? "the memory protection unit refuses the stack at the end of an exception"
                                         : "the stack is not in RAM at the end of an exception";
@@ -322,8 +323,8 @@ void Execution::handle_lost_frame(bool is_protected) {
   if (has_handler(fault)) processor_.chain_exception(fault, system_control_.vector_table());
 }
 
-// Handles failed lazy stacking in the handler that needs it. If the fault may not preempt this handler, the fault stays
-// pending and the float context is lost (ARMv7-M, B1.5.7).
+// Handles failed lazy stacking in the handler whose FPU instruction triggered it. If the fault cannot preempt this
+// handler, the fault stays pending and the FPU context is lost (ARMv7-M, B1.5.7).
 void Execution::handle_lost_float_context(bool is_protected) {
   const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
   const std::uint32_t bits = is_protected ? scb.cfsr.mlsperr.mask() : scb.cfsr.lsperr.mask();

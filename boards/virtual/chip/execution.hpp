@@ -1,4 +1,4 @@
-// Execution of the chip: processor slices, exceptions, faults, sleep, resets.
+// Execution of the firmware: processor slices, exceptions, faults, sleep, resets.
 #pragma once
 
 #include <chip/chip.hpp>

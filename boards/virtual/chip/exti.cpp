@@ -7,7 +7,7 @@ namespace inkwell::virtual_board {
 namespace {
 constexpr unsigned lines = exti_map.imr.mr.count;
 
-/// Vector table position of each line (RM0090, table "Vector table").
+/// Vector table position of each EXTI line (RM0090, table "Vector table").
 constexpr unsigned position_of(unsigned line) {
   constexpr unsigned positions[lines] = {6,  7,  8,  9,  10, 23, 23, 23, 23, 23, 40, 40,
                                          40, 40, 40, 40, 1,  41, 42, 62, 76, 2,  3};

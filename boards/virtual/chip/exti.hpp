@@ -1,4 +1,4 @@
-// External interrupts and the selection of their ports in SYSCFG (RM0090, "External interrupt/event controller").
+// External interrupts, and SYSCFG, which selects their ports (RM0090, "External interrupt/event controller").
 #pragma once
 
 #include <array>

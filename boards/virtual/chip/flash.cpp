@@ -14,8 +14,8 @@ constexpr std::uint32_t errors =
 constexpr unsigned position = 4;
 constexpr Ticks millisecond = ticks_per_s / 1000, microsecond = ticks_per_s / 1'000'000;
 
-/// Typical times for the parallelism x8, x16, x32, x64 (data sheet, table "Flash memory programming"). The maximum
-/// times are twice as long, except for programming a word.
+/// Typical erase times for the parallelism x8, x16, x32, x64 (data sheet, table "Flash memory programming"). The
+/// maximum erase times are twice the typical times.
 using Times = std::array<Ticks, 4>;
 constexpr Times small_sector_ms{400, 300, 250, 250}, middle_sector_ms{1200, 700, 550, 550},
     large_sector_ms{2000, 1300, 1000, 1000}, mass_ms{16'000, 11'000, 8000, 8000};
@@ -54,7 +54,7 @@ void FlashController::reset() {
 }
 
 void FlashController::check_wait_states() {
-  // Frequency per wait state, depending on the supply (RM0090, table "Number of wait states").
+  // Frequency step per wait state at the present supply voltage (RM0090, table "Number of wait states").
   const double supply_V = machine_.supply_V;
   const std::uint32_t step_Hz = supply_V >= 2.7   ? 30'000'000
                                 : supply_V >= 2.4 ? 24'000'000
@@ -126,8 +126,8 @@ void FlashController::hold_up() {
   }
 }
 
-// In an interrupted word, each bit to be cleared may be 0 or 1. In an interrupted sector, each word may be unchanged,
-// erased, or random.
+// After interrupted programming, each bit to be cleared may be 0 or 1. After an interrupted erase, each word of the
+// sector may be unchanged, erased, or random.
 void FlashController::tear() {
   const auto& before = operation_->before;
   std::uint8_t* place = machine_.memory.flash() + operation_->offset;

@@ -48,8 +48,8 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void step(Ticks now) override;
   void before_clock_change() override {}
   void after_clock_change() override { check_wait_states(); }
-  /// Handles a processor store to the flash. Returns the resulting contents, or nothing for addresses outside of the
-  /// flash (bus fault).
+  /// Handles a store to the flash by the processor. Returns the resulting contents, or nothing if the address is
+  /// outside of the flash (bus fault).
   std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size);
   /// Typical falling and rising thresholds of the brown-out reset (data sheet).
   struct Threshold {
@@ -57,12 +57,12 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   };
   Threshold brown_out() const;
   bool busy() const { return flash_map.sr.bsy.in(status_); }
-  /// Makes the core wait for the end of the operation.
+  /// Makes the core wait for the end of the flash operation.
   void hold_up();
-  /// Number of erases and programmed words since construction.
+  /// Number of erase and program operations since construction.
   std::uint64_t operations() const { return operations_; }
-  /// Interrupts the power during the operation with this number; the first is 1, and 0 disables it. Power returns
-  /// immediately.
+  /// Interrupts the power during the flash operation with this number, counted from 1; 0 disables the interruption.
+  /// Power returns immediately.
   void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
   /// Call this when the supply voltage or the clock has changed.
   void check_wait_states();
@@ -78,14 +78,14 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void write_option_key(std::uint32_t key);
   void write_options(std::uint32_t value);
   void set_accelerator(std::uint32_t access);
-  /// Operation in progress, with the previous contents.
+  /// Flash operation in progress, with the previous contents.
   struct Operation {
     bool erases;
     std::uint32_t offset;
     std::vector<std::uint8_t> before;
   };
   void begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes);
-  /// Leaves partial results of the operation that a reset interrupted.
+  /// Writes the partial result of the flash operation that a reset interrupted.
   void tear();
   void set_busy(bool busy);
   void update_interrupt();

@@ -1,4 +1,4 @@
-// FPU instructions that fault: while the FPU is off, and while pending lazy stacking is refused.
+// Hooks for FPU instructions, which fault while the FPU is off or while pending lazy stacking is refused.
 #include "processor.hpp"
 
 namespace inkwell::virtual_board {
@@ -25,7 +25,7 @@ bool Processor::has_unguarded_float(std::uint32_t address, std::uint32_t bytes) 
   return unguarded;
 }
 
-// Unicorn checks for instruction hooks only during translation.
+// Unicorn inserts instruction hooks only during translation.
 void Processor::guard_float_instructions() {
   for_each_float_instruction(machine_.memory, guard_address_, guard_bytes_, [&](std::uint32_t at) {
     if (!float_guards_.insert(at).second) return;

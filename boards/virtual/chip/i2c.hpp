@@ -1,5 +1,6 @@
 // I2C1 to I2C3 on a bus with two pull-up resistors and no other device (RM0090, "Inter-integrated circuit interface").
-// Start conditions work, and addresses are sent but not acknowledged. The chip is never addressed as a slave.
+// Start conditions work. The controller sends addresses, but no device acknowledges them. The chip is never addressed
+// as a slave.
 #pragma once
 
 #include <utility>

@@ -1,6 +1,6 @@
 // Digital filter of a timer input (RM0090, TIMx_CCMR1: ICxF).
 //
-// The filter computes the time at which a stable level passes, so it needs no steps.
+// The filter computes the time at which a stable level passes, so no time steps are needed.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct InputFilterSetting {
   std::uint32_t samples = 1;
   bool operator==(const InputFilterSetting&) const = default;
 
-  /// Setting for the ICxF code and CR1.CKD. With code 0 each sample passes.
+  /// Filter setting for the ICxF code and CR1.CKD. With code 0 each sample passes.
   static constexpr InputFilterSetting of(unsigned code, unsigned clock_division) {
     constexpr InputFilterSetting by_code[] = {{1, 1}, {1, 2}, {1, 4},  {1, 8},  {2, 6},  {2, 8},  {4, 6},  {4, 8},
                                               {8, 6}, {8, 8}, {16, 5}, {16, 6}, {16, 8}, {32, 5}, {32, 6}, {32, 8}};
     InputFilterSetting setting = by_code[code & 15];
-    // Codes 1 to 3 use the clock of the timer, the others tDTS.
+    // Codes 1 to 3 sample with the timer clock, the other codes with tDTS.
     if (code == 0 || code > 3) setting.divider <<= clock_division;
     return setting;
   }
@@ -47,7 +47,7 @@ class InputFilter {
       passes_at_ = never;
       return;
     }
-    // If no sample saw the opposite level, the sequence of samples continues.
+    // If the opposite level was too short to be sampled, the sequence of samples continues.
     if (sample_at(when) != left_at_sample_) first_sample_ = sample_at(when);
     left_at_sample_ = never;
     passes_at_ = (first_sample_ + samples_ - 1) * period_;
@@ -72,7 +72,7 @@ class InputFilter {
   }
 
  private:
-  /// Number of the first sample at or after `when`.
+  /// Index of the first sample at or after `when`.
   std::uint64_t sample_at(Ticks when) const { return (when + period_ - 1) / period_; }
 
   Ticks period_ = 1;

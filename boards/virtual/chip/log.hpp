@@ -16,13 +16,13 @@ class Log final : public UnmodelledLog {
     if (!sink_) sink_ = [](const std::string& line) { std::fprintf(stderr, "chip: %s\n", line.c_str()); };
   }
   void say(const std::string& line) { sink_(line); }
-  /// Logs each line once. During a register access the line includes the code that makes the access.
+  /// Logs each line once. During a register access, the line names the code that accesses the register.
   void say_once(const std::string& line) {
     if (!said_.insert(line).second) return;
     unmodelled_.push_back(accessing_ && code ? line + ", " + code() : line);
     sink_(unmodelled_.back());
   }
-  /// While this object exists, log lines refer to a register access of the processor.
+  /// Marks a register access by the processor for the lifetime of this object.
   class Access {
    public:
     explicit Access(Log& log) : log_(log) { log_.accessing_ = true; }
@@ -33,7 +33,7 @@ class Log final : public UnmodelledLog {
    private:
     Log& log_;
   };
-  /// Description of the running code.
+  /// Returns a description of the running code.
   std::function<std::string()> code;
   void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) override {
     char text[64];
@@ -41,7 +41,7 @@ class Log final : public UnmodelledLog {
       std::snprintf(text, sizeof text, " + 0x%03X is not modelled: write of 0x%08X ignored", offset, value);
     else
       std::snprintf(text, sizeof text, " + 0x%03X is not modelled: reads 0", offset);
-    // Lines are unique per register, so the written value is not part of the key.
+    // Each register is logged once per direction, so the key excludes the written value.
     const std::string place = peripheral + (write ? " w " : " r ") + std::to_string(offset);
     if (!places_.insert(place).second) return;
     say_once(peripheral + text);

@@ -1,4 +1,4 @@
-// Shared state of the parts of the chip.
+// State that all parts of the chip share.
 #pragma once
 
 #include <array>
@@ -38,14 +38,14 @@ struct ClockTree {
   }
 };
 
-/// Space that an exception has reserved for the FPU registers, with the state of the interrupted code.
+/// Stack space that an exception entry has reserved for the FPU registers, and the state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
   int priority;  ///< execution priority
   bool privileged, in_thread;
 };
 
-/// A part that counts the cycles of a clock that firmware can change.
+/// Part of the chip that counts clock cycles; firmware can change the clock.
 class ClockUser {
  public:
   virtual ~ClockUser() = default;
@@ -107,12 +107,12 @@ struct Machine {
     last_advance = now;
     circuit.advance(now);
   }
-  /// Maximum delay of DMA writes to memory in fast mode without interrupts. This delay reduces the number of processor
-  /// stops.
+  /// Maximum delay of DMA writes to memory in fast mode without DMA interrupts. This delay reduces the number of
+  /// processor stops.
   Ticks transfer_lag() const { return options.mode == Mode::exact ? 0 : 10 * (ticks_per_s / 1'000'000); }
 };
 
-/// Replaces the bytes of a register that an access of `size` bytes at `offset` covers.
+/// Returns `old` with the bytes replaced that an access of `size` bytes at `offset` writes.
 constexpr std::uint32_t merge(std::uint32_t old, std::uint32_t value, std::uint32_t offset, unsigned size) {
   if (size == 4) return value;
   const unsigned shift = 8 * (offset & 3);

@@ -28,7 +28,7 @@ struct MemoryProtectionRegisters {
   } rasr{{"MPU_RASR", 0x10}};
 };
 inline constexpr MemoryProtectionRegisters mpu;
-/// RBAR and RASR have three aliases, so that a block of stores can set four regions.
+/// RBAR and RASR have three aliases, so that one STM instruction can set four regions.
 inline constexpr std::uint32_t mpu_base = 0xE000'ED90, mpu_bytes = 0x2C;
 
 class MemoryProtection {
@@ -60,8 +60,8 @@ class MemoryProtection {
       attributes_[region_] = value & writable(mpu.rasr);
     }
   }
-  /// True if all enabled regions have defined behavior: base aligned to the size, at least 32 bytes, no subregion
-  /// disabled below 256 bytes. AP and TEX, C, B must not have reserved values.
+  /// True if all enabled regions have defined behavior: the base is aligned to the size, the size is at least 32 bytes,
+  /// and regions below 256 bytes have no disabled subregion. AP and TEX, C, B must not have reserved values.
   bool is_defined() const {
     for (unsigned i = 0; i < regions; ++i) {
       const std::uint32_t attributes = attributes_[i];
@@ -77,7 +77,7 @@ class MemoryProtection {
     }
     return true;
   }
-  /// True if accesses are checked. `above_faults` means HardFault, NMI, or FAULTMASK set.
+  /// True if the unit checks accesses. `above_faults` is true in HardFault, in NMI, and while FAULTMASK is set.
   bool is_on(bool above_faults) const {
     return mpu.ctrl.enable.in(control_) && (!above_faults || mpu.ctrl.hfnmiena.in(control_));
   }
@@ -85,7 +85,7 @@ class MemoryProtection {
     if (const auto* attributes = region_at(address)) return region_allows(*attributes, write, fetch, privileged);
     return privileged && mpu.ctrl.privdefena.in(control_);
   }
-  /// True if the deciding region makes the address Device or Strongly-ordered memory; nothing if no region decides
+  /// True if the region of the address is Device or Strongly-ordered memory; nothing if no region contains the address
   /// (PM0214, table "TEX, C, B, and S encoding").
   std::optional<bool> makes_device(std::uint32_t address) const {
     const auto* attributes = region_at(address);
@@ -110,7 +110,7 @@ class MemoryProtection {
   static constexpr unsigned regions = 8, subregions = 8, reserved_rights = 4;
   static constexpr std::uint64_t smallest = 32, smallest_with_subregions = 256;
   std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
-  /// Attributes of the covering region with the highest number, which has priority.
+  /// Attributes of the highest-numbered region that contains the address. This region has priority.
   const std::uint32_t* region_at(std::uint32_t address) const {
     for (unsigned i = regions; i-- > 0;)
       if (covers(i, address)) return &attributes_[i];

@@ -13,7 +13,8 @@ void Nvic::reset() {
   level_.fill(0);
   group_ = 0;
   enabled_ = {};
-  // These exceptions have no enable bit. The enable bits of the three configurable faults are in SHCSR.
+  // NMI, HardFault, SVCall, PendSV and SysTick have no enable bit. The enable bits of the three configurable faults are
+  // in SHCSR.
   for (const unsigned always :
        {exception_nmi, exception_hard_fault, exception_svcall, exception_pendsv, exception_systick})
     assign(enabled_, always, true);
@@ -62,7 +63,7 @@ unsigned Nvic::active_count() const {
 int Nvic::group_priority(unsigned exception) const {
   if (exception == exception_hard_fault) return -1;
   if (exception == exception_nmi) return -2;
-  // PRIGROUP g: bits above g are the group priority (ARMv7-M, "Priority grouping").
+  // The priority bits above bit PRIGROUP are the group priority (ARMv7-M, "Priority grouping").
   return priority_[exception] & (0xFF << (group_ + 1) & 0xFF);
 }
 
@@ -87,7 +88,7 @@ unsigned Nvic::most_urgent() const {
       const unsigned exception = half * 64 + static_cast<unsigned>(std::countr_zero(bits));
       const int group = group_priority(exception);
       const int full = group < 0 ? group : priority_[exception];
-      // With equal priorities the lower number wins, which is the order of this loop.
+      // At equal priorities the exception with the lower number wins. This loop visits the exceptions in that order.
       if (group < best_group || (group == best_group && full < best_full)) {
         best = exception;
         best_group = group;
@@ -147,7 +148,7 @@ void Nvic::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
       case nvic_registers.ispr: pend(exception); break;
       case nvic_registers.icpr:
         unpend(exception);
-        // An asserted line immediately sets the interrupt pending again.
+        // If the interrupt line is still asserted, the interrupt becomes pending again immediately.
         if (level_[exception - exception_interrupt_0] != 0 && !active(exception)) pend(exception);
         break;
       default: break;

@@ -27,8 +27,8 @@ class Nvic final : public InterruptController {
 
   void reset();
 
-  /// Sets one source of an interrupt line. Several peripherals or flags share a line; `source` (0..31) identifies one
-  /// of them.
+  /// Sets one source of an interrupt line. Several peripherals or flags may share a line; `source` (0..31) identifies
+  /// the peripheral or flag.
   void set_source(unsigned position, unsigned source, bool asserted);
   void set_level(unsigned position, bool asserted) override { set_source(position, outside_source, asserted); }
 
@@ -36,13 +36,14 @@ class Nvic final : public InterruptController {
     non_maskable_ = asserted;
     if (asserted) pend(exception_nmi);
   }
-  /// Suppresses an interrupt: it no longer reaches the core, until `lost` is false.
+  /// If `lost` is true, the exception does not reach the core until a call with false.
   void lose(unsigned exception, bool lost) {
     assign(lost_, exception, lost);
     changed_ = true;
   }
 
-  /// Delays an exception: each time it becomes pending, `on_held` is called, and the exception waits for let_go().
+  /// Delays an exception while `late` is true: when the exception becomes pending, it calls `on_held` and waits for
+  /// let_go().
   void hold_back(unsigned exception, bool late) { assign(late_, exception, late); }
   void let_go(unsigned exception) {
     assign(held_, exception, false);
@@ -78,11 +79,11 @@ class Nvic final : public InterruptController {
 
   /// Group priority of an exception; -1 for HardFault, -2 for NMI.
   int group_priority(unsigned exception) const;
-  /// Priority of the current execution, including the masks.
+  /// Current execution priority, including the masks.
   int execution_priority(const Masks& masks) const;
-  /// Exception to enter now, or exception_none.
+  /// Returns the exception to enter now, or exception_none.
   unsigned next(const Masks& masks) const;
-  /// Most urgent pending and enabled exception regardless of the current execution, or exception_none.
+  /// Most urgent pending and enabled exception, regardless of the execution priority, or exception_none.
   unsigned most_urgent() const;
   /// Makes a pending exception active. A line that stays asserted becomes pending again after the return.
   void enter(unsigned exception);

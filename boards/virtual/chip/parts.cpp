@@ -21,7 +21,7 @@ constexpr ClockGate gate(const EnableRegister& enable, const Field& field, unsig
   return {enable, field.mask(index)};
 }
 
-/// Reset register of an enable register (RM0090, "RCC register map").
+/// Returns the reset register that belongs to an enable register (RM0090, "RCC register map").
 constexpr std::uint32_t reset_register_of(std::uint32_t enable_register) {
   return enable_register - (rcc_map.ahb1enr - rcc_map.ahb1rstr);
 }
@@ -71,7 +71,7 @@ constexpr InterruptPlace i2c_places[3] = {{{0x4000'5400, gate(rcc_map.apb1enr, r
                                           {{0x4000'5C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 2)}, 72}};
 constexpr InterruptPlace can_places[2] = {{{0x4000'6400, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 0)}, 19},
                                           {{0x4000'6800, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 1)}, 63}};
-/// Clocks of peripherals from outside of this library.
+/// Clocks of peripherals that are defined outside of this library.
 constexpr Place outside_places[] = {
     {0x5000'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.otgfsen)},
     {0x5005'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.dcmien)},
@@ -112,10 +112,10 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
     };
   put_peripherals();
 
-  // Electronic signature (RM0090, "Device electronic signature"), option bytes at their factory values.
+  // Electronic signature (RM0090, "Device electronic signature"), and option bytes with their factory values.
   std::uint8_t* system = machine.memory.system();
   std::memcpy(system + 0x7A10, options.unique_id.data(), 12);
-  // Factory calibration in ADC counts at 3.3 V: reference, temperature sensor at 30 C and at 110 C.
+  // Factory calibration in ADC counts at 3.3 V: VREFINT, then the temperature sensor at 30 C and at 110 C.
   const std::uint16_t calibration[] = {internal_reference_calibration, 958, 1207};
   std::memcpy(system + 0x7A2A, calibration, sizeof calibration);
   const std::uint16_t flash_kilobytes = flash_bytes / 1024;
@@ -124,7 +124,7 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
 }
 
 void ChipParts::put_peripherals() {
-  // The clock tree is first, because the other parts count its cycles.
+  // The clock tree is added first, because the other peripherals count its cycles.
   put(0x4002'3800, "RCC", rcc);
   put(0x4002'3C00, "FLASH", flash);
   put(0x4001'3C00, "EXTI", exti);
@@ -137,7 +137,8 @@ void ChipParts::put_peripherals() {
   put(0x4000'2C00, "WWDG", make<WindowWatchdog>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.wwdgen));
   for (unsigned i = 0; i < std::size(timer_places); ++i)
     put(timer_places[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_places[i].clock);
-  // The three converters share a block. Each converter has an enable bit, and one bit resets all converters.
+  // The three converters share a register block. Each converter has a separate enable bit, and one bit resets all
+  // converters.
   bus.add(0x4001'2000, 1024, "ADC", adcs, rcc.enable_register(rcc_map.apb2enr), rcc_map.apb2enr.adcen.masks());
   adcs.clock_by(rcc.enable_register(rcc_map.apb2enr));
   rcc.add_reset(rcc_map.apb2rstr, rcc_map.apb2enr.adcen.mask(), adcs);

@@ -1,11 +1,10 @@
 #pragma once
 
 // To add a peripheral:
-// 1. Write a header like crc.hpp. It contains a map with the register and field names of RM0090, and a
-//    RegisterBlock.
-// 2. Add a line with base address, name and clock to ChipParts::put_peripherals().
-// 3. Add a firmware that uses the peripheral to tests/boards/virtual/chip/firmware and a case to
-//    peripherals_test.cpp.
+// 1. Write a header like crc.hpp, with a RegisterBlock and a map of the registers and fields named in RM0090.
+// 2. Add a line to ChipParts::put_peripherals(), with base address, name and clock.
+// 3. In tests/boards/virtual/chip, add a test firmware that uses the peripheral to firmware/, and add a case to
+// peripherals_test.cpp.
 // 4. Compare the map with the manufacturer's description of the chip: INKWELL_SVD=FILE tools/test
 
 #include <deque>
@@ -31,7 +30,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Register and bit of RCC that enable the clock of a peripheral.
+/// RCC register and bit that enable a peripheral's clock.
 struct ClockGate {
   std::uint32_t enable_register, mask;
 };
@@ -65,9 +64,10 @@ struct ChipParts : ChipState {
 
  private:
   void put(std::uint32_t base, const std::string& name, Peripheral& peripheral);
-  /// Without its clock the peripheral does not respond. A reset bit at the same position resets the peripheral.
+  /// While `clock` is off, the peripheral does not respond. The RCC reset bit at the position of the enable bit resets
+  /// the peripheral.
   void put(std::uint32_t base, const std::string& name, Peripheral& peripheral, ClockGate clock);
-  /// Creates a peripheral to which no other part refers.
+  /// Creates a peripheral that no other part of the chip uses.
   template <class Part, class... Arguments>
   Part& make(Arguments&&... arguments) {
     auto part = std::make_unique<Part>(std::forward<Arguments>(arguments)...);

@@ -57,15 +57,15 @@ class Pins final : public InputPins {
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
   void hold(char port, unsigned pin, PinLevel level) override;
-  /// Inverts the level from the circuit while `inverted` is true.
+  /// While `inverted` is true, inverts the level that the circuit drives.
   void invert(unsigned port, unsigned pin, bool inverted);
-  /// Level at the pin as a meter shows it.
+  /// Level that a meter would show at the pin.
   PinLevel level(unsigned port, unsigned pin) const;
   PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
   /// Called at each level change of a pin; empty by default.
   std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
-  /// Sets a timer output. Called in order of time, several hundred thousand times per second.
+  /// Sets a timer output. Calls are in the order of board time, several hundred thousand per second.
   void timer_output(unsigned timer, unsigned line, PinLevel level) {
     auto& output = outputs_[timer * timer_lines + line];
     if (output.level == level) return;
@@ -73,9 +73,9 @@ class Pins final : public InputPins {
     for (unsigned i = 0; i < output.count; ++i) update(output.pins[i] >> 4, output.pins[i] & 15);
   }
 
-  /// Call this after a change of mode or alternate function.
+  /// Call this when the mode or the alternate function of `pins` has changed.
   void reconnect(unsigned port, std::uint32_t pins);
-  /// Updates the level of a pin and notifies its users.
+  /// Updates the level of a pin and reports it to the circuit, timers, EXTI and on_level.
   void update(unsigned port, unsigned pin, Ticks since = just_now);
 
  private:

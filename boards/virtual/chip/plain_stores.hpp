@@ -9,12 +9,12 @@
 
 namespace inkwell::virtual_board {
 
-/// Unicorn 2.0.1 treats every store to RAM as a possible change of instructions and searches for translated code. This
-/// makes stores tens of times slower than loads. Only pages with executed instructions need the search. This class
-/// therefore marks all other pages in the address cache of the engine as plain.
+/// Unicorn 2.0.1 treats every store to RAM as a possible change of instructions and searches for translated code. The
+/// search makes stores tens of times slower than loads. Only pages with executed instructions need the search. In the
+/// address cache of Unicorn, this class therefore marks all other pages as plain.
 class PlainStores {
  public:
-  /// Marks pages from which instructions will run, so that stores to them are checked.
+  /// Marks pages with instructions, so that the engine checks stores to these pages.
   void code_runs_at(std::uint32_t address, std::uint32_t bytes, EngineCalls& engine) {
     const std::uint32_t end = address + bytes;
     for (std::uint32_t page = address - address % page_bytes; page < end; page += page_bytes) {
@@ -24,7 +24,7 @@ class PlainStores {
       for (std::uint32_t part = 0; part < page_bytes; part += smallest_page_bytes) engine.forget_page(page + part);
     }
   }
-  /// True if the page of `address` is RAM without executed instructions.
+  /// True if `address` is in a RAM page without executed instructions.
   bool plain(std::uint32_t address) const {
     if (address - ccm_base < ccm_bytes) return true;  // CCM is not on the instruction bus
     const std::uint32_t offset = address - sram_base;
@@ -32,7 +32,7 @@ class PlainStores {
   }
 
  private:
-  /// Page sizes of the engine for ARM are 1 or 4 kB.
+  /// The engine uses ARM pages of 1 or 4 kB.
   static constexpr std::uint32_t smallest_page_bytes = 1024, page_bytes = 4096;
   std::bitset<sram_bytes / page_bytes> holds_code_;
 };

@@ -1,4 +1,4 @@
-// Power control (RM0090, PWR). The regulator is always ready.
+// Power control (RM0090, PWR). The voltage regulator is always ready.
 #pragma once
 
 #include "bus.hpp"
@@ -26,8 +26,8 @@ class PowerControl final : public RegisterBlock {
     status_ = 0;
     look_at_supply();
   }
-  /// Updates the output of the voltage detector, which is also line 16 of EXTI. Typical falling thresholds (data
-  /// sheet, V_PVD); the rising thresholds are 0.1 V higher.
+  /// Updates the output of the programmable voltage detector, which is also EXTI line 16. The falling thresholds are
+  /// typical values (data sheet, V_PVD); the rising thresholds are 0.1 V higher.
   void look_at_supply() {
     constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
     constexpr unsigned exti_line = 16;

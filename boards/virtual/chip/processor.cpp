@@ -22,7 +22,7 @@ uc_err add_hook(uc_engine* engine, int type, Function* function, void* self) {
   return uc_hook_add(engine, &hook, type, reinterpret_cast<void*>(function), self, 1, 0);
 }
 
-// Interrupt numbers of Unicorn's interrupt hook for M-profile processors.
+// Numbers that Unicorn passes to the interrupt hook of an M-profile processor.
 enum : std::uint32_t {
   undefined = 1,
   software_interrupt = 2,
@@ -43,7 +43,7 @@ Processor::Processor(Machine& machine, Bus& bus)
       register_bus_(timing_.costs()) {
   machine.clock_users.push_back(this);
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
-  // UC_MODE_MCLASS would select another CPU model; this model alone selects the M-profile.
+  // The Cortex-M4 model already selects the M profile; UC_MODE_MCLASS would select another CPU model.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
   map_memories(bus);
   check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
@@ -62,8 +62,8 @@ void Processor::map_memories(Bus& bus) {
   const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
     check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
   };
-  // Except for plain loads, Unicorn searches its regions in mapping order at each access. The most used are mapped
-  // first.
+  // Except for plain loads, Unicorn searches its memory regions in mapping order at each access. The most frequently
+  // used regions are therefore mapped first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
   map(ccm_base, ccm_bytes, UC_PROT_ALL, memory.ccm());
   for (const auto& window : Bus::windows)
@@ -74,8 +74,8 @@ void Processor::map_memories(Bus& bus) {
   map_holes();
 }
 
-// The engine itself refuses accesses to unmapped addresses without a report of the instruction. Therefore all gaps are
-// mapped, so that refuses() is called.
+// The engine refuses accesses to unmapped addresses without reporting the instruction. All unmapped address ranges are
+// therefore mapped, so that the engine calls refuses().
 void Processor::map_holes() {
   uc_mem_region* regions = nullptr;
   std::uint32_t count = 0;
@@ -123,7 +123,7 @@ void Processor::reset(std::uint32_t vector_table) {
   set_unstacked_float({});
   core_coupled_on_ = true;
   while (!running_.empty()) end_counting();
-  // The firmware may have been replaced.
+  // The firmware may have been replaced before this reset.
   forget_code(flash_base, flash_bytes);
   forget_code(sram_base, sram_bytes);
 }
@@ -133,7 +133,7 @@ void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
   if (address < flash_base || address >= flash_base + flash_bytes) return;
   const std::uint64_t alias = address - flash_base;
   uc_ctl_remove_cache(engine_, alias, alias + bytes);
-  // A block that overlaps the changed range may start before this range.
+  // All prices are discarded, because a block that starts before the changed range may overlap the range.
   timing_.forget();
 }
 
@@ -160,14 +160,14 @@ Outcome Processor::run(std::uint64_t cycles) {
   instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
-  // With too few wait states real hardware may continue for a while, but not reliably.
+  // Real hardware may still execute some instructions with too few wait states; the model faults immediately.
   if (machine_.flash_is_misread && program_counter_ - flash_base < flash_bytes) return Outcome::undefined_instruction;
   uc_err error;
   {
     const Use use(*this);
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
-  // With instruction hooks, Unicorn 2.0.1 does not update its program counter when it stops before a block.
+  // If instruction hooks exist, Unicorn 2.0.1 does not update the program counter when it stops before a block.
   program_counter_ = stopped_before_.value_or(read(UC_ARM_REG_PC) & ~1u);
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
@@ -246,14 +246,14 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   self.last_code_address_ = start;
   self.instructions_ += block.instructions;
   cycles += self.timing_.wait_for_flash(block, cycles, self.register_reader()) + block.cycles;
-  // Operands that the block itself computes are not known yet.
+  // Operands that the block computes are unknown at its entry, so the mean divide time is used.
   if (block.has_divides)
     for (const auto& divide : block.divides)
       cycles += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
   self.cycles_ = cycles;
 }
 
-// Most blocks are plain, so the expensive code hook has little to check.
+// Plain blocks need no check per instruction. Most blocks are plain, which keeps the code hook fast.
 bool Processor::is_plain(const BlockPrice& block) const {
   const bool asks_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
   return !asks_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
@@ -275,7 +275,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   if (!self.block_is_plain_) self.wait_in_block(at, starts[half_word]);
 }
 
-// Exact mode: false if time, an interrupt, a debugger or a division by zero stops before the instruction.
+// Exact mode: false if the processor must stop before the instruction, because of time, an interrupt, a debugger or a
+// division by zero.
 [[gnu::noinline]] bool Processor::may_run(std::uint32_t address) {
   const bool due = cycles_ >= stop_cycle_ || (watch_masks_ && masks_open());
   if (due && !in_if_then_block(address)) {
@@ -292,8 +293,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   return true;
 }
 
-// Exact mode: adds the time for which the instruction waits for flash and operands. The instruction starts
-// `after_cycles` after its block.
+// Exact mode: adds the wait time of an instruction for flash and operands. The instruction starts `after_cycles` after
+// the start of its block.
 [[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
   const auto& requests = block_->requests;
   const auto& divides = block_->divides;
@@ -307,7 +308,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
 }
 
 bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {
-  // IT (ARMv7-M, A7.7.38): the lowest set bit of the mask ends the block.
+  // IT (ARMv7-M, A7.7.38): the lowest set bit of the mask marks the end of the if-then block.
   const std::uint16_t instruction = machine_.memory.half_word(if_then);
   const unsigned mask = instruction & 0xFu;
   if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= if_then) return false;
@@ -343,8 +344,9 @@ void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* po
 
 bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  // WFE and YIELD also arrive here, with the program counter after the instruction. An undefined instruction arrives
-  // with the program counter at the instruction, which starts the last block or is the last instruction.
+  // Unicorn calls this hook also for WFE and YIELD, with the program counter after the instruction. For an undefined
+  // instruction the program counter is at the instruction, which is the last instruction or the first of the last
+  // block.
   const std::uint32_t after = self.read(UC_ARM_REG_PC) & ~1u;
   constexpr std::uint16_t yield = 0xBF10, wait_for_event = 0xBF20;
   constexpr std::uint16_t wide_hint = 0xF3AF, wide_yield = 0x8001, wide_wait_for_event = 0x8002;
@@ -366,7 +368,7 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   return false;
 }
 
-// Handles a store to the flash, which programs it (RM0090, "Flash programming").
+// Handles a store to the flash, which starts programming (RM0090, "Flash programming").
 bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);

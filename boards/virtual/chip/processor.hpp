@@ -1,5 +1,5 @@
-// Cortex-M4F: instructions by Unicorn, exception entry and return by this class (ARMv7-M Architecture Reference
-// Manual, B1.5).
+// Cortex-M4F. Unicorn executes instructions; the Processor class implements exception entry and return (ARMv7-M
+// Architecture Reference Manual, B1.5).
 #pragma once
 
 #include <unicorn/unicorn.h>
@@ -55,30 +55,30 @@ class Processor final : public ClockUser, private EngineCalls {
 
   /// Loads stack pointer and program counter from the vector table.
   void reset(std::uint32_t vector_table);
-  /// Runs for about `cycles` (fast mode: up to the end of a basic block) or until an event stops it.
+  /// Runs for about `cycles` (fast mode: up to the end of a basic block) or until an event stops the processor.
   Outcome run(std::uint64_t cycles);
   /// Ends the current slice before the next instruction (fast mode: block).
   void end_slice() { stop_cycle_ = 0; }
-  /// While a more urgent exception is pending, ends the slice as soon as the masks allow the exception.
+  /// If `watch` is true, the slice ends as soon as the masks allow the most urgent pending exception.
   void watch_masks(bool watch) { watch_masks_ = watch; }
-  /// True if the watched masks have allowed an exception since the last call.
+  /// True if the masks have allowed an exception since the last call of this function.
   bool take_masks_opened() { return std::exchange(masks_opened_, false); }
   /// Sets whether CPACR enables the FPU. While the FPU is off, FPU instructions stop the processor.
   void set_float_unit(bool on) {
     float_unit_on_ = on;
     refuses_float_ = !float_unit_on_ || unstacked_float_;
   }
-  /// Sets the clock of CCM (RCC_AHB1ENR.CCMDATARAMEN). The change ends the slice and takes effect in the next one.
+  /// Switches the CCM clock (RCC_AHB1ENR.CCMDATARAMEN). The change ends the slice and takes effect in the next slice.
   void set_core_coupled_memory(bool on) {
     core_coupled_on_ = on;
     rights_changed();
   }
-  /// Sets CCR.UNALIGN_TRP. Takes effect in the next slice.
+  /// Sets CCR.UNALIGN_TRP. The change takes effect in the next slice.
   void trap_misaligned(bool on) {
     traps_misaligned_ = on;
     end_slice();
   }
-  /// Call this when the memory protection unit has changed. Takes effect in the next slice.
+  /// Call this when the settings of the memory protection unit have changed. The change takes effect in the next slice.
   void rights_changed() {
     rights_changed_ = true;
     end_slice();
@@ -95,8 +95,8 @@ class Processor final : public ClockUser, private EngineCalls {
   }
   /// Call this after a change of instructions in memory.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
-  /// Schedules forget_code() before the next slice. Inside the current slice the engine would fetch from the range,
-  /// which the memory protection unit may refuse.
+  /// Schedules forget_code() for the start of the next slice. During a slice, forget_code() would make the engine fetch
+  /// from the range, and the memory protection unit may refuse this fetch.
   void forget_code_later(std::uint32_t address, std::uint32_t bytes) { to_forget_.push_back({address, bytes}); }
 
   std::uint64_t cycles() const { return cycles_; }
@@ -114,15 +114,15 @@ class Processor final : public ClockUser, private EngineCalls {
   std::uint64_t slept_cycles() const { return slept_cycles_; }
   /// Board time of the current instruction (fast mode: end of the current block).
   Ticks now() const { return anchor_time_ + machine_.clocks.hclk.duration(cycles_ - anchor_cycles_); }
-  /// Number of cycles until `when`, at least 1.
+  /// Number of HCLK cycles until `when`, at least 1.
   std::uint64_t cycles_until(Ticks when) const;
-  /// Continues board time from `time`, after sleep or a clock change.
+  /// Sets board time to `time` at the present cycle, after sleep or a clock change.
   void anchor(Ticks time) {
     anchor_time_ = time;
     anchor_cycles_ = cycles_;
   }
 
-  // Cycles before the change have used the old clock; the rest of the slice is recalculated.
+  // Cycles before a clock change have the old duration; the rest of the slice is recalculated with the new clock.
   void before_clock_change() override { anchor(now()); }
   void after_clock_change() override;
 
@@ -164,7 +164,7 @@ class Processor final : public ClockUser, private EngineCalls {
     protected_stack,  ///< the memory protection unit refuses the stack; the stack pointer has still moved
     no_handler,
   };
-  /// Stacks the context, unless `stacks` is false, and starts the handler.
+  /// Stacks the context if `stacks` is true, and starts the handler.
   Entry enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
                         std::uint32_t vector_table, bool stacks);
   enum class Return : std::uint8_t {
@@ -174,7 +174,8 @@ class Processor final : public ClockUser, private EngineCalls {
     protected_stack,  ///< the memory protection unit refuses the frame; the handler has still ended
   };
   Return return_from_exception(std::uint32_t vector_table);
-  /// Starts a handler on the frame of the handler that has just ended. Returns false if its vector is invalid.
+  /// Starts a handler that reuses the stack frame of the previous handler (tail-chaining). Returns false if the vector
+  /// of the new handler is invalid.
   bool chain_exception(unsigned exception, std::uint32_t vector_table);
   bool is_in_thread() const { return current_exception_ == exception_none; }
   /// Returns and clears the float frame of the most recent exception entry.
@@ -185,7 +186,8 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Discards the pending lazy stacking; the reserved space is never written.
   void drop_lazy_stacking();
   Counters& counters() { return counters_; }
-  /// Called when another exception starts to run or the thread resumes (0); empty by default.
+  /// Called with the exception number when a handler starts or resumes, and with 0 when thread mode resumes. Empty by
+  /// default.
   std::function<void(unsigned exception)> on_exception;
   void clear_counters();
 
@@ -205,7 +207,7 @@ class Processor final : public ClockUser, private EngineCalls {
   // division.cpp
   /// True if the instruction at `address` divides by zero outside of if-then blocks.
   bool divides_by_zero(std::uint32_t address) const;
-  /// Fast mode: true if the block has divides without a hook. The hooks of new divides are added after the slice.
+  /// Fast mode: true if the block contains divide instructions without a hook. Their hooks are added after the slice.
   bool has_new_divides(const BlockPrice& block);
   void ask_about_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
@@ -213,7 +215,7 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Unicorn loses the if-then state when it stops inside an if-then block.
   bool in_if_then_block(std::uint32_t address) const;
   bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
-  /// Handles a return into the middle of an if-then block, for example after a fault in it.
+  /// Handles an exception return into the middle of an if-then block, for example after a fault in the block.
   void resume_if_then_block(std::uint32_t status);
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
@@ -233,30 +235,31 @@ class Processor final : public ClockUser, private EngineCalls {
   void translates(std::uint32_t address) override { timing_.read_anew(address); }
   Role role() const;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
-  /// True if no part of the frame can be refused.
+  /// True if no access to the frame can be refused.
   bool takes_any_frame(std::uint32_t address, std::uint32_t bytes) const;
   /// Reason why the words of a frame cannot be accessed, or nothing.
   std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
-  /// Makes an unprivileged thread privileged, to write registers that the thread may not write.
+  /// Makes an unprivileged thread privileged, so that the model can write registers that the thread may not write.
   void lift_privilege();
   /// Reads S0 to S15 and FPSCR in the order of the frame.
   void read_float_context(std::uint32_t* words) const;
-  /// Performs the pending lazy stacking. Returns the reason if the stacking is refused.
+  /// Performs the pending lazy stacking. Returns the reason of a refused access, or nothing.
   std::optional<Outcome> stack_float_context();
   void take_new_rights();
-  /// Exact mode: true if no instruction of the block waits and no observer needs single instructions.
+  /// Exact mode: true if no instruction of the block waits and neither a debugger nor on_instruction needs single
+  /// instructions.
   bool is_plain(const BlockPrice& block) const;
   bool may_run(std::uint32_t address);
   void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
-  /// Price of a block at its first run or after a change of its code.
+  /// Computes the price of a block, at the first run of the block or after a change of its code.
   const BlockPrice& price_block(std::uint32_t address, std::uint32_t bytes);
-  /// Reads R0 to R14 by number.
+  /// Returns a function that reads R0 to R14 by number.
   auto register_reader() const {
     return [this](std::uint8_t number) {
       return read(number <= 12 ? UC_ARM_REG_R0 + number : number == 13 ? UC_ARM_REG_SP : UC_ARM_REG_LR);
     };
   }
-  /// Cycles of a divide with the current operands, minus its shortest time.
+  /// Additional cycles of a divide with its present operands, above the shortest divide.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories(Bus& bus);
   void map_holes();
@@ -293,7 +296,8 @@ class Processor final : public ClockUser, private EngineCalls {
   std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< within the block
   bool block_is_plain_ = false;
   PlainStores plain_stores_;
-  /// Unicorn performs stores into the flash directly. The correct contents are restored after the slice.
+  /// Unicorn writes each store directly to the flash memory. After the slice, the contents are replaced by the
+  /// programmed values.
   struct FlashStore {
     std::uint32_t address, content;
     unsigned size;

@@ -1,4 +1,4 @@
-// Debugger access to the processor: registers, breakpoints and watch points.
+// Access of a debugger to the processor: registers, breakpoints and watch points.
 #include "processor.hpp"
 #include "xpsr.hpp"
 
@@ -56,7 +56,7 @@ uc_hook Processor::watch(const WatchPoint& watch_point) {
   const std::uint64_t first = watch_point.address, last = first + watch_point.bytes - 1;
   if (uc_hook_add(engine_, &hook, types, reinterpret_cast<void*>(watch_hook), this, first, last) != UC_ERR_OK)
     throw ChipError("The processor (Unicorn) refuses to watch its memory.");
-  // Code translated before this point does not call the hook.
+  // Code that was translated before this call does not call the hook.
   forget_code(flash_base, flash_bytes);
   forget_code(sram_base, sram_bytes);
   return hook;

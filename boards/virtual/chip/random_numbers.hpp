@@ -1,4 +1,4 @@
-// Random numbers (RM0090, RNG), repeatable for a given seed.
+// Random number generator (RM0090, RNG). The same seed leads to the same numbers.
 #pragma once
 
 #include "bus.hpp"

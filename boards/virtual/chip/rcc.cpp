@@ -56,8 +56,7 @@ void Rcc::record_reset(ResetCause cause) {
     reset_flags_ |= rcc_map.csr.borrstf.mask();
   else
     reset_flags_ |= rcc_map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
-  // Every internal reset also pulls the NRST pin low, and power-on includes a brown-out reset (RM0090, "System
-  // reset").
+  // Every internal reset also pulls the NRST pin low, and a power-on reset also sets BORRSTF (RM0090, "System reset").
   reset_flags_ |= rcc_map.csr.pinrstf.mask();
   if (cause == ResetCause::power_on) reset_flags_ |= rcc_map.csr.borrstf.mask();
 }
@@ -134,7 +133,7 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }
 
-// Limits apply to the nominal frequencies, not to the frequencies with the crystal's deviation.
+// Frequency limits apply to the nominal frequencies, without the crystal deviation.
 std::uint32_t Rcc::real_Hz(std::uint32_t nominal_Hz) const {
   const std::int64_t off_Hz = std::int64_t{nominal_Hz} * machine_.options.crystal_ppm / 1'000'000;
   return static_cast<std::uint32_t>(nominal_Hz + off_Hz);
@@ -175,8 +174,8 @@ void Rcc::step(Ticks) {
   switch_system_clock();
 }
 
-// ES0182: the delay is two AHB cycles, or one plus the APB prescaler. Only exact mode knows the distance of two
-// accesses.
+// ES0182: a peripheral clock starts two AHB cycles after it is enabled, or one cycle plus the APB prescaler. Only exact
+// mode measures the time between two accesses.
 void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   if (risen == 0 || machine_.options.mode != Mode::exact) return;
   const auto& clocks = machine_.clocks.frequencies;
@@ -191,7 +190,7 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
 void Rcc::switch_system_clock() {
   constexpr unsigned oscillator_of[] = {hsi, hse, pll};
   const unsigned wanted = rcc_map.cfgr.sw.of(words_[rcc_map.cfgr / 4]);
-  // A switch to a clock that is not ready takes effect when it is ready (RM0090, "System clock (SYSCLK) selection").
+  // A switch to a clock source takes effect when the source is ready (RM0090, "System clock (SYSCLK) selection").
   if (wanted < 3 && is_ready(oscillator_of[wanted])) system_clock_ = wanted;
   update_tree();
 }
@@ -273,7 +272,7 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case rcc_map.cr:
       word = value & writable(rcc_map.cr);
-      // The oscillator in use cannot be stopped.
+      // Firmware cannot stop the oscillator of the system clock.
       if (system_clock_ == 0) word |= rcc_map.cr.hsion.mask();
       if (system_clock_ == 1) word |= rcc_map.cr.hseon.mask();
       if (system_clock_ == 2) word |= rcc_map.cr.pllon.mask();

@@ -1,5 +1,5 @@
 // Reset and clock control (RM0090, RCC). Oscillators have a start-up time. Every change of the clock tree changes the
-// timing of the parts that use it.
+// timing of all parts that use a changed clock.
 #pragma once
 
 #include <array>
@@ -16,29 +16,29 @@ class Rcc final : public RegisterBlock, public TimedPart {
   explicit Rcc(Machine& machine);
 
   void reset() override;
-  /// Frequency of the real-time clock from RCC_BDCR; 0 until its oscillator is ready.
+  /// Frequency of the real-time clock that RCC_BDCR selects; 0 until its oscillator is ready.
   std::uint32_t real_time_clock_Hz() const;
   /// Sets the reset flags of RCC_CSR. Call this function after reset().
   void record_reset(ResetCause cause);
-  /// The bus reads this register, because a peripheral without its clock does not respond.
+  /// Pointer to an enable register, which the bus reads: a peripheral whose clock is off does not respond.
   const std::uint32_t* enable_register(std::uint32_t offset) const { return &words_[offset / 4]; }
   void add_reset(std::uint32_t offset, std::uint32_t mask, Peripheral& peripheral) {
     resets_.push_back({offset, mask, &peripheral});
   }
-  /// Starts the low-speed oscillator, as the watchdog does.
+  /// Starts the low-speed internal oscillator for the independent watchdog.
   void start_low_speed_internal() { words_[rcc_map.csr / 4] |= rcc_map.csr.lsion.mask(); }
-  /// True if the clock of a peripheral was enabled too recently to have started.
+  /// True if the clock of a peripheral is enabled but has not started yet.
   bool is_fresh(const std::uint32_t* enable, std::uint32_t mask, std::uint64_t cycle) const {
     return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
   }
   void step(Ticks now) override;
-  /// Stops or restarts the crystal, for example to simulate a broken solder joint. With the clock security system on
-  /// (RM0090, "Clock security system") the chip switches to HSI, raises NMI and triggers the timer break. Without the
-  /// clock security system, all parts with a clock from the crystal stop.
+  /// Stops or restarts the crystal, for example to simulate a broken solder joint. If the crystal stops while the clock
+  /// security system is on (RM0090, "Clock security system"), the chip switches to HSI, raises NMI and triggers the
+  /// timer break. Without the clock security system, all parts stop whose clock comes from the crystal.
   void let_crystal_swing(bool swings);
-  /// Sets the deviation from the nominal frequency.
+  /// Sets the deviation of the crystal from its nominal frequency.
   void drift_crystal(std::int32_t ppm);
-  /// PWR_CR.VOS: scale 1 is for the highest clock frequencies.
+  /// Sets PWR_CR.VOS. The highest clock frequencies require scale 1.
   void set_voltage_scale(bool scale_1);
 
  protected:
@@ -56,7 +56,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   };
   bool is_on(unsigned oscillator) const;
   bool is_ready(unsigned oscillator) const;
-  /// Actual frequency of a clock from the crystal.
+  /// Actual frequency of a clock that comes from the crystal.
   std::uint32_t real_Hz(std::uint32_t nominal_Hz) const;
   enum class PllOutput : std::uint8_t { system, usb };
   std::uint32_t pll_output_Hz(PllOutput output) const;

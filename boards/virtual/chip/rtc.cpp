@@ -14,7 +14,7 @@ constexpr unsigned alarm_line = 17, wake_up_line = 22;
 constexpr std::int64_t seconds_per_day = 86'400;
 constexpr unsigned unlocked = 2;
 
-/// A decimal number of two digits, each in a separate field.
+/// A two-digit decimal number with a separate field for each digit.
 struct Decimals {
   Field tens, units;
   constexpr std::uint32_t with(unsigned number) const { return tens.with(number / 10) | units.with(number % 10); }
@@ -75,7 +75,7 @@ std::uint32_t RealTimeClock::date_register() const {
          calendar.day.with(static_cast<unsigned>(date.day()));
 }
 
-// The weekday is derived from the date. A different weekday from firmware is ignored.
+// The model derives the weekday from the date and ignores the weekday that firmware writes.
 void RealTimeClock::set_calendar() {
   const auto date = std::chrono::year(2000 + static_cast<int>(calendar.year.of(written_date_))) /
                     static_cast<int>(calendar.month.of(written_date_)) /
@@ -154,7 +154,7 @@ void RealTimeClock::write_word(std::uint32_t offset, std::uint32_t value) {
     unlock_step_ = unlock_step_ < unlocked && value == keys[unlock_step_] ? unlock_step_ + 1 : 0;
     return;
   }
-  // Flags except INIT can be cleared at any time (RM0090, "RTC register write protection").
+  // The write protection does not cover the clearing of flags (RM0090, "RTC register write protection").
   if (unlock_step_ != unlocked && offset != rtc.isr) return;
   const bool initialising = rtc.isr.init.in(status_);
   switch (offset) {
@@ -193,7 +193,8 @@ void RealTimeClock::plan_wake_up() {
   if (wake_up_ != 0) events_.cancel(std::exchange(wake_up_, 0));
   wakes_at_ = never;
   if (!rtc.cr.wute.in(control_) || !clock().runs()) return;
-  // Wake-up clock: RTCCLK divided by 16, 8, 4 or 2, or seconds. Two selections add 65536 counts.
+  // WUCKSEL selects the wake-up clock: RTCCLK divided by 16, 8, 4 or 2, or the 1 Hz clock. WUCKSEL 6 and 7 add 65536
+  // counts.
   const std::uint32_t selected = rtc.cr.wcksel.of(control_);
   const std::uint64_t unit = selected < 4 ? 16u >> selected : cycles_per_second();
   const std::uint64_t counts = std::uint64_t{reload_} + 1 + (selected >= 6 ? 0x1'0000 : 0);
@@ -255,7 +256,7 @@ void RealTimeClock::second_over() {
   update();
 }
 
-// The interrupts pass through the edge detectors of EXTI.
+// The interrupts of the clock pass through the EXTI edge detectors.
 void RealTimeClock::update() {
   machine_.exti->internal_line(alarm_line, (rtc.cr.alraie.in(control_) && rtc.isr.alraf.in(status_)) ||
                                                (rtc.cr.alrbie.in(control_) && rtc.isr.alrbf.in(status_)));

@@ -1,5 +1,5 @@
-// Real-time clock (RM0090, "Real-time clock"): calendar, wake-up timer, alarms A and B with a resolution of one
-// second, backup registers, write protection. Not modeled: tamper detection, time stamps, calibration.
+// Real-time clock (RM0090, "Real-time clock"): calendar, wake-up timer, alarms A and B (resolution 1 s), backup
+// registers, write protection. Not modeled: tamper detection, time stamps, calibration.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Fields of both alarm registers.
+/// Fields of the registers ALRMAR and ALRMBR.
 struct RtcAlarm : Register {
   Field su{"SU", 0, 4}, st{"ST", 4, 3}, msk1{"MSK1", 7}, mnu{"MNU", 8, 4}, mnt{"MNT", 12, 3}, msk2{"MSK2", 15},
       hu{"HU", 16, 4}, ht{"HT", 20, 2}, pm{"PM", 22}, msk3{"MSK3", 23}, du{"DU", 24, 4}, dt{"DT", 28, 2},
@@ -73,7 +73,7 @@ class RealTimeClock final : public RegisterBlock, public Freezable {
   std::span<const MapEntry> registers() const override { return shown<rtc>(); }
 
  private:
-  /// RTCCLK; stopped without RTCEN and a ready oscillator.
+  /// Returns RTCCLK, which is stopped while RTCEN is clear or the oscillator is not ready.
   Clock clock() const;
   std::uint64_t cycles_per_second() const;
   /// Cycles of RTCCLK since the calendar was set.

@@ -15,7 +15,7 @@ struct SemihostingAnswer {
   bool known = true;
 };
 
-/// `operation` and `parameter` are R0 and R1 at BKPT 0xAB.
+/// `operation` and `parameter` are the values of R0 and R1 at BKPT 0xAB.
 SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parameter, const Memory& memory,
                                    const std::function<void(std::uint8_t)>& console);
 

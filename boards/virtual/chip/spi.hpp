@@ -1,5 +1,5 @@
 // SPI1 to SPI3 without a connected device (RM0090, "Serial peripheral interface"). A master sends frames with correct
-// timing and receives ones. A slave receives no clock. I2S and CRC are not modeled.
+// timing and receives only 1 bits. A slave receives no clock. I2S and CRC are not modeled.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class Spi final : public RegisterBlock {
   Spi(Machine& machine, Scheduler& events, unsigned number, unsigned position, bool on_apb2)
       : machine_(machine), events_(events), number_(number), position_(position), on_apb2_(on_apb2) {}
   void reset() override;
-  /// Serves pending requests. Call this when a DMA stream has been enabled.
+  /// Serves pending DMA requests. Call this when a DMA stream has been enabled.
   void serve_dma();
 
  protected:
@@ -51,7 +51,7 @@ class Spi final : public RegisterBlock {
  private:
   std::string name() const { return "SPI" + std::to_string(number_); }
   Ticks frame_duration() const;
-  /// Starts a frame if data is waiting and no frame is in progress.
+  /// Starts an SPI frame if data is waiting and no frame is in progress.
   void start_frame();
   void end_frame();
   void update();

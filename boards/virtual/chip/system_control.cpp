@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Size of the stimulus ports of the instrumentation trace.
+/// Bytes of the ITM stimulus ports.
 constexpr std::uint32_t stimulus_bytes = 0x400;
 
 constexpr std::uint32_t first_handler_priority = scb_base + scb.shpr,
@@ -199,7 +199,7 @@ std::uint32_t SystemControl::read(std::uint32_t address, unsigned size) {
 }
 
 void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned size) {
-  // Registers with byte fields accept narrow writes.
+  // Registers with byte fields, such as priorities, accept narrow writes.
   if (address - nvic_base < nvic_bytes) return machine_.nvic.write(address - nvic_base, value, size);
   if (is_priority(address)) {
     for (unsigned i = 0; i < size; ++i)
@@ -274,7 +274,8 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   if (address - mpu_base < mpu_bytes) {
     if (!MemoryProtection::names_region(address - mpu_base, value)) machine_.violations.violate(Rule::region_number);
     machine_.memory_protection.write(address - mpu_base, value);
-    // Firmware writes the base before the matching size, so the region is checked after the size only.
+    // Firmware writes the base address of a region before its size, so the region is checked only when the size is
+    // written.
     if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())
       machine_.violations.violate(Rule::region_undefined);
     return machine_.processor->rights_changed();

@@ -48,8 +48,8 @@ class SystemControl {
   bool sleeps_on_exit() const { return scb.scr.sleeponexit.in(sleep_control_); }
   bool sends_event_on_pending() const { return scb.scr.sevonpend.in(sleep_control_); }
 
-  /// Records the cause of a fault in CFSR and HFSR. The valid bits in these registers decide whether the address
-  /// registers apply.
+  /// Records the cause of a fault in CFSR and HFSR. The valid bits in CFSR show whether BFAR or MMFAR contains the
+  /// fault address.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
   /// Stores the state for lazy stacking in FPCCR and FPCAR (ARMv7-M, B1.5.7, UpdateFPCCR).

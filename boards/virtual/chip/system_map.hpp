@@ -1,5 +1,6 @@
 // Registers of the Cortex-M4 core (ARMv7-M Architecture Reference Manual, B3.2 to B3.5, C1.6 to C1.8), and of the
-// debug configuration of the chip (RM0090, "Debug support"). Offsets are relative to the base after each map.
+// debug configuration of the chip (RM0090, "Debug support"). Register offsets are relative to the base address that is
+// declared after each map.
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -75,7 +76,7 @@ struct SystemControlRegisters {
     Field nonbasethrdena{"NONBASETHRDENA", 0}, usersetmpend{"USERSETMPEND", 1}, unalign_trp{"UNALIGN_TRP", 3},
         div_0_trp{"DIV_0_TRP", 4}, bfhfnmign{"BFHFNMIGN", 8}, stkalign{"STKALIGN", 9};
   } ccr{{"CCR", 0x14, 0x200}};
-  /// One byte for each of the system handlers 4 to 15.
+  /// Priorities of the system handlers 4 to 15, one byte for each handler.
   Register shpr{"SHPR#", 0x18, 0, {3, 4, 1}};
   struct : Register {
     Field memfaultact{"MEMFAULTACT", 0}, busfaultact{"BUSFAULTACT", 1}, usgfaultact{"USGFAULTACT", 3},

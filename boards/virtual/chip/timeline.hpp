@@ -1,9 +1,9 @@
-// Board time for the parts of the chip.
+// Schedules the parts of the chip in board time.
 //
 // Each timed part (timer, converter, watchdog) sets two times. `due` is the time of its next internal step. `wake` is
-// the time at which the processor must see the result (interrupt, reset, memory). The processor runs up to the
-// earliest wake. Earlier steps are executed later in order of time, when a part is accessed. PWM edges therefore do
-// not stop the processor.
+// the time at which the step affects the processor (interrupt, reset, memory). The processor runs up to the earliest
+// `wake`. Steps that are due before this time are executed later, in order of time, when a part is accessed. PWM edges
+// therefore do not stop the processor.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,8 @@ namespace inkwell::virtual_board {
 class TimedPart {
  public:
   virtual ~TimedPart() = default;
-  /// Called when board time has reached `due` of this part. This function must set the next `due` before it returns.
+  /// Called when board time has reached the `due` time of this part. step() must set the next `due` time before it
+  /// returns.
   virtual void step(Ticks now) = 0;
 };
 
@@ -49,7 +50,7 @@ class Timeline {
     }
   }
   Ticks now() const { return now_; }
-  /// Executes all steps up to and including `until`.
+  /// Executes all steps that are due up to and including `until`.
   void catch_up(Ticks until) {
     while (next_due_ <= until) {
       std::size_t first = 0;
@@ -70,7 +71,7 @@ class Timeline {
     wake_moved_forward_ = false;
     return next_wake_;
   }
-  /// True if a wake earlier than the result of the last next_wake() has been set.
+  /// True if a part has set a `wake` time before the result of the last next_wake().
   bool wake_moved_forward() const { return wake_moved_forward_; }
 
  private:
@@ -84,7 +85,7 @@ class Timeline {
   bool wake_moved_forward_ = false;
 };
 
-/// Events of the parts outside of the chip (USB host, circuit), combined in one timed part.
+/// Timed part that runs the events of the USB host and the circuit.
 class EventQueue final : public Scheduler, public TimedPart {
  public:
   explicit EventQueue(Timeline& timeline) : timeline_(timeline), slot_(timeline.add(*this)) {}
@@ -99,7 +100,7 @@ class EventQueue final : public Scheduler, public TimedPart {
   void cancel(Id id) override { alive_.erase(id); }
   void step(Ticks now) override {
     while (!queue_.empty() && queue_.top().when <= now) {
-      // Moving the event out of the queue is safe, because the order depends on time and number only.
+      // The event can be moved out of the queue, because the queue order depends only on time and number.
       Event event = std::move(const_cast<Event&>(queue_.top()));
       queue_.pop();
       if (alive_.erase(event.id) != 0) event.action();

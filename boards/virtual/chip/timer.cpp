@@ -83,7 +83,7 @@ void Timer::begin_ramp(Ticks now) {
     else
       ramp_length_ = count_ != 0 ? count_ : 1;
   } else if (!down_) {
-    // A counter above its reload value first counts up to its maximum.
+    // A counter above its reload value counts up to the maximum count before it overflows.
     ramp_length_ = (count_ <= active_reload_ ? active_reload_ : limit_) + std::uint64_t{1} - count_;
   } else {
     ramp_length_ = std::uint64_t{count_} + 1;
@@ -100,7 +100,7 @@ void Timer::find_matches() {
     const std::uint32_t compare = channel.active_compare;
     if (!down_ && compare > count_) channel.match = compare - count_;
     if (down_ && compare < count_) channel.match = count_ - compare;
-    // The last tick of an edge-aligned ramp is the first value of the next ramp.
+    // In edge-aligned mode, the last tick of a ramp is the first value of the next ramp.
     const std::uint64_t last = centre_aligned() ? ramp_length_ : ramp_length_ - 1;
     if (channel.match != no_match && channel.match > last) channel.match = no_match;
   }
@@ -247,7 +247,7 @@ void Timer::plan() {
     if (channel.needed || to_processor) next_tick_ = std::min(next_tick_, channel.match);
     if (to_processor) next_needed = std::min(next_needed, channel.match);
   }
-  // The end of this ramp decides when a match of a later ramp is due.
+  // The time of a match in a later ramp is computed at the end of the present ramp.
   if (any_needed && next_needed == no_match) next_needed = ramp_length_;
   Ticks wake = next_needed == no_match ? never : time_of(next_needed);
   if (update_needed()) wake = std::min(wake, update_time());

@@ -1,11 +1,11 @@
-// Registers of the timers (RM0090, TIMx_CR1 ... TIMx_DMAR). The traits of a timer select its registers.
+// Registers of the timers (RM0090, TIMx_CR1 ... TIMx_DMAR). TimerTraits selects the registers that a timer has.
 #pragma once
 
 #include <chip/register_map.hpp>
 
 namespace inkwell::virtual_board {
 
-/// CCMR1 and CCMR2, each for two channels. The input fields share the bits of the output fields.
+/// CCMR1 or CCMR2, for two channels each. Input fields and output fields overlap.
 template <unsigned lowest>
 struct CaptureCompareMode : Register {
   Field ccs{"CC#S", 0, 2, Access::rw, {2, 8, lowest}};
@@ -74,7 +74,7 @@ inline constexpr TimerRegisters tim;
 /// TIM2_OR: source of ITR1.
 inline constexpr Field itr1_remap{"ITR1_RMP", 10, 2};
 inline constexpr std::uint32_t itr1_is_otg_fs_sof = 2;
-/// CCMRx.CCxS: capture by the internal trigger that SMCR.TS selects.
+/// Value of CCMRx.CCxS that selects capture by the trigger input TRC.
 inline constexpr std::uint32_t trigger_input = 3;
 
 /// CCMRx.OCxM
@@ -96,14 +96,14 @@ enum SlaveMode : std::uint32_t {
   trigger_mode = 6,
   external_clock = 7,
 };
-/// SMCR.TS; values below these are the internal triggers 0 to 3.
+/// Values of SMCR.TS. The values 0 to 3 select the internal triggers ITR0 to ITR3.
 enum TriggerInput : std::uint32_t {
   input_1_edge = 4,
   filtered_input_1 = 5,
   filtered_input_2 = 6,
   external_input = 7,
 };
-/// CR2.MMS; from compare_reference_1 on: the references of the four channels.
+/// Values of CR2.MMS. The values from compare_reference_1 on select the references of channels 1 to 4.
 enum MasterMode : std::uint32_t {
   master_reset = 0,
   master_enable = 1,

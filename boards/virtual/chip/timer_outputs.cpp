@@ -9,8 +9,9 @@ namespace inkwell::virtual_board {
 
 bool Timer::compare_level(unsigned i, std::uint32_t count) const {
   const std::uint32_t compare = channels_[i].active_compare;
-  // PWM mode 1 counting up: active while CNT < CCR; counting down: inactive while CNT > CCR. In center-aligned mode
-  // the value 0 belongs to the upward ramp, so CCR = 0 is never active (RM0090, PWM mode: OCxREF is held at 0).
+  // PWM mode 1: while counting up, the reference is active if CNT < CCR; while counting down, inactive if CNT > CCR. In
+  // center-aligned mode the count 0 belongs to the upward ramp, so the reference is never active if CCR = 0 (RM0090,
+  // PWM mode: OCxREF is held at 0).
   const bool active = down_ ? count <= compare && !(centre_aligned() && compare == 0) : count < compare;
   return output_mode(i) == pwm_2 ? !active : active;
 }
@@ -52,7 +53,7 @@ void Timer::configure_channel(unsigned i) {
       channel.when_active = channel.when_inactive = level(inverted);
     }
     if (complement) {
-      // With OCx enabled, OCxN is its complement. Without OCx, OCxN follows the reference.
+      // If OCx is enabled, OCxN is the complement of OCx. If OCx is disabled, OCxN follows the reference.
       channel.complement_when_active = level(output == complement_inverted);
       channel.complement_when_inactive = level(output != complement_inverted);
       if (output && tim.bdtr.dtg.in(bdtr_))
@@ -110,7 +111,7 @@ void Timer::capture(unsigned i) {
   if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
 }
 
-// RM0090, TIMx_CCMR1: ICxPSC. Every 1st, 2nd, 4th or 8th event is captured.
+// RM0090, TIMx_CCMR1: ICxPSC. The timer captures at every 1st, 2nd, 4th or 8th event.
 void Timer::capture_event(unsigned i) {
   auto& channel = channels_[i];
   if (++channel.events < 1u << tim.ccmr1.icpsc.of(ccmr_[i / 2], i % 2)) return;
@@ -136,7 +137,7 @@ void Timer::count_encoder_edge(unsigned changed) {
 
 void Timer::channel_edge(unsigned i) {
   const bool high = input(i);
-  // Captures: channel i from its own input, the adjacent channel through the cross connection.
+  // Input i triggers captures in channel i, and in the adjacent channel if that channel selects input i.
   for (const unsigned target : {i, i ^ 1}) {
     if (target >= traits_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
     if (!tim.ccer.cce.in(ccer_, target)) continue;
@@ -152,7 +153,7 @@ void Timer::channel_edge(unsigned i) {
     trigger_in(high != inverted, false);
 }
 
-// While a channel is an output, the bits of ICxF have another meaning.
+// If a channel is an output, the bits at the position of ICxF are output fields.
 void Timer::configure_inputs() {
   for (unsigned i = 0; i < traits_.channels; ++i) {
     const unsigned filter = selection(i) == 0 ? 0 : tim.ccmr1.icf.of(ccmr_[i / 2], i % 2);
@@ -196,7 +197,7 @@ void Timer::input_changed(unsigned line, bool high, Ticks when) {
   }
   if (line == external_trigger) return drive_external_trigger(high, when);
   if (line >= traits_.channels) return;
-  // A sample at the time of a change sees the new level.
+  // The filter sample at the time of a level change reads the new level.
   if (when != 0) take_input_changes(when - 1);
   channels_[line].input.drive(high, when);
   plan();
@@ -214,8 +215,8 @@ void Timer::connect_input(unsigned line, bool high) {
   }
 }
 
-// RM0090, TIMx_SMCR: ETP, ETPS, then ETF. The initial phase of the prescaler is not documented; here the first edge
-// passes.
+// RM0090, TIMx_SMCR: the trigger passes ETP, then ETPS, then ETF. The initial phase of the ETPS prescaler is not
+// documented; in this model the first edge passes.
 void Timer::drive_external_trigger(bool high, Ticks when) {
   external_.pin = high;
   const bool level = high != tim.smcr.etp.in(smcr_);
@@ -234,7 +235,8 @@ void Timer::drive_external_trigger(bool high, Ticks when) {
   plan();
 }
 
-// With ECE the external trigger clocks the counter. In addition a slave mode may reset, gate or start the counter.
+// If ECE is set, the external trigger clocks the counter. The trigger may also reset, gate or start the counter in a
+// slave mode.
 void Timer::external_edge() {
   const bool high = external_.filter.output();
   if (high && tim.smcr.ece.in(smcr_) && enabled() && (slave_mode() != gated || gate_open_)) count_one(down_);

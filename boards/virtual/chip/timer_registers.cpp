@@ -1,4 +1,4 @@
-// Registers of a timer, and the set of all timers.
+// Register accesses of a timer, and the class Timers.
 #include <utility>
 
 #include "adc.hpp"
@@ -95,7 +95,7 @@ void Timer::update_interrupts() {
   const std::uint32_t asserted = sr_ & dier_;
   auto& nvic = machine_.nvic;
   const auto& to = traits_.interrupts;
-  // The enable bits of DIER have the positions of the flags in SR.
+  // Each enable bit in DIER has the position of its flag in SR.
   constexpr std::uint32_t update = tim.sr.uif.mask(), captures = tim.sr.ccif.masks(), breaks = tim.sr.bif.mask(),
                           triggers = tim.sr.tif.mask() | tim.sr.comif.mask();
   if (to.update == to.capture) {
@@ -146,7 +146,7 @@ std::uint32_t Timer::read_word(std::uint32_t offset) {
   }
   if (tim.ccr.covers(offset)) {
     const unsigned i = tim.ccr.index(offset);
-    // A read of a captured value acknowledges it.
+    // Reading CCRx of an input channel clears its capture flag.
     if (selection(i) != 0) {
       sr_ &= ~tim.sr.ccif.mask(i);
       update_interrupts();
@@ -193,8 +193,8 @@ void Timer::write_events(std::uint32_t value) {
   }
 }
 
-// RM0090, TIMx_BDTR: LOCK. Each level also includes the protection of the lower levels. LOCK itself can be written
-// once.
+// RM0090, TIMx_BDTR: LOCK. Each LOCK level includes the protection of the lower levels. LOCK can be written once after
+// reset.
 std::uint32_t Timer::locked_bits(std::uint32_t offset) const {
   const unsigned level = tim.bdtr.lock.of(bdtr_);
   if (level == 0) return 0;
@@ -284,8 +284,8 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
       }
       return machine_.log.note("TIM" + std::to_string(traits_.number), offset, true, value);
   }
-  // The configuration of channels, triggers or interrupts has changed. A channel without preload uses its value
-  // immediately.
+  // The configuration of channels, triggers or interrupts has changed. A channel without preload uses the new compare
+  // value immediately.
   settle();
   listen();
   configure_inputs();

@@ -1,8 +1,8 @@
 // TIM1 to TIM14 (RM0090, "Advanced-control timers", "General-purpose timers", "Basic timers").
 //
-// The counter is not stepped. The counter runs in ramps, each up to the next overflow or underflow, and its value
-// follows from board time. Steps occur only at the compare matches that another part needs and at ramp ends. Not
-// modeled: dead time, DMA bursts.
+// The model does not step the counter. A ramp is the counting up to the next overflow or underflow; within a ramp, the
+// count is computed from board time. Steps occur only at ramp ends and at the compare matches that another part of the
+// chip needs. Not modeled: dead time, DMA bursts.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Vector table positions (RM0090, table "Vector table").
+/// Vector table positions of a timer's interrupts (RM0090, table "Vector table").
 struct TimerInterrupts {
   std::uint8_t update, capture, trigger, break_input;
   static constexpr TimerInterrupts shared(std::uint8_t position) { return {position, position, position, position}; }
@@ -38,7 +38,7 @@ struct TimerTraits {
   std::array<std::uint8_t, 4> internal_triggers{};  ///< timers connected to ITR0 to ITR3
 };
 
-/// Trigger output as an ADC trigger source. Values 1 to 4 are the channels of the timer.
+/// ADC trigger source for the trigger output of a timer. The values 1 to 4 are the timer channels.
 inline constexpr unsigned trigger_output = 0;
 
 class Timer final : public RegisterBlock, public TimedPart, public ClockUser, public Freezable {
@@ -51,17 +51,17 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   /// Stops the counter. TIM1 and TIM8 also switch their outputs off (RM0090, "Debug support for timers").
   void freeze(bool frozen) override;
 
-  /// Sets the level that an input pin has had since `when`.
+  /// Sets the level of an input pin; the level changed at `when`.
   void input_changed(unsigned line, bool high, Ticks when);
-  /// Connects a pin to this timer. The current level is not an edge.
+  /// Connects a pin to this timer. The initial level is not counted as an edge.
   void connect_input(unsigned line, bool high);
   /// Triggers the break because the clock security system has detected a failure (RM0090, "Using the break function").
   void clock_failed();
   /// Handles a pulse or level change of the trigger output of timer `master`.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
-  /// Start of frame of OTG_FS, which TIM2 can select as ITR1.
+  /// Handles a USB start of frame from OTG_FS, which TIM2 can select as ITR1.
   void usb_start_of_frame();
-  /// Call this when another part has changed its use of the events of this timer.
+  /// Call this when another part of the chip starts or stops using events of this timer.
   void plan_again();
   const TimerTraits& traits() const { return traits_; }
 
@@ -83,13 +83,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
     InputFilter input{};
     unsigned events = 0;  ///< input events since the last capture
   };
-  /// ETR from its pin to the filter output ETRF.
+  /// External trigger, from the ETR pin to the filter output ETRF.
   struct ExternalTrigger {
     bool pin = false, level = false, divided = false;  ///< level: after ETP; divided: after ETPS
     unsigned rises = 0;
     InputFilter filter{};
   };
-  /// Input number of ETR; lower numbers are the channels.
+  /// Input number of ETR. Inputs 0 to 3 are the channels.
   static constexpr unsigned external_trigger_input = 4;
 
   // timer.cpp: counting
@@ -137,7 +137,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void break_now();
   void capture(unsigned channel);
   void capture_event(unsigned channel);
-  /// TRC: captures in all channels that use the trigger as input.
+  /// Captures in all channels that use the trigger TRC as input.
   void capture_by_trigger();
   bool input(unsigned channel) const { return channels_[channel].input.output(); }
   void configure_inputs();
@@ -147,7 +147,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
     return input == external_trigger_input ? external_.filter : channels_[input].input;
   }
   void take_input_changes(Ticks until);
-  /// True if input events can affect the processor without a read of the counter.
+  /// True if input events can affect the processor even if firmware does not read the counter.
   bool inputs_wake() const;
   void count_encoder_edge(unsigned changed_channel);
   void drive_external_trigger(bool high, Ticks when);
@@ -156,13 +156,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void channel_edge(unsigned channel);
 
   // timer_registers.cpp
-  /// Selects the master timer from TS if this timer uses it.
+  /// Selects the master timer from TS if this timer uses a trigger.
   void listen();
   void write_control(std::uint32_t value);
   void write_events(std::uint32_t value);
   /// Register bits that LOCK currently protects.
   std::uint32_t locked_bits(std::uint32_t offset) const;
-  /// Result of a write of `value` to a register with the value `old`.
+  /// Register value after `value` is written over `old`: locked bits do not change.
   std::uint32_t unlocked(std::uint32_t offset, std::uint32_t old, std::uint32_t value);
   void update_interrupts();
   void raise(std::uint32_t flags);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t usart_overrun = usart_map.sr.ore.mask(), idle_line = usart_map.sr.idle.mask(),
                         usart_receive_full = usart_map.sr.rxne.mask(), complete = usart_map.sr.tc.mask(),
                         usart_transmit_empty = usart_map.sr.txe.mask();
-// Interrupt enable bits have the positions of their flags.
+// Each interrupt enable bit has the position of its flag.
 static_assert(idle_line == usart_map.cr1.idleie.mask() && usart_receive_full == usart_map.cr1.rxneie.mask() &&
               complete == usart_map.cr1.tcie.mask() && usart_transmit_empty == usart_map.cr1.txeie.mask());
 }  // namespace
@@ -136,7 +136,7 @@ std::uint32_t Usart::stored(std::uint32_t offset) const {
 
 std::uint32_t Usart::read_word(std::uint32_t offset) {
   if (offset == usart_map.dr) {
-    // A read of SR and then of DR clears the receiver flags.
+    // Reading SR and then DR clears the receiver flags.
     status_ &= ~(usart_receive_full | usart_overrun | idle_line);
     update();
     return received_;

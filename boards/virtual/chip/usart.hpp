@@ -1,5 +1,5 @@
-// USART1 to 3 and 6, UART4 and 5 (RM0090, "Universal synchronous asynchronous receiver transmitter"). Asynchronous
-// frames have their real duration, but characters replace the edges on the pins.
+// USART1, USART2, USART3, UART4, UART5 and USART6 (RM0090, "Universal synchronous asynchronous receiver transmitter").
+// An asynchronous frame has its real duration, but the pins have no edges: the model transfers whole characters.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   void receive(std::uint8_t byte);
   bool listens() const;
   std::size_t waiting() const { return line_.size(); }
-  /// Serves pending requests. Call this when a DMA stream has been enabled.
+  /// Serves pending DMA requests. Call this when a DMA stream has been enabled.
   void serve_dma();
   std::function<void(unsigned number, std::uint8_t byte)> on_sent;
 
@@ -61,7 +61,7 @@ class Usart final : public RegisterBlock, public TimedPart {
 
  private:
   std::string name() const;
-  /// Duration of a bit in bus clock cycles.
+  /// Bit duration in cycles of the bus clock.
   unsigned cycles_of_bit() const;
   Ticks frame_duration() const;
   /// True if the baud rate is valid and a TX pin is configured.

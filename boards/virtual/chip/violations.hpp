@@ -1,4 +1,4 @@
-// List of broken rules, with one entry per rule and affected peripheral or pin.
+// List of broken rules. Each combination of rule and affected peripheral or pin has one entry.
 #pragma once
 
 #include <chip/violations.hpp>
@@ -15,7 +15,7 @@ class Violations final : public RuleKeeper {
   void violate(Rule rule, const std::string& where = {}) override;
   const std::vector<Violation>& list() const { return list_; }
 
-  /// Called at the first violation of a rule by a peripheral or pin.
+  /// Called at the first violation of a rule at a peripheral or pin.
   std::function<void(const Violation&)> on_first;
 
  private:

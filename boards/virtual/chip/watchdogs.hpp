@@ -78,8 +78,8 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart, public
   std::span<const MapEntry> registers() const override { return shown<iwdg>(); }
 
  private:
-  /// Returns true if the register is free. A new value needs up to five cycles of the slow clock (RM0090, "Status
-  /// register (IWDG_SR)").
+  /// Returns true if the register accepts a new value. After a write, the register is busy for up to five LSI cycles
+  /// (RM0090, "Status register (IWDG_SR)").
   bool takes(Ticks& taken_at, const char* name) {
     const Ticks now = machine_.timeline.now();
     if (now < taken_at) {
@@ -156,7 +156,7 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
       active_ |= wwdg.cr.wdga.in(value);
       counter_ = wwdg.cr.t.of(value);
       start_ = machine_.timeline.now();
-      // Refresh outside of the window, or a value below the limit.
+      // The watchdog resets the chip after a refresh outside of the window, or if the new count is too low.
       if (outside || (active_ && counter_ < last_count)) machine_.request_reset(ResetCause::window_watchdog);
       plan();
     } else if (offset == wwdg.cfr) {

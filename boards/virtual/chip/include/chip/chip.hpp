@@ -1,8 +1,8 @@
 // An STM32F405 for any firmware: Cortex-M4F processor, memories, and the peripherals of RM0090.
 //
-// Instructions take the cycles of the core pipeline, the flash and the buses (timing/costs.hpp). The clock tree,
-// timers, converters and watchdogs run in board time. `Chip` is not thread-safe: the chip and the circuit run in the
-// thread that calls run_until().
+// The duration of an instruction includes the cycles of the core pipeline, the flash and the buses (timing/costs.hpp).
+// The clock tree, timers, converters and watchdogs run in board time. `Chip` is not thread-safe: the chip and the
+// circuit run in the thread that calls run_until().
 #pragma once
 
 #include <array>
@@ -43,9 +43,10 @@ struct ChipOptions {
   std::uint32_t random_seed = 1;  ///< for the RNG peripheral and for flash operations that a reset interrupts
   /// Receives each line of the log (without a newline). By default the log goes to stderr.
   std::function<void(const std::string&)> log;
-  /// Returns the function name at an address for log lines, or an empty string. By default there are no names.
+  /// Returns the name of the function at `address` for log lines, or an empty string. By default log lines contain no
+  /// function names.
   std::function<std::string(std::uint32_t address)> name_of_code;
-  /// Called in exact mode before each instruction. `cycles` counts the cycles that the processor has run.
+  /// Called before each instruction in exact mode. `cycles` is the number of cycles that the processor has run.
   std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 
@@ -63,11 +64,11 @@ inline constexpr std::size_t reset_causes = 7;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;
-  /// Cycles of the longest run with entry and return, without the exceptions that preempted the run.
+  /// Cycles of the longest handler run, including entry and return, excluding the exceptions that preempted the run.
   std::uint64_t longest_cycles = 0;
 };
 
-/// Counts since construction or clear_counters().
+/// Counts since construction or since the last clear_counters().
 struct Counters {
   std::uint64_t instructions = 0;
   std::uint64_t cycles = 0;  ///< without sleep
@@ -101,7 +102,7 @@ struct Clocks {
 struct Fault {
   std::string what;  ///< cause and addresses
   Ticks when = 0;
-  /// Registers before the entry of the fault handler. R0 to R3, R12, LR, PC and XPSR are the stacked values.
+  /// Core registers before the entry of the fault handler. R0 to R3, R12, LR, PC and XPSR are the stacked values.
   CoreRegisters registers;
 };
 
@@ -113,56 +114,57 @@ class Chip {
   Chip(const Chip&) = delete;
   Chip& operator=(const Chip&) = delete;
 
-  /// Erases the flash sectors that the ELF's load segments touch, and programs the segments at their physical
-  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated, not a 32-bit ARM
-  /// executable, or does not fit.
+  /// Erases the flash sectors that the ELF's load segments overlap, and programs the segments at their physical
+  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, is truncated, is not a 32-bit ARM
+  /// executable, or is too large.
   void load_elf(const std::filesystem::path& path);
   /// Resets processor and peripherals like the NRST pin. Board time continues.
   void reset(ResetCause cause = ResetCause::pin);
 
-  /// Runs until board time reaches `when` or the firmware exits. This function calls the circuit, the peripherals and
+  /// Runs until board time reaches `when` or the firmware exits. run_until() calls the circuit, the peripherals and the
   /// scheduled events.
   Stop run_until(Ticks when);
-  /// Starts the firmware after a reset as the boot loader does on its "go" command (AN2606). Clocks, CCM and vector
-  /// table have the state that a boot loader may leave, which differs from their reset state.
+  /// Starts the firmware like the "go" command of the boot loader (AN2606). Call reset() before this function. Clocks,
+  /// CCM and vector table have the state that the boot loader leaves, not their reset state.
   void start_by_boot_loader();
   /// Starts the boot loader, like a reset with BOOT0 high.
   void start_boot_loader();
   /// Sets the program counter, like a debugger between two instructions or a bit flip in the register. Not allowed
   /// inside run_until().
   void jump(std::uint32_t address);
-  // Injected faults, not allowed inside run_until(). A reset ends a stall and a halt; the other faults remain.
-  /// Stops the core for this time, like a long bus wait. All other parts continue.
+  // Injected faults. Calls are not allowed inside run_until(). A reset clears stall(), stall_thread() and halt(); the
+  // other faults remain.
+  /// Stops the core for `duration`, like a long bus wait. The peripherals continue.
   void stall(Ticks duration);
-  /// Stops the program for this time, like an endless loop; exceptions are still handled. If the program masks
-  /// exceptions, the stop begins only after the instruction that unmasks them.
+  /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
+  /// exceptions, the stop begins only after the instruction that unmasks the exceptions.
   void stall_thread(Ticks duration);
-  /// Halts the core for this time like a debug probe. Peripherals that firmware selected in DBGMCU_APBx_FZ freeze too.
+  /// Halts the core for `duration` like a debug probe. Peripherals that firmware selected in DBGMCU_APBx_FZ freeze too.
   /// In contrast, a halt by debug_port() stops board time.
   void halt(Ticks duration);
-  /// Inverts the level that the circuit drives at the pin for this time, like a voltage spike.
+  /// For `duration`, inverts the level that the circuit drives at the pin, like a voltage spike.
   void glitch(char port, unsigned pin, Ticks duration);
-  /// Suppresses an exception: it no longer reaches the core, until `lost` is false.
+  /// If `lost` is true, the exception does not reach the core until a call with false.
   void lose_exception(unsigned exception, bool lost);
-  /// Delays an exception, from its next occurrence on, by this number of HCLK cycles. 0 ends the delay.
+  /// Delays each further occurrence of an exception by `cycles` of HCLK. 0 removes the delay.
   void delay_exception(unsigned exception, std::uint32_t cycles);
   /// Flips one bit of a byte of RAM or flash. Returns false if there is no memory at `address`.
   [[nodiscard]] bool flip_bit(std::uint32_t address, unsigned bit);
-  /// Prevents new conversions of ADC `number` (1 to 3), or allows them again.
+  /// Prevents new conversions of ADC `number` (1 to 3) while `stopped` is true.
   void stop_converter(unsigned number, bool stopped);
-  /// Prevents both DMA controllers from accepting requests, or allows it again.
+  /// Prevents both DMA controllers from accepting requests while `stopped` is true.
   void stop_dma(bool stopped);
-  /// Interrupts the power in the middle of the erase or word program with this number, counted from now. Power returns
+  /// Interrupts the power in the middle of a flash operation: 1 is the next erase or program operation. Power returns
   /// immediately. 0 cancels the interruption.
   void cut_power_at_flash_operation(std::uint64_t number);
-  /// Number of erases and programmed words since construction.
+  /// Number of erase and program operations since construction.
   std::uint64_t flash_operations() const;
   /// Sets the 3.3 V supply of the chip and VDDA. Below the brown-out level of the option bytes the chip stays in reset.
   void set_supply_V(double volts);
   /// Sets VDDA alone. VDDA is the reference of the converters.
   void set_analog_supply_V(double volts);
   void let_crystal_swing(bool swings);
-  /// Sets the deviation of the crystal from its nominal frequency; ChipOptions::crystal_ppm initially.
+  /// Sets the deviation of the crystal from its nominal frequency. The initial value is ChipOptions::crystal_ppm.
   void drift_crystal(std::int32_t ppm);
   /// Number of the running exception; 0 in thread mode.
   unsigned current_exception() const;
@@ -174,38 +176,38 @@ class Chip {
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
-  /// Level at a pin ('A' to 'I', 0 to 15) as a meter shows it, and the output level of the chip itself.
+  /// Level that a meter would show at a pin, and level that the chip drives. `port` is 'A' to 'I', `pin` 0 to 15.
   PinLevel pin_level(char port, unsigned pin) const;
   PinLevel pin_output(char port, unsigned pin) const;
   ChipConnections connections();
 
   /// Adds a peripheral to the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or 0x50000000..0x50060BFF.
-  /// The peripheral is reset with the chip. It must outlive the chip.
+  /// Each chip reset also resets the peripheral. `peripheral` must outlive the chip.
   void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
 
-  /// Called at the trigger of each injected ADC sequence with its index since reset. ADCs that are triggered at the
-  /// same instant count once.
+  /// Called at the trigger of each injected ADC sequence. `index` counts the sequences since reset. ADCs that are
+  /// triggered simultaneously count once.
   std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
-  /// A character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
+  /// Called for each character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
   std::function<void(std::uint8_t byte)> on_console;
-  /// A character from USART `number` (1..6), reported at the end of its stop bit.
+  /// Called for each character from USART `number` (1..6), at the end of its stop bit.
   std::function<void(unsigned number, std::uint8_t byte)> on_usart;
-  /// Calls `changed` at each level change of a pin, and initially for each pin that is not floating. An empty
-  /// function ends the watch.
+  /// Calls `changed` at each level change of a pin, and initially for each pin that is not floating. An empty function
+  /// stops the calls.
   void watch_pins(std::function<void(char port, unsigned pin, PinLevel level, Ticks when)> changed);
-  /// Calls `changed` when an exception starts to run, and with 0 when thread mode resumes. An empty function ends the
-  /// watch.
+  /// Calls `changed` with the exception number when a handler starts or resumes, and with 0 when thread mode resumes.
+  /// An empty function stops the calls.
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
-  /// Called when the firmware breaks a rule, once per peripheral or pin.
+  /// Called when the firmware breaks a rule, once for each combination of rule and peripheral or pin.
   std::function<void(const Violation& violation)> on_violation;
-  /// Called after each order while the boot loader in the chip runs. Returns the next order.
+  /// Called when the boot loader in the chip has executed an order. Returns the next order.
   std::function<LoaderOrder()> on_boot_loader;
-  /// Called after each reset by the firmware, a watchdog or reset().
+  /// Called after each reset, whose cause may be the firmware, a watchdog or reset().
   std::function<void(ResetCause cause)> on_reset;
 
   /// Sends a character to the receiver of USART `number` (1..6). Characters follow each other at the baud rate.
   void usart_receive(unsigned number, std::uint8_t byte);
-  /// True if the receiver is on. Earlier characters are lost.
+  /// True if the receiver of USART `number` is on. Characters sent before this are lost.
   bool usart_listens(unsigned number) const;
   /// Number of bytes from usart_receive() that the USART has not received yet.
   std::size_t usart_waiting(unsigned number) const;
@@ -215,23 +217,23 @@ class Chip {
   Clocks clocks() const;
   const Counters& counters() const;
   void clear_counters();
-  /// Argument of SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, valid after Stop::firmware_exit.
+  /// Exit code from SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, valid after Stop::firmware_exit.
   int exit_code() const;
   /// Description of the fault with its addresses, valid after Stop::locked_up.
   const std::string& lockup_reason() const;
   /// Most recent fault that did not occur in the handler of another fault. This fault is the cause of a lock-up.
   const std::optional<Fault>& first_fault() const;
   std::vector<RegisterMap> register_maps() const;
-  /// Rules that the firmware has broken so far, in the order of first occurrence.
+  /// Rules that the firmware has broken, in the order of their first violations.
   const std::vector<Violation>& violations() const;
-  /// Log lines of accesses to unmodeled registers so far.
+  /// Log lines of all accesses to unmodeled registers.
   const std::vector<std::string>& unmodelled_accesses() const;
 
-  /// Memory word for debuggers (flash, SRAM, CCM; no registers, no side effects). Returns 0 outside of memory.
+  /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for other addresses.
   std::uint32_t memory_word(std::uint32_t address) const;
-  /// The whole flash, for programmers. Call reset() after a change.
+  /// Contents of the flash, for programmers. Call reset() after a change of the contents.
   std::span<std::uint8_t> flash();
-  /// Hash of memory and core registers, to compare runs.
+  /// Hash of the memory and the core registers, for comparing runs.
   std::uint64_t state_hash() const;
 
  private:

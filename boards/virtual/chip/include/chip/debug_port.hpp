@@ -47,14 +47,14 @@ class DebugPort {
   virtual void detach() = 0;
 
   virtual CoreRegisters core_registers() const = 0;
-  /// Sets the registers; of xPSR only the flags.
+  /// Sets the core registers. In xPSR only the flags change.
   virtual void set_core_registers(const CoreRegisters& registers) = 0;
   virtual FloatRegisters float_registers() const = 0;
   virtual void set_float_registers(const FloatRegisters& registers) = 0;
 
-  /// Reads memory, or peripheral registers with their side effects. Returns false if nothing is mapped there.
+  /// Reads memory, or peripheral registers with their side effects. Returns false for an unmapped address.
   virtual bool read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
-  /// Writes RAM or peripheral registers. Returns false if nothing writable is mapped there.
+  /// Writes RAM or peripheral registers. Returns false if the address is not writable.
   virtual bool write(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
 
   virtual void add_breakpoint(std::uint32_t address) = 0;
@@ -64,7 +64,7 @@ class DebugPort {
 
   /// Makes the next run_until() continue past a breakpoint at the current address.
   virtual void resume() = 0;
-  /// Makes the next run_until() execute one instruction, or one whole if-then block, with interrupts held off.
+  /// Makes the next run_until() execute one instruction, or one whole if-then block, without interrupts.
   virtual void step() = 0;
   virtual DebugStop last_stop() const = 0;
 };

@@ -1,5 +1,5 @@
-// Exception numbers of the core (ARMv7-M, B1.5.2), and interrupts by their position in the vector table (RM0090, table
-// "Vector table for STM32F405xx/07xx").
+// Numbers of the core exceptions (ARMv7-M, B1.5.2) and vector table positions of the interrupts (RM0090, table "Vector
+// table for STM32F405xx/07xx").
 #pragma once
 
 namespace inkwell::virtual_board {

@@ -1,6 +1,6 @@
 // Interfaces between the parts of the virtual board: time, events, interrupt lines, peripherals, pins.
 //
-// One thread runs all these parts. Other threads (sockets) pass work through queues, and events drain the queues.
+// One thread runs all parts of the virtual board. The socket threads pass their work to this thread through queues.
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -11,13 +11,14 @@
 
 namespace inkwell::virtual_board {
 
-/// Board time. 8.4 GHz is a multiple of every clock in use (168 MHz is 50 ticks, 48 MHz 175, 16 MHz 525).
+/// Board time in ticks of 8.4 GHz, a multiple of every clock in use: a period at 168 MHz lasts 50 ticks, at 48 MHz 175
+/// ticks, at 16 MHz 525 ticks.
 using Ticks = std::uint64_t;
 inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
 constexpr Ticks ticks(double time_s) { return static_cast<Ticks>(time_s * static_cast<double>(ticks_per_s) + 0.5); }
 
-/// Nominal supply of the chip and nominal VDDA.
+/// Nominal voltage of VDD and VDDA.
 inline constexpr double logic_supply_V = 3.3;
 
 /// Runs events in the order of board time. Events with equal times run in the order of their requests.
@@ -26,27 +27,28 @@ class Scheduler {
   using Id = std::uint64_t;
   virtual ~Scheduler() = default;
   virtual Ticks now() const = 0;
-  /// Runs `action` once when board time reaches `when`. If `when` has passed, the action runs at the current board
-  /// time, but not inside this call.
+  /// Runs `action` once when board time reaches `when`. If `when` is in the past, `action` runs at the current board
+  /// time, after at() has returned.
   virtual Id at(Ticks when, std::function<void()> action) = 0;
   virtual void cancel(Id id) = 0;
 };
 
-/// Level-sensitive inputs of the interrupt controller, by position in the vector table of RM0090.
+/// Level-sensitive inputs of the interrupt controller, numbered by their position in the vector table of RM0090.
 class InterruptController {
  public:
   virtual ~InterruptController() = default;
   virtual void set_level(unsigned position, bool asserted) = 0;
 };
 
-/// A block of registers on a bus. Offsets are relative to the block; sizes are 1, 2 or 4 bytes.
+/// A register block on a bus. Offsets are relative to the start of the block; accesses have 1, 2 or 4 bytes.
 class Peripheral {
  public:
   virtual ~Peripheral() = default;
   virtual std::uint32_t read(std::uint32_t offset, unsigned size) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
   virtual void reset() = 0;
-  /// Registers with the names of the reference manual. The arguments are the name and base address of the peripheral.
+  /// Register maps with the names of the reference manual. The arguments are the name and base address of the
+  /// peripheral.
   virtual std::vector<RegisterMap> register_maps(const std::string&, std::uint32_t) const { return {}; }
 };
 
@@ -57,7 +59,7 @@ class UnmodelledLog {
   virtual void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) = 0;
 };
 
-/// Current clocks and pin functions, for peripherals that depend on them.
+/// Present clocks and pin functions of the chip, for peripherals that depend on them.
 class ChipState {
  public:
   virtual ~ChipState() = default;
@@ -83,15 +85,15 @@ struct AnalogSource {
   double pull_down_ohm = 0.0;  ///< on the chip's side of a wire break; 0 if there is none
 };
 
-/// Circuit around the chip. The times of calls never decrease.
+/// Circuit around the chip. `now` never decreases from call to call.
 class Circuit {
  public:
   virtual ~Circuit() = default;
-  /// Called when the chip drives a pin (GPIO output or timer output) or releases it. `port` is 'A'..'I'.
+  /// Called when the chip drives or releases a pin (GPIO output or timer output). `port` is 'A'..'I'.
   virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
   /// Returns the voltage at a pin, in volts. Called at the sampling instant of an ADC.
   virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
-  /// Source of the voltage at a pin, which sets the charging time of the sampling capacitor.
+  /// Voltage source at a pin, whose impedance determines the charging time of the sampling capacitor.
   virtual AnalogSource analog_source(char /*port*/, unsigned /*pin*/) const { return {}; }
   /// Advances the circuit to `now`. Called at least once every 50 us of board time.
   virtual void advance(Ticks now) = 0;
@@ -102,8 +104,8 @@ class InputPins {
  public:
   virtual ~InputPins() = default;
   static constexpr Ticks just_now = ~Ticks{0};
-  /// Drives a pin. A circuit that computes in steps passes the past time of the edge in `since`. Calls for one pin
-  /// must be in the order of these times.
+  /// Drives a pin. If the circuit computes in steps, `since` is the earlier time of the edge. `since` must not decrease
+  /// between the calls for one pin.
   virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
   /// Forces the pin to a level that overrides the output of the chip. `floating` removes the force.
   virtual void hold(char /*port*/, unsigned /*pin*/, PinLevel /*level*/) {}

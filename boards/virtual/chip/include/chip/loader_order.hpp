@@ -1,6 +1,6 @@
-// Orders to the boot loader in the system memory of the chip. Instructions on the emulated processor execute the
-// orders, with the timing of flash, buses and clocks. The program that emulates the USB side of the boot loader issues
-// the orders.
+// Orders to the boot loader in the system memory of the chip. Instructions of the emulated processor execute the
+// orders, with the timing of flash, buses and clocks. The program issues the orders and emulates the USB interface of
+// the boot loader.
 #pragma once
 
 #include <cstddef>

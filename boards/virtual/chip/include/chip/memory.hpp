@@ -11,7 +11,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Formats a number, for example 0x08000000.
+/// Formats a number in hexadecimal, for example 0x08000000.
 std::string hexadecimal(std::uint32_t value);
 
 class Memory {
@@ -22,12 +22,12 @@ class Memory {
   std::uint8_t* ccm() { return ccm_.data(); }
   std::uint8_t* system() { return system_.data(); }
 
-  /// Host address of `bytes` bytes at `address`, or nullptr unless all of them are within one memory.
+  /// Host pointer to the `bytes` bytes at `address`, or nullptr unless one memory contains all these bytes.
   std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
   const std::uint8_t* at(std::uint32_t address, std::uint32_t bytes) const {
     return const_cast<Memory*>(this)->at(address, bytes);
   }
-  /// Like at(), for writable memory (SRAM, CCM) only.
+  /// Like at(), but only for RAM (SRAM and CCM).
   std::uint8_t* ram_at(std::uint32_t address, std::uint32_t bytes);
   std::uint32_t word(std::uint32_t address) const {
     std::uint32_t value = 0;
@@ -45,9 +45,9 @@ class Memory {
   std::vector<std::uint8_t> flash_, sram_, ccm_, system_;
 };
 
-/// Erases the flash sectors that the load segments of an ELF file touch, and writes the segments at their physical
-/// addresses. Throws ChipError with the name of the file. Returns a warning about a doubtful image, or an empty
-/// string.
+/// Erases the flash sectors that the load segments of an ELF file overlap, and writes the segments at their physical
+/// addresses. Throws ChipError with the name of the file. Returns a warning about a questionable stack pointer, or an
+/// empty string.
 std::string program_elf(std::span<const char> file, const std::string& name, Memory& memory);
 
 }  // namespace inkwell::virtual_board

@@ -1,7 +1,7 @@
 // Declarations of registers and their fields by name. The peripheral models of the virtual chip use these declarations.
 //
-// This map is independent of the firmware's register map, so that the two do not share mistakes.
-// tools/check_registers.py compares both with the manufacturer's description of the chip.
+// The maps are independent of the firmware's register maps, so that a mistake cannot affect both.
+// tools/check_registers.py compares both sets of maps with the manufacturer's description of the chip.
 //
 //   struct CrcRegisters {
 //     struct : Register {
@@ -13,8 +13,9 @@
 //   };
 //   inline constexpr CrcRegisters crc_registers;
 //
-// A map contains only registers and fields, so it can be read as an array of entries. It is known at compile time:
-// `crc_registers.cr.reset.in(word)` compiles to a mask. Names are from the reference manual.
+// A map contains only registers and fields, so code can read the map as an array of entries. Maps are compile-time
+// constants: `crc_registers.cr.reset.in(word)` compiles to a mask. Register and field names are from the reference
+// manual.
 #pragma once
 
 #include <array>
@@ -36,8 +37,8 @@ enum class Access : std::uint8_t {
   rs,     ///< writing 1 sets it, hardware clears it
 };
 
-/// Repetition of a register or field: count, stride (in bytes for registers, in bits for fields) and number of the
-/// first. The number replaces the `#` in the name; numbers from 'A' on are letters. A field without repetition uses
+/// Repetition of a register or field: count, stride (bytes for registers, bits for fields) and number of the first
+/// repetition. The number replaces the `#` in the name; numbers from 'A' on are letters. A field without repetition has
 /// the number of its register.
 struct Repeat {
   unsigned count = 1, stride = 0, first = 0;
@@ -75,11 +76,11 @@ struct Field : MapEntry {
   constexpr unsigned position(unsigned index = 0) const { return place + stride * index; }
   constexpr std::uint32_t maximum() const { return width == 32 ? 0xFFFF'FFFF : (1u << width) - 1; }
   constexpr std::uint32_t mask(unsigned index = 0) const { return maximum() << position(index); }
-  /// Value of the field in a word of its register.
+  /// Value of the field in a register value.
   constexpr std::uint32_t of(std::uint32_t word, unsigned index = 0) const {
     return word >> position(index) & maximum();
   }
-  /// True if the field is not 0 in a word of its register.
+  /// True if the field is not 0 in a register value.
   constexpr bool in(std::uint32_t word, unsigned index = 0) const { return of(word, index) != 0; }
   /// Value shifted to the position of the field.
   constexpr std::uint32_t with(std::uint32_t value, unsigned index = 0) const {
@@ -93,7 +94,7 @@ struct Field : MapEntry {
   }
 };
 
-/// A register. A register converts to its offset.
+/// A register, which converts to its offset.
 struct Register : MapEntry {
   consteval Register(const char* text, unsigned offset, std::uint32_t value_after_reset = 0, Repeat repeat = {})
       : MapEntry{named(text),
@@ -119,7 +120,7 @@ constexpr auto entries_of(const Map& map) {
   return std::bit_cast<std::array<MapEntry, sizeof(Map) / sizeof(MapEntry)>>(map);
 }
 
-/// Combined mask of the register's fields with this access.
+/// Combined mask of the register's fields that have this access right.
 template <class OneRegister>
 consteval std::uint32_t bits_of(const OneRegister& one_register, Access access) {
   std::uint32_t bits = 0;

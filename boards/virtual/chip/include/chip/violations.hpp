@@ -1,16 +1,16 @@
-// Rules for firmware. This model tolerates violations of these rules, but real hardware does not.
+// Rules for firmware. The virtual chip tolerates violations of these rules, but real hardware does not.
 //
-// Each rule is a row of the table. The model that detects a violation passes the rule and, if necessary, the affected
+// Each rule is a row of the table. A model that detects a violation reports the rule and, if necessary, the affected
 // peripheral or pin.
 #pragma once
 
 // To add a rule:
 // 1. Add a row to INKWELL_CHIP_RULES.
-// 2. Call violate(Rule::NAME) at the violation and emulate the effect on silicon there.
-// 3. In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp. The firmware must
-//    break only this rule.
+// 2. In the model, call violate(Rule::NAME) at the violation and emulate the effect on silicon.
+// 3. In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp. The test firmware must
+// break only the new rule.
 //
-// `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use this option.
+// `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use `--strict`.
 
 #include <array>
 #include <chip/interfaces.hpp>
@@ -223,7 +223,7 @@ struct Violation {
   std::uint64_t count = 1;
 };
 
-/// Sentence with action, location, consequence and remedy.
+/// Describes the violation in one sentence: action, location, consequence and remedy.
 std::string sentence(const Violation& violation);
 
 /// Receives detected violations.
@@ -233,7 +233,7 @@ class RuleKeeper {
   virtual void violate(Rule rule, const std::string& where = {}) = 0;
 };
 
-/// Parts of the chip that a peripheral from outside of this library may use.
+/// Chip interfaces for peripherals that are defined outside of this library.
 struct ChipConnections {
   Scheduler& scheduler;
   InterruptController& interrupts;
