@@ -30,7 +30,8 @@ std::optional<Range> range_of(std::string_view text) {
   return Range{*address, *bytes};
 }
 
-/// Returns the part of `text` for "OFFSET,LENGTH", after a letter that indicates whether more data follows.
+/// Returns the part of `text` that "OFFSET,LENGTH" selects. The first letter of the reply is `m` if more text follows,
+/// otherwise `l`.
 Answered part_of(const std::string& text, std::string_view range) {
   const auto part = range_of(range);
   if (!part) return bad_request;
@@ -79,7 +80,7 @@ Request write_memory(std::string_view text, bool is_binary) {
   return WriteMemory{range->address, std::move(*bytes)};
 }
 
-/// "zKIND,ADDRESS,LENGTH", optionally with more fields after a semicolon.
+/// Parses "zKIND,ADDRESS,LENGTH", optionally with more fields after a semicolon.
 Request change_point(std::string_view packet) {
   constexpr std::size_t begin = 3;
   if (packet.size() < begin || packet[2] != ',') return bad_request;

@@ -62,7 +62,7 @@ class SymbolTable {
     }
   }
 
-  /// Contents of the symbol up to the first zero byte.
+  /// Returns the bytes at the symbol up to the first zero byte.
   std::string text(const Elf32_Sym& symbol) const {
     const auto place = section(symbol.st_shndx);
     if (!place || place->sh_type != SHT_PROGBITS || symbol.st_value < place->sh_addr) return {};
@@ -103,7 +103,7 @@ std::string Symbols::name(std::uint32_t address) const {
   if (after == functions_.begin()) return {};
   const Function& function = *std::prev(after);
   const std::uint32_t offset = address - function.address;
-  // Assembler functions often have no size. Such functions extend to the next function.
+  // Assembler functions often have size 0. A function with size 0 extends to the next function.
   if (function.bytes != 0 ? offset >= function.bytes : after == functions_.end() && offset > 0) return {};
   return offset == 0 ? demangled(function.name) : fmt::format("{}+0x{:X}", demangled(function.name), offset);
 }

@@ -53,7 +53,8 @@ Waveform::~Waveform() {
   set_time(chip_.now());
 }
 
-// The processor may be ahead of the pins by the rest of its slice. Time in the file must never decrease.
+// The time of an exception may be later than the time of the next pin change, by up to one processor slice. Time in the
+// file must never decrease.
 void Waveform::set_time(Ticks when) {
   if (begun_ && when <= written_until_) return;
   begun_ = true;

@@ -64,7 +64,7 @@ std::uint32_t address(const std::string& text) {
   return value;
 }
 
-/// Index of `text` in the names.
+/// Returns the index of `text` in `names`.
 unsigned one_of(std::span<const std::string_view> names, const std::string& text, std::string_view what) {
   const auto found = std::ranges::find(names, text);
   if (found == names.end())
@@ -146,7 +146,7 @@ Injection checked(const protocol::InjectionRequest& request, const board::Facts&
 Injection parse_injection(std::string_view text, const board::Facts& board) {
   protocol::InjectionRequest parts;
   std::string_view rest = text;
-  // The search starts at the end, because a plus sign also separates the names of two wires.
+  // The last mark is used, because a plus sign also separates the names of two wires.
   const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {
     const auto place = rest.rfind(mark);
     if (place == std::string_view::npos) return std::nullopt;

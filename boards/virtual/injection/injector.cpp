@@ -11,7 +11,7 @@ namespace {
 
 using protocol::InjectedFault;
 
-/// Representative of all faults that exclude each other at one position.
+/// Returns the same fault for all faults that exclude each other at one position.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::wire_low:
@@ -28,7 +28,7 @@ InjectedFault kind(InjectedFault fault) {
   }
 }
 
-/// Whether the fault is instantaneous; a second one adds to the first.
+/// True if the fault is instantaneous. A second instantaneous fault adds to the first fault.
 bool is_momentary(InjectedFault fault) {
   return fault == InjectedFault::encoder_slip || fault == InjectedFault::program_astray ||
          fault == InjectedFault::ram_bit || fault == InjectedFault::flash_bit;
@@ -38,14 +38,14 @@ bool is_within(std::uint32_t address, std::uint32_t base, std::uint32_t bytes) {
   return address >= base && address - base < bytes;
 }
 
-/// Size of the image in flash. The flash above the image is erased and unused.
+/// Size of the image in flash. The flash after the image is erased and unused.
 std::uint32_t programmed_bytes(const Chip& chip) {
   std::uint32_t bytes = flash_bytes;
   while (bytes > 4 && chip.memory_word(flash_base + bytes - 4) == 0xFFFF'FFFF) bytes -= 4;
   return bytes;
 }
 
-/// add() has checked the address. The check here prevents a report of a fault that did not occur.
+/// add() has checked the address. This second check ensures that only a fault that has occurred is listed.
 void flip_bit(Chip& chip, const Injection& injection) {
   if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
     throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} in which a bit could flip", *injection.address));
@@ -106,7 +106,7 @@ void Injector::put_in(unsigned number, Injection injection) {
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
       if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
-      // A new amount replaces the amount of the same fault, without a fault-free moment in between.
+      // If only the amount changes, the fault is not cleared first, so that no fault-free time occurs.
       if (active.injection.fault != injection.fault) put(active.injection, false);
       return true;
     });

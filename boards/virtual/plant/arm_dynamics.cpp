@@ -70,7 +70,7 @@ ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) co
   const double a_speed = speed[1];
   const double b_speed = parallelogram_ ? speed[2] : speed[1] + speed[2];
 
-  // Link coordinates. The Coriolis terms follow from Lagrange's equations and the energies in arm_dynamics.hpp.
+  // Link coordinates. The Coriolis terms follow from Lagrange's equations for the energies in arm_dynamics.hpp.
   const double cos_difference = l.cos_a * l.cos_b + l.sin_a * l.sin_b;
   const double sin_difference = l.sin_a * l.cos_b - l.cos_a * l.sin_b;
   const double waist = turret_kg_m2_ + link_2_kg_m2_ * l.cos_a * l.cos_a + link_3_kg_m2_ * l.cos_b * l.cos_b +

@@ -18,7 +18,8 @@ void MotorDrive::configure(const MotorConstants& motor) {
   time_constant_s_ = motor.inductance_H / resistance_ohm_;
   inverse_resistance_ = 1.0 / resistance_ohm_;
   amplifier_time_constant_s_ = amplifier_s_;
-  // Equal time constants would make the amplifier's closed form singular. Ratios close to 1 are therefore set to 0.999.
+  // With equal time constants of amplifier and winding, the closed form would be singular. A ratio close to 1 is
+  // therefore set to 0.999.
   double ratio = amplifier_time_constant_s_ / time_constant_s_;
   if (std::abs(1.0 - ratio) < 1e-3) {
     ratio = 1.0 - 1e-3;
@@ -60,7 +61,7 @@ void MotorDrive::set_leg(unsigned leg, Leg level, Ticks now) {
   LegState& state = legs_[leg];
   if (state.wanted == level) return;
   state.wanted = level;
-  // A leg switches off immediately. A leg switches on after the dead time, when its other switch is off.
+  // The conducting switch of a leg turns off immediately. The other switch turns on after the dead time.
   const Ticks pause = dead_time_ + state.delay;
   state.actual = pause == 0 ? level : Leg::floating;
   state.settles_at = now + pause;
@@ -84,8 +85,8 @@ MotorDrive::Charges MotorDrive::take_charges() {
   return taken;
 }
 
-// Returns the source that drives the current. A floating leg is clamped to a rail by its conducting diode. A positive
-// current flows out of leg A and into leg B.
+// Returns the voltage source that drives the motor current. The conducting diode of a floating leg clamps the leg to a
+// rail. A positive current flows out of leg A and into leg B.
 MotorDrive::Branch MotorDrive::branch() const {
   if (!conducts_) return {back_emf_V_, 0.0, false, false};
   const Leg a = legs_[0].acting();
@@ -101,7 +102,7 @@ MotorDrive::Branch MotorDrive::branch() const {
   };
   if (!floating || current_A_ > 0.0) return with_sign(true);
   if (current_A_ < 0.0) return with_sign(false);
-  // At zero current, a current starts only if back-EMF and driven leg exceed the diode voltages.
+  // If the current is zero, a current starts only if the voltage of back-EMF and driven leg exceeds the diode voltages.
   if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
   if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
   return {back_emf_V_, 0.0, false, false};
@@ -138,7 +139,8 @@ void MotorDrive::run(double duration_s, double decay, double amplifier_decay, co
   const double charge_As = final_A * duration_s + transient_A * time_constant_s_ * (1.0 - decay);
   charges_.motor_As += charge_As;
   charges_.supply_As += path.supply_share * charge_As;
-  // The amplifier is first order. The response of the amplifier is a lagging forced part and a decaying free part.
+  // The amplifier is a first-order low-pass filter. Its response is the sum of a lagging forced part and a decaying
+  // free part.
   const double forced_A = amplifier_lead_ * transient_A;
   amplifier_A_ = final_A + forced_A * decay + (amplifier_A_ - final_A - forced_A) * amplifier_decay;
   current_A_ = final_A + transient_A * decay;

@@ -50,15 +50,15 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 
 constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
-/// Source resistance of the supply divider at the pin.
+/// Source resistance of the supply voltage divider at the pin.
 double divider_ohm(const board::Facts& board) {
   return static_cast<double>(board.supply_upper_ohm / board.supply_divider());
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
-/// Level of a bare contact to ground; the chip's pull-up provides the high level.
+/// Level of a contact that connects the pin to ground; the pull-up in the chip provides the high level.
 PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
-/// Level of the bridges' open-drain fault wire with the board's pull-up.
+/// Level of the open-drain fault wire of the bridges; a pull-up on the board provides the high level.
 PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high; }
 
 }  // namespace
@@ -138,7 +138,7 @@ void Plant::enable_bridges(bool enabled, Ticks now) {
   note_driving(now);
 }
 
-/// Disables the bridges if the monostable's pulse ends by `until`.
+/// Disables the bridges if the pulse of the monostable has ended at `until`.
 void Plant::let_go_of_bridges(Ticks until) {
   if (bridges_enabled_ && hold_.ends_at() <= until) enable_bridges(false, hold_.ends_at());
 }
@@ -163,14 +163,14 @@ bool Plant::shoots_through() const {
 
 void Plant::update_legs(unsigned motor, Ticks now) {
   if (bridges_enabled_ && !tripped_ && shoots_through()) {
-    // The shoot-through lasts microseconds. Then the bridge trips and reports a fault.
+    // The shoot-through lasts microseconds. After the shoot-through the bridge trips and reports a fault.
     tripped_ = inputs_stale_ = true;
     for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
     return;
   }
   for (unsigned leg = 0; leg < 2; ++leg) {
-    // A disabled or tripped bridge leaves the current to its diodes. The bridge inputs have pull-downs, so a floating
-    // pin is low.
+    // In a disabled or tripped bridge only the diodes conduct. The bridge inputs have pull-downs, so a floating pin is
+    // low.
     const bool off = !bridges_enabled_ || bridge_fault_ || tripped_;
     motors_[motor].set_leg(leg,
                            off                                       ? Leg::floating
@@ -227,7 +227,7 @@ AnalogSource Plant::analog_source(char port, unsigned pin) const {
 }
 
 double Plant::gimbal_V(unsigned axis) {
-  // angle = square r^2 + slope r + offset, solved for the r on the track
+  // Solves angle = square r^2 + slope r + offset for the ratio r between 0 and 1.
   const auto& [square, slope, offset] = gimbal_terms_[axis];
   const double constant = offset - gimbal_rad_[axis];
   double ratio = -constant / slope;
@@ -291,7 +291,7 @@ void Plant::step() {
 }
 
 void Plant::finish_docking() {
-  // The funnel captures the stylus only at the end of the path, not where the path crosses the funnel earlier.
+  // The stylus is captured only at the end of the carrier's path, even if the path crosses the funnel earlier.
   if (carrier_.is_moving(next_step_)) return;
   if (inkwell_.capture(probe_m_)) carrier_.release();
 }
@@ -304,7 +304,8 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
   pins_->drive(port, pin, level);
 }
 
-/// Drives the pin immediately, because the chip measures the duration of the pulse.
+/// Drives the pin for the bridge enable level immediately, because the chip measures the pulse duration of the
+/// monostable.
 void Plant::show_hold() {
   if (pins_ != nullptr) show(board_.bridge_hold.port, board_.bridge_hold.number, level_of(bridges_enabled_), shown_[6]);
 }
@@ -312,14 +313,14 @@ void Plant::show_hold() {
 void Plant::show_inputs() {
   if (pins_ == nullptr || !inputs_stale_) return;
   inputs_stale_ = false;
-  // The arm moved at constant speed since the inputs were last driven.
+  // Edge times assume that the arm has moved at constant speed since the inputs were last driven.
   const Ticks from = shown_at_, to = next_step_ - step_ticks;
   shown_at_ = to;
   for (unsigned i = 0; i < 3; ++i) {
     const auto& wiring = board_.encoders[i];
     encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels, double share) {
       const Ticks when = from + static_cast<Ticks>(share * static_cast<double>(to - from));
-      // Adjacent counts differ in one pin, so each edge is one call.
+      // Adjacent counts differ in one encoder output, so one call per count drives the changed pin.
       const auto& changed = levels.a != encoder_levels_[i].a ? wiring.a.pin : wiring.b.pin;
       pins_->drive(changed.port, changed.number, level_of(&changed == &wiring.a.pin ? levels.a : levels.b), when);
       encoder_levels_[i] = levels;
@@ -418,7 +419,7 @@ void Plant::place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) 
 
 Truth Plant::truth(Ticks now) {
   run_until(now);
-  // Extrapolates from the last step at the arm's speed.
+  // Positions are extrapolated from the last step with the speed of the arm.
   const double since_step_s = seconds(now_ + step_ticks - next_step_);
   Truth t;
   t.at = now_;

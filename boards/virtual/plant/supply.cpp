@@ -24,16 +24,16 @@ double Supply::source_V() const {
 }
 
 void Supply::advance(double duration_s, double charge_As) {
-  // Implicit Euler is stable for any source resistance and capacitor.
+  // Implicit Euler integration is stable for all values of source resistance and capacitance.
   const auto next_V = [&](double source_S) {
     const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V();
     return charge / (capacitance_F_ + duration_s * (source_S + quiescent_conductance_S_));
   };
   swinging_s_ += duration_s;
   const double fed_V = next_V(source_conductance_S_);
-  // A source that does not oscillate blocks when the bus voltage exceeds its own.
+  // Without the oscillation fault, the source does not conduct while the bus voltage exceeds the source voltage.
   bus_V_ = fed_V <= source_V() || swing_V_ != 0.0 ? fed_V : std::max(source_V(), next_V(0.0));
-  // The bridges' diodes clamp the bus at ground.
+  // The diodes of the bridges prevent a negative bus voltage.
   bus_V_ = std::max(bus_V_, 0.0);
 }
 

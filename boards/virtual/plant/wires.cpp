@@ -13,7 +13,8 @@ const PinName* Wires::neighbour(PinName wire) const {
   return nullptr;
 }
 
-// Returns the level at the receiving end. Of two touching wires low wins; an undriven wire is ignored.
+// Returns the level at the receiving end of a wire. If two wires touch, both are low if one is driven low; an undriven
+// wire does not affect the other wire.
 PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen) {
   const State& s = state(wire);
   switch (s.fault) {
@@ -49,7 +50,7 @@ void Wires::set(PinName wire, WireFault fault) {
   s.frozen_V = s.newest_V;
   s.since = now_;
   s.fault = fault;
-  // A short also overrides the chip's output.
+  // A short circuit also overrides the output of the chip.
   const bool touches = fault == WireFault::low || fault == WireFault::high;
   if (chip_ != nullptr)
     chip_->hold(wire.port, wire.pin,
@@ -105,7 +106,8 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
   return read_V;
 }
 
-// Returns an empty source for a broken wire, because the voltage of the wire already includes its time constant.
+// For a broken wire, returns a source without impedance, because the voltage of a broken wire already includes its time
+// constant.
 AnalogSource Wires::analog_source(char port, unsigned pin) const {
   return states_[index({port, pin})].fault == WireFault::sound ? circuit_.analog_source(port, pin) : AnalogSource{};
 }

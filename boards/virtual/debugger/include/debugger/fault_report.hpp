@@ -1,4 +1,4 @@
-// Explanation of a lock-up: its first fault with registers, function and call stack.
+// Report of a lock-up: the first fault with registers, function and call stack.
 #pragma once
 
 #include <chip/chip.hpp>
@@ -15,11 +15,11 @@ namespace inkwell::virtual_board {
 /// Reads a word of memory without side effects.
 using MemoryReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Returns probable callers of the code at `registers`, innermost first, at most `limit`. Candidates are LR and stack
-/// words that point to the instruction after a call. Remains of earlier calls on the stack can give wrong results.
+/// Returns probable callers of the code at `registers`, innermost first, at most `limit`. Candidates are LR, and stack
+/// words that point to the instruction after a call. Old return addresses on the stack can lead to wrong results.
 std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const MemoryReader& word, std::size_t limit);
 
-/// Lines about the first fault of a lock-up. `elf` is part of the suggested addr2line command.
+/// Returns text lines that describe the first fault of a lock-up. `elf` is part of the suggested addr2line command.
 std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf);
 
 }  // namespace inkwell::virtual_board

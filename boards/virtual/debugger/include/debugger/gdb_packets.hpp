@@ -1,4 +1,4 @@
-// Packet layer of GDB's remote serial protocol: packets, checksums, hexadecimal (GDB manual, appendix "Remote
+// Packet layer of GDB's remote serial protocol: packets, checksums, hexadecimal digits (GDB manual, appendix "Remote
 // Protocol", "Overview").
 #pragma once
 
@@ -31,7 +31,7 @@ class GdbPackets {
   std::string bytes_;
 };
 
-/// A packet with frame, escapes and checksum.
+/// Returns a packet with start character, escaped payload and checksum.
 std::string gdb_packet(std::string_view payload);
 
 /// Two digits per byte.

@@ -1,4 +1,4 @@
-// Parsing and validation of GDB requests without a chip (GDB manual, appendix "Remote Protocol", "Packets").
+// Parsing and validation of GDB requests, independent of the chip (GDB manual, appendix "Remote Protocol", "Packets").
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ namespace inkwell::virtual_board::gdb {
 /// Maximum number of memory bytes per packet.
 inline constexpr std::uint32_t memory_maximum = 0x2000;
 
-/// Register numbers from the target description for GDB: r0 to r15, xPSR, d0 to d15, FPSCR.
+/// Register numbers of the GDB target description: r0 to r15, xPSR, d0 to d15, FPSCR.
 inline constexpr unsigned xpsr_number = 16, first_double = 17, fpscr_number = 33, register_count = 34;
 constexpr std::size_t size_of_register(unsigned number) {
   return number >= first_double && number < fpscr_number ? 8 : 4;
 }
-/// Offset of a register in the packets g and G.
+/// Byte offset of a register in `g` and `G` packets.
 constexpr std::size_t place_of_register(unsigned number) {
   std::size_t place = 0;
   for (unsigned i = 0; i < number; ++i) place += size_of_register(i);
@@ -31,7 +31,7 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Reply that needs no chip. An empty reply means that the packet is not supported.
+/// Reply to a request that does not access the chip. An empty reply means that the packet is not supported.
 struct Answered {
   std::string reply;
 };
@@ -78,7 +78,7 @@ using Request =
     std::variant<Answered, WhyStopped, ReadRegisters, WriteRegisters, ReadRegister, WriteRegister, ReadMemory,
                  WriteMemory, ChangeBreakpoint, ChangeWatchPoint, Resume, LetGo, StopAcknowledging, Monitor>;
 
-/// Parses a packet without its frame. Any input is allowed; malformed packets return Answered with an error.
+/// Parses the payload of a packet. Any input is allowed; for malformed packets the result is Answered with an error.
 Request request_of(std::string_view packet);
 
 }  // namespace inkwell::virtual_board::gdb

@@ -20,12 +20,12 @@ class GdbSession {
   /// Call this when GDB has disconnected or detached. The processor continues.
   void detach();
   bool attached() const { return attached_; }
-  /// True while board time is stopped until GDB continues.
+  /// True while GDB has stopped board time.
   bool halted() const { return attached_ && halted_; }
 
   /// Handles received bytes and returns the bytes of the reply.
   std::string receive(std::string_view bytes);
-  /// Call this when run_until() has returned. Returns the message to GDB.
+  /// Call this when run_until() has returned. Returns the stop reply for GDB.
   std::string report(Stop stop);
 
  private:
@@ -33,7 +33,7 @@ class GdbSession {
     WatchPoint place;
     char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
-  // Each function returns the reply to GDB; a running processor sends no reply.
+  // Each function returns the reply to GDB, which is empty if the request makes the processor run.
   static std::string carry_out(const gdb::Answered& asked);
   std::string carry_out(gdb::WhyStopped asked);
   std::string carry_out(gdb::ReadRegisters asked);

@@ -12,10 +12,12 @@ namespace inkwell::virtual_board {
 class Symbols {
  public:
   Symbols() = default;
-  /// Reads an ELF file that the chip has loaded. A file without a valid symbol table has no names.
+  /// Reads the symbol table of an ELF file that the chip has loaded. Without a valid symbol table, name() returns an
+  /// empty string.
   explicit Symbols(const std::filesystem::path& elf);
 
-  /// Returns the function at `address` with the offset, such as "main+0x12", or an empty string.
+  /// Returns the function that contains `address`, with the offset of `address`, such as "main+0x12", or an empty
+  /// string.
   std::string name(std::uint32_t address) const;
 
  private:
@@ -26,7 +28,7 @@ class Symbols {
   std::vector<Function> functions_;  ///< sorted by address
 };
 
-/// Returns the zero-terminated text of this symbol in an ELF file, or an empty string.
+/// Returns the zero-terminated text at the symbol `name` in an ELF file, or an empty string.
 std::string text_in_elf(const std::filesystem::path& elf, std::string_view name);
 
 }  // namespace inkwell::virtual_board

@@ -1,5 +1,5 @@
-// Value change dump (IEEE 1364-2005, clause 18) of pin levels and the running exception over board time, for GTKWave
-// and similar viewers.
+// Writes pin levels and the running exception over board time as a value change dump (IEEE 1364-2005, clause 18), for
+// viewers such as GTKWave.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace inkwell::virtual_board {
 
 class Waveform {
  public:
-  /// Throws std::runtime_error if the file cannot be written. An empty `pins` selects all pins. The object watches the
-  /// pins and exceptions of the chip until its destruction, and `chip` must outlive it.
+  /// Throws std::runtime_error if the file cannot be written. An empty `pins` selects all pins. A Waveform records the
+  /// pins and exceptions of `chip` until its destruction. `chip` must outlive the Waveform.
   Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip);
   ~Waveform();
   Waveform(const Waveform&) = delete;

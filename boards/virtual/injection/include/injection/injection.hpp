@@ -1,4 +1,4 @@
-// A requested fault from a command line, a script or a client of the control socket, checked against
+// Fault requested by the command line, a script or a client of the control socket, checked against
 // protocol/injections.hpp.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace inkwell::virtual_board {
 
-/// The request is invalid; what() is a sentence that states the valid requests.
+/// Thrown for an invalid request. what() is a sentence that states the valid requests.
 class InvalidInjection : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -34,14 +34,16 @@ struct Injection {
   std::optional<double> for_s;  ///< duration, after which the fault is cleared
 };
 
-/// Checks a request against the wires of `board`. All functions below also throw InvalidInjection.
+/// Checks a request, including its wires, which must exist on `board`. Throws InvalidInjection.
 Injection checked(const protocol::InjectionRequest& request, const board::Facts& board);
-/// NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2; times in seconds.
+/// Parses NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2, with times in seconds. Throws
+/// InvalidInjection.
 Injection parse_injection(std::string_view text, const board::Facts& board);
-/// Parses one injection per line; text after a # is a comment. An error names its line.
+/// Parses one injection per line; text after a # is a comment. Throws InvalidInjection with the number of the invalid
+/// line.
 std::vector<Injection> parse_injections(std::string_view script, const board::Facts& board);
 
-/// Table of all injections for --help, one line each.
+/// Table of all injections for --help, with one line per injection.
 std::string explain_injections();
 
 }  // namespace inkwell::virtual_board

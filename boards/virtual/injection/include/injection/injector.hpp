@@ -1,4 +1,4 @@
-// Applies faults to the chip and its surroundings at their times, and clears them.
+// Applies injected faults to the chip and the plant at the requested times, and clears the faults.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ class Injector {
     std::function<void(bool in)> plug;            ///< the USB cable
     std::function<void(bool asks)> let_host_ask;  ///< see VirtualUsb
   };
-  /// A fault that is present or has occurred.
+  /// A fault that is active, or a momentary fault that has occurred.
   struct Active {
     unsigned number;      ///< see add()
     Injection injection;  ///< with the address and bit chosen from the seed
@@ -33,34 +33,34 @@ class Injector {
     std::optional<Ticks> until;
   };
 
-  /// A fault with a later start time.
+  /// A fault whose start time is in the future.
   struct Planned {
     unsigned number;
     Injection injection;
     Ticks at;
   };
 
-  /// Limit of active and planned faults together.
+  /// Largest total number of active and planned faults.
   static constexpr std::size_t faults_maximum = 10'000;
 
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
-  /// Applies the fault immediately or at its time: see next(). Replaces a fault of the same kind at the same position.
-  /// Throws InvalidInjection if the address has no memory, or above `faults_maximum`. Must not be called inside
-  /// Chip::run_until(). Returns a unique number for the fault.
+  /// Applies the fault immediately, or later if `after_s` is positive: see next(). Replaces a fault of the same kind at
+  /// the same position. Throws InvalidInjection if no memory exists at the address, or if `faults_maximum` is reached.
+  /// Do not call this function inside Chip::run_until(). Returns a unique number for the fault.
   unsigned add(const Injection& injection);
-  /// Earliest time of the next change. The board runs up to this time, then calls carry_out().
+  /// Time at which the next fault starts or is cleared. The board runs up to this time, then calls carry_out().
   Ticks next() const;
   void carry_out();
 
-  /// Clears the active faults with this name and position (any position if empty) and cancels planned ones. Returns
-  /// their number. The effect of a momentary fault remains, but the fault is no longer listed.
+  /// Clears active faults and cancels planned faults of this kind at position `of` (at all positions if `of` is empty).
+  /// Returns the number of these faults. The effect of a momentary fault remains, but the fault is no longer listed.
   unsigned heal(protocol::InjectedFault fault, const std::string& of);
   void heal_all();
 
-  /// Active faults in the order of their start.
+  /// Active faults in the order of their start times.
   const std::vector<Active>& active() const { return active_; }
-  /// Planned faults in the order of their requests.
+  /// Planned faults in the order in which they were requested.
   const std::vector<Planned>& planned() const { return planned_; }
 
  private:

@@ -1,9 +1,9 @@
 // Rigid-body model of the arm: kinematics and the terms of the equation of motion.
 //
-// The model has two sets of coordinates. The encoders measure the joint coordinates q = (q1, q2, q3). On a serial arm
-// q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b), where a and b
-// are the angles of links 2 and 3 above the horizontal, in the arm's plane. In u both transmissions have the same
-// energies:
+// The model uses joint coordinates and link coordinates. The encoders measure the joint coordinates q = (q1, q2, q3).
+// On a serial arm q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b),
+// where a and b are the angles of links 2 and 3 above the horizontal, in the arm's plane. In link coordinates, serial
+// arms and parallelogram arms have the same energies:
 //
 //   kinetic energy    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2
 //                     with M11 = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b
@@ -40,7 +40,7 @@ class ArmDynamics {
   Matrix3 jacobian_m(const Vector3& joints_rad) const { return jacobian_m(links(joints_rad)); }
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
-  /// Angle that the elbow's stops limit: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram.
+  /// Angle that the elbow stops limit: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram arm.
   double elbow_rad(const Vector3& joints_rad) const {
     return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2];
   }

@@ -15,8 +15,8 @@ class ArmMotion {
 
   /// Advances by one step with the motor torques at the joints and the couplings at the probe. The integrator is
   /// position Verlet: forces are evaluated in the middle of the step, which avoids energy drift. Damping is implicit.
-  /// Coulomb friction is the impulse that stops a joint, limited to its friction cone (time stepping after Moreau). A
-  /// held arm therefore comes to rest and does not creep.
+  /// The Coulomb friction of a joint is the impulse that would stop the joint, limited by the friction cone (Moreau's
+  /// time stepping). An arm that the hand holds still therefore stops completely and does not creep.
   void step(double duration_s, const Vector3& torque_Nm, std::span<const Coupling> couplings);
 
   const Vector3& joints_rad() const { return joints_rad_; }

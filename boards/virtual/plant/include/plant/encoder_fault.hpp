@@ -1,4 +1,4 @@
-// Faults of an encoder with intact wires: a disc that does not turn, lost counts, or a slipping disc.
+// Encoder faults with intact wires: a disc that does not turn, lost counts, or a slipping disc.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,12 @@ class EncoderFault {
   void lose(double share) { lost_share_ = share; }
   void slip(double counts) { to_slip_ += counts; }
 
-  /// Whether the next count of the motor produces no edge.
+  /// True if the encoder produces no edge for the next count.
   bool swallows() {
     return stands_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
   }
-  /// Slip of the disc in this step. The rate is limited so that the chip's input filters pass all edges.
+  /// Returns the slip of the disc in this step. The slip rate is limited, so that the chip's input filters pass all
+  /// edges.
   double slipped_counts() {
     constexpr double fastest = 20.0;
     const double now = std::clamp(to_slip_, -fastest, fastest);

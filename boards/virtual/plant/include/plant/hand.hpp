@@ -1,4 +1,4 @@
-// The two couplings at the probe: the user's hand and the inkwell. Each is a spring and a damper to a moving point.
+// The user's hand and the inkwell, which act on the probe. Each is modeled as a spring and a damper to a moving point.
 #pragma once
 
 #include <optional>
@@ -26,8 +26,8 @@ struct Waypoint {
   Vector3 target_m;
 };
 
-/// The hand: an impedance with a fixed target or a target that moves from point to point. The motion has minimum jerk,
-/// like human motion (Flash and Hogan 1985).
+/// The hand: an impedance with a target that is fixed or moves from point to point. The target follows minimum-jerk
+/// motion, a model of human motion (Flash and Hogan 1985).
 class Hand {
  public:
   static constexpr double stiffness_maximum_N_per_m = 5000.0;
@@ -36,14 +36,14 @@ class Hand {
   bool holds() const { return holds_; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void release();
-  /// Moves the target along the waypoints, starting at its present position at `now`. If the hand does not hold the
-  /// stylus, the hand grips the stylus at `probe_m` with its last stiffness and damping.
+  /// Moves the target along the waypoints. The motion starts at `now` at the present target position. If the hand does
+  /// not hold the stylus, the hand first grips it at `probe_m` with the previous stiffness and damping.
   void follow(const std::vector<Waypoint>& waypoints, const Vector3& probe_m, Ticks now);
 
   double stiffness_N_per_m() const { return stiffness_N_per_m_; }
   double damping_Ns_per_m() const { return damping_Ns_per_m_; }
   bool is_moving(Ticks now) const { return holds_ && !path_.empty() && now < path_.back().at; }
-  /// Coupling to the present target, without force if the hand does not hold the stylus.
+  /// Returns the coupling to the present target. The coupling has no force if the hand does not hold the stylus.
   Coupling coupling(Ticks now) const;
 
  private:
@@ -59,17 +59,18 @@ class Hand {
   mutable std::size_t segment_ = 0;  ///< result of the last look-up, since time never decreases
 };
 
-/// The inkwell: a socket that guides the stylus in, retains it until it is pulled out, and closes a switch.
+/// The inkwell: a socket with a funnel, a grip that retains the stylus, and a switch.
 class Inkwell {
  public:
   Inkwell(const Vector3& position_m, bool seated) : position_m_(position_m), guide_m_(position_m), seated_(seated) {}
 
   bool seated() const { return seated_; }
   const Vector3& position_m() const { return position_m_; }
-  /// Seats the stylus if it is in the funnel. Returns whether the stylus is seated.
+  /// Seats the stylus if it is in the funnel. Returns true if the stylus is seated.
   bool capture(const Vector3& probe_m);
   void eject() { seated_ = false; }
-  /// Advances by one step. The funnel guides the stylus in, and a pull stronger than the socket's grip removes it.
+  /// Advances by one step. The funnel guides the stylus into the socket. A pull stronger than the socket's grip removes
+  /// the stylus.
   void advance(double duration_s, const Vector3& probe_m);
   bool switch_closed(const Vector3& probe_m) const;
   Coupling coupling() const;

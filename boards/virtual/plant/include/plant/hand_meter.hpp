@@ -1,4 +1,4 @@
-// Measures force, energy and motion of the hand over a time interval, independent of the chip's state.
+// Measures force, energy and motion of the hand over a time interval, whether the chip runs or not.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class HandMeter {
   bool runs() const { return runs_; }
   const Reading& reading() const { return reading_; }
 
-  /// Adds one step: probe position, hand target and force on the hand.
+  /// Adds one time step with probe position, hand target and force on the hand.
   void step(const Vector3& position_m, const Vector3& target_m, const Vector3& force_N) {
     reading_.peak_force_N = std::max(reading_.peak_force_N, force_N.norm());
     reading_.energy_J += std::max(0.0, force_N.dot(position_m - newest_m_));

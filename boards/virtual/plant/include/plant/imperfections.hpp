@@ -1,4 +1,4 @@
-// Imperfections of a real driver board, as typical data-sheet values. Nominal values are in the board facts and in the
+// Typical imperfections of a real driver board, from data sheets. The nominal values are in the board facts and in the
 // arm description.
 #pragma once
 

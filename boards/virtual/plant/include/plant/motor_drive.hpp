@@ -1,5 +1,5 @@
-// One motor on its full bridge. The legs set the terminal voltage, and the current between switching edges has a closed
-// form. The model therefore includes ripple, dead time and the discontinuous current of a floating bridge.
+// One motor with its full bridge. The legs set the terminal voltage. Between switching edges the current is computed in
+// closed form. The model therefore includes ripple, dead time and the discontinuous current of a floating bridge.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace inkwell::virtual_board {
 
-/// Command to the gate driver of one leg. `floating` leaves the current to the diodes.
+/// Command to the gate driver of one leg. If a leg is `floating`, its diodes conduct the current.
 enum class Leg : std::uint8_t { low, high, floating };
 
-/// State of a defective leg, independent of its command.
+/// Fault of a leg: the state that the leg has regardless of its command.
 enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
@@ -29,24 +29,24 @@ class MotorDrive {
   /// function first advances the current to `now`.
   void set_leg(unsigned leg, Leg level, Ticks now);
 
-  /// Replaces the motor's winding from `now` on; std::nullopt is an open winding.
+  /// Replaces the winding of the motor at `now`; std::nullopt is an open winding.
   void set_winding(const std::optional<MotorConstants>& motor, Ticks now);
   void set_leg_fault(unsigned leg, LegFault fault, Ticks now);
-  /// Sets the extra delay after the dead time until the leg's switches conduct.
+  /// Sets an additional delay between the end of the dead time and the conduction of the leg's switches.
   void set_leg_delay(unsigned leg, Ticks delay);
 
   /// Integrates the current up to `now`, which never decreases.
   void advance(Ticks now);
 
-  /// Supply and back-EMF are constant from the last advance() on.
+  /// Supply voltage and back-EMF apply from the time of the last advance() on.
   void set_bus_V(double volts) { bus_V_ = volts; }
   void set_back_emf_V(double volts) { back_emf_V_ = volts; }
 
   double current_A() const { return current_A_; }
-  /// Output of the shunt amplifier as a current, without offset, gain error and noise.
+  /// Output of the shunt amplifier, converted to a current, without offset, gain error and noise.
   double amplifier_A() const { return amplifier_A_; }
 
-  /// Integrals since the last call: the motor current and the current that the bridge drew from the supply.
+  /// Integrals of the motor current and of the supply current of the bridge since the last call.
   struct Charges {
     double motor_As;
     double supply_As;
@@ -63,7 +63,7 @@ class MotorDrive {
     Leg acting() const;
   };
   void configure(const MotorConstants& motor);
-  /// An ideal voltage source that drives the current until the current changes sign or a leg switches.
+  /// Equivalent voltage source of the bridge, valid until the current changes sign or a leg switches.
   struct Branch {
     double voltage_V;     ///< from terminal + to terminal -, without the leg resistance
     double supply_share;  ///< ratio of supply current to motor current: -1, 0 or 1

@@ -10,20 +10,20 @@
 
 namespace inkwell::virtual_board {
 
-/// Measures the force F with J^T F = tau. The mean over one control period removes the current ripple, which no hand
-/// feels. The mean over one millisecond excludes short pushes, which a hand feels less. A braked arm, or an arm with
-/// decaying currents, only resists its own motion and is excluded.
+/// Measures the force F that satisfies J^T F = tau. The mean over one control period removes the current ripple, which
+/// a hand cannot perceive. The mean over one millisecond removes short pushes, which a hand hardly perceives. Steps in
+/// which no leg is driven high are excluded, because the motors then only brake.
 class MotorForceMeter {
  public:
   static constexpr unsigned steps_per_period = 3, steps_per_ms = 60;
 
-  /// Resets the peaks. The averages are not reset, so the first values include steps before this call.
+  /// Resets the peaks. The averages are not reset, so the first averages include steps before this call.
   void start() { peak_N_ = peak_over_ms_N_ = 0.0; }
   double peak_N() const { return peak_N_; }
   double peak_over_ms_N() const { return peak_over_ms_N_; }
 
-  /// Adds one step. `is_driven`: a leg was driven high within the last period. Near a singular Jacobian the torques do
-  /// not define a force, and the step is skipped.
+  /// Adds one step. `is_driven` is true if a leg was driven high within the last period. A step with a nearly singular
+  /// Jacobian is skipped, because the torques do not define a force.
   void step(const Vector3& torque_Nm, const Matrix3& jacobian_m, bool is_driven) {
     constexpr double singular_m3 = 1e-5;  // an Omni has 2e-3 in the middle of its reach
     const bool is_singular = std::abs(jacobian_m.determinant()) < singular_m3;
@@ -38,14 +38,14 @@ class MotorForceMeter {
   }
 
  private:
-  /// Sum of the newest values of an uninterrupted sequence.
+  /// Sum of the last `length` values of an uninterrupted sequence.
   template <class Value, unsigned length>
   struct Sum {
     std::array<Value, length> values;
     Value sum;
     unsigned long count = 0;
 
-    /// Returns whether the sum has all its values.
+    /// Adds a value. Returns true if the sum contains `length` values.
     bool add(const Value& value) {
       Value& oldest = values[count % length];
       if (count == 0)

@@ -1,8 +1,10 @@
-// Everything around the chip: bridges, motors, sensors, arm, inkwell and hand, wired according to the board facts.
+// The circuit and the mechanics around the chip: bridges, motors, sensors, arm, inkwell and hand, wired according to
+// the board facts.
 //
-// Currents are exact between the edges of the bridges. The arm, the supply and the back-EMF advance in fixed steps of
-// 16.7 us (a third of a control period) with the mean of the true currents. The chip's pins change only inside
-// advance(). A chip may therefore call output_changed() and analog_V() at any point.
+// Motor currents are exact between the switching edges of the bridges. The arm, the supply and the back-EMF advance in
+// fixed steps of
+// 16.7 us (a third of a control period) with the mean of the motor currents. The plant changes the chip's input pins
+// only inside advance(), so the chip may call output_changed() and analog_V() at any time.
 #pragma once
 
 #include <array>
@@ -38,10 +40,10 @@ class Plant final : public Circuit {
  public:
   static constexpr Ticks step_ticks = ticks_per_s / 60'000;
 
-  /// The facts must outlive the plant.
+  /// `board` must outlive the plant.
   Plant(const arms::Description& arm, const board::Facts& board, const PlantOptions& options = {});
 
-  /// Connects the chip. From here on the plant drives the chip's inputs, starting with their present levels.
+  /// Connects the chip. From this call on, the plant drives the chip's inputs, initially with their present levels.
   void connect(InputPins& pins);
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
@@ -49,42 +51,44 @@ class Plant final : public Circuit {
   AnalogSource analog_source(char port, unsigned pin) const override;
   void advance(Ticks now) override;
 
-  // ---- user actions, which take effect at the time of the chip's last call ----
+  // ---- user actions, which take effect at the time of the chip's last call to the plant ----
   void press_buttons(bool first, bool second);
   void set_supply_V(double volts) { supply_.set_source_V(volts); }
   void set_bridge_fault(bool fault);
   /// Sets whether the USB cable supplies VBUS.
   void set_usb_supply(bool present);
-  /// Turns the gimbal, as the hand does with the stylus: yaw, pitch, roll.
+  /// Turns the gimbal to these angles (yaw, pitch, roll), as the hand does with the stylus.
   void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void let_go();
   void follow(const std::vector<Waypoint>& waypoints);
-  /// True: the hand carries the stylus to the inkwell and releases it. False: the hand pulls the stylus out.
+  /// If `docked` is true, the hand carries the stylus to the inkwell and releases it. Otherwise the hand pulls the
+  /// stylus out.
   void dock(bool docked);
   /// Moves the arm to a position immediately, for tests.
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
 
-  // ---- faults, which take effect at the same time; `motor` counts from 0 ----
+  // ---- faults, which take effect at the time of the chip's last call to the plant; `motor` counts from 0 ----
   EncoderFault& encoder_fault(unsigned motor) { return encoders_[motor].fault; }
   ShuntFault shunt_fault(unsigned motor) const { return shunt_faults_[motor]; }
-  /// A frozen output retains its present value.
+  /// If `fault` freezes the amplifier output, the output retains its present value.
   void set_shunt_fault(unsigned motor, const ShuntFault& fault);
   MotorFault motor_fault(unsigned motor) const { return motor_faults_[motor]; }
   void set_motor_fault(unsigned motor, const MotorFault& fault);
-  /// A leg with a fused switch trips its bridge when the other switch is commanded: see `tripped_`.
+  /// If one switch of a leg is fused, the bridge trips when the other switch is commanded: see `tripped_`.
   void set_leg_fault(unsigned motor, unsigned leg, LegFault fault);
   void set_leg_delay(unsigned motor, unsigned leg, double delay_s) {
     motors_[motor].set_leg_delay(leg, ticks(delay_s));
   }
-  /// The bridge supply delivers this voltage and ignores its setting; std::nullopt clears the fault.
+  /// Makes the bridge supply deliver this voltage instead of the voltage from set_supply_V(); std::nullopt clears the
+  /// fault.
   void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
-  /// The supply swings by this amplitude at 100 Hz; 0 clears the fault.
+  /// Makes the supply voltage oscillate with this amplitude at 100 Hz; 0 clears the fault.
   void swing_supply_by_V(double amplitude_V) { supply_.swing_by_V(amplitude_V); }
-  /// Sets the supply of the amplifiers and potentiometers, initially 3.3 V.
+  /// Sets the supply voltage of the amplifiers and potentiometers, initially 3.3 V.
   void set_analog_supply_V(double volts) { analog_supply_V_ = volts; }
 
-  /// Starts to measure the force on the hand and the force of the motors.
+  /// Starts the measurement of the force on the hand and of the motor force.
   void start_meters() {
     hand_meter_.start(probe_m_, now_);
     motor_force_meter_.start();
@@ -163,7 +167,7 @@ class Plant final : public Circuit {
   bool usb_supply_ = false;
   std::array<PinLevel, 7> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply, hold
 
-  // Gimbal: joint angles and the inverse of the potentiometers' characteristic
+  // Gimbal: joint angles, and potentiometer characteristics
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope and offset of each potentiometer
   Vector3 gimbal_rad_;
 

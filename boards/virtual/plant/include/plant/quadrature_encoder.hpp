@@ -1,4 +1,4 @@
-// A quadrature encoder on a motor: counts from the motor's angle, and edges of one pin at a time.
+// A quadrature encoder on a motor. It derives counts from the joint angle and changes one output at a time.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +16,18 @@ class QuadratureEncoder {
     bool operator==(const Levels&) const = default;
   };
 
-  /// `counts_per_rad` is signed: negative if the encoder counts down while its joint turns forward.
+  /// `counts_per_rad` is negative if the encoder counts down while its joint turns forward.
   explicit QuadratureEncoder(double counts_per_rad, double joint_rad, std::uint64_t seed = 1)
       : fault(seed),
         counts_per_rad_(counts_per_rad),
         shown_at_(joint_rad * counts_per_rad),
         reached_(count_at(joint_rad)) {}
 
-  /// Counts of the disc at this joint angle; the count is zero at joint angle zero.
+  /// Disc count at this joint angle. The disc count is 0 at joint angle 0.
   std::int64_t count_at(double joint_rad) const {
     return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_));
   }
-  /// Count that the outputs show: the disc's count minus the lost counts.
+  /// Count that the outputs represent: the disc count minus the lost counts.
   std::int64_t shown() const { return reached_ - lost_; }
 
   /// Both outputs at `count`. A leads B while counting up (RM0090, "Encoder interface mode").
@@ -36,8 +36,8 @@ class QuadratureEncoder {
     return {phase == 1 || phase == 2, phase >= 2};
   }
 
-  /// Moves to the count at `joint_rad` and calls `edge(levels, share)` for each count passed. `share` is the fraction
-  /// of the motion at that count.
+  /// Moves to the count at `joint_rad` and calls `edge(levels, share)` for each passed count. `share` is the fraction
+  /// of the motion up to this count.
   template <class Edge>
   void follow(double joint_rad, Edge&& edge) {
     slipped_ += fault.slipped_counts();

@@ -12,7 +12,7 @@ struct ShuntFault {
   Output output = Output::follows;
   double frozen_V = 0.0;
 
-  /// Current that corresponds to the reading while the output is not frozen.
+  /// Measured current if the amplifier output is not frozen.
   double read_A(double current_A) const { return gain * current_A + offset_A; }
 };
 

@@ -1,5 +1,5 @@
-// Supply of the bridges: a source that cannot sink current, its resistance, and the bulk capacitor. The bus voltage
-// therefore rises while the arm is braked.
+// Supply of the bridges: a voltage source with resistance, and the bulk capacitor. The source cannot sink current, so
+// the bus voltage rises while the arm is braked.
 #pragma once
 
 #include <optional>
@@ -13,14 +13,14 @@ class Supply {
   Supply(const Imperfections& imperfections, double source_V);
 
   void set_source_V(double volts) { source_V_ = volts; }
-  /// Fault: the source delivers this voltage until std::nullopt clears the fault.
+  /// Injects a fault: the source delivers this voltage until a call with std::nullopt.
   void fail_at_V(std::optional<double> volts) { failed_V_ = volts; }
-  /// Fault: the source oscillates with this amplitude at 100 Hz and also sinks current.
+  /// Injects a fault: the source voltage oscillates with this amplitude at 100 Hz, and the source also sinks current.
   void swing_by_V(double amplitude_V);
   double source_V() const;
   double bus_V() const { return bus_V_; }
 
-  /// Advances by one step, in which the bridges drew `charge_As` (negative during regeneration).
+  /// Advances by one time step. The bridges drew `charge_As` during the step (negative during regeneration).
   void advance(double duration_s, double charge_As);
 
  private:

@@ -1,4 +1,4 @@
-// The true quantities at an instant, which no real board can measure, and their record over time.
+// The true physical quantities, which no real board can measure, and a trace of these quantities.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct Truth {
 using TracedValues = std::array<double, protocol::simulated_quantity_count>;
 TracedValues traced_values(const Truth& truth);
 
-/// Rows of true quantities, one for each control period. When the trace is full, the oldest rows are dropped and
+/// Rows of true quantities, one row per control period. When the trace is full, the oldest rows are dropped and
 /// counted.
 class Trace {
  public:
@@ -49,7 +49,7 @@ class Trace {
   void stop() { running_ = false; }
   bool is_running() const { return running_; }
   void record(std::uint64_t period, const Truth& truth);
-  /// Removes and returns the oldest rows, at most `maximum`.
+  /// Removes and returns the oldest rows, at most `maximum` rows.
   std::vector<Row> read(std::size_t maximum);
   std::size_t waiting() const { return rows_.size(); }
   std::uint64_t dropped() const { return dropped_; }

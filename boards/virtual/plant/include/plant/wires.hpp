@@ -1,5 +1,5 @@
-// The wires between the chip and its circuit, with their faults. Each call between chip and circuit passes through this
-// class.
+// The wires between chip and circuit, with wire faults. Each call between chip and circuit passes through the class
+// Wires.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ enum class WireFault : std::uint8_t {
   frozen,  ///< retains its level
 };
 
-/// Connects a chip and its circuit. This class is the Circuit of the chip and the InputPins of the circuit.
+/// Connects a chip and a circuit: it acts as the Circuit of the chip and as the InputPins of the circuit.
 class Wires final : public Circuit, public InputPins {
  public:
   static constexpr double open_input_s = 0.01;  ///< time constant of an analog input without a resistor to ground
