@@ -1,4 +1,4 @@
-// The complete board: chip, plant and USB wired together. The board is used only on the simulation thread.
+// The complete board: chip, plant and USB. Only the simulation thread uses the board.
 #pragma once
 
 #include <functional>
@@ -20,9 +20,9 @@ namespace inkwell::virtual_board {
 
 class Board {
  public:
-  /// Reads the arm description, programs the flash and switches the power on.
-  /// @throws std::runtime_error with a sentence if the arm, the ELF file or the USB/IP address is invalid. `usbip`,
-  /// `on_usb_request` and `is_ending`: see VirtualUsb.
+  /// Reads the arm description, programs the flash and switches the power on. See VirtualUsb for `usbip`,
+  /// `on_usb_request` and `is_ending`.
+  /// @throws std::runtime_error with an error sentence if the arm, the ELF file or the USB/IP address is invalid.
   Board(const Options& options, const local::SocketAddress& usbip, std::function<void()> on_usb_request,
         std::function<bool()> is_ending);
   ~Board();
@@ -31,7 +31,7 @@ class Board {
 
   /// Runs until board time `when`, or until the firmware exits or locks up.
   Stop run_until(Ticks when);
-  /// Plugs the USB cable in or out, including VBUS for the core and for its sense pin.
+  /// Plugs in or unplugs the USB cable. The cable supplies VBUS to the OTG_FS core and to the sense pin.
   void plug(bool in);
   void reset();
 
@@ -45,7 +45,8 @@ class Board {
     std::uint64_t number = 0;  ///< from 0 since the last reset
     Ticks began = 0;
   };
-  /// The newest control period. Firmware that never misses a control interrupt has the same count.
+  /// The newest control period. Its number equals the count in the firmware, unless the firmware has missed a control
+  /// interrupt.
   const ControlPeriod& control_period() const { return control_period_; }
   const Profile& profile() const { return profile_; }
   /// Name of the function at `address`; empty if the ELF file does not contain it.
@@ -55,7 +56,7 @@ class Board {
 
  private:
   void console(std::uint8_t byte);
-  /// Saves the flash to the file after the firmware has finished a write.
+  /// Saves the flash to the flash file when the firmware has finished a flash operation.
   void follow_flash();
   Stop run_chip_until(Ticks when);
   std::function<void(std::uint32_t address, std::uint64_t cycles)> observer(const Options& options);

@@ -9,11 +9,11 @@ namespace inkwell::virtual_board {
 
 class Simulation;
 
-/// Executes one line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. The
-/// simulation answers `run` later, after its duration.
+/// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. The
+/// simulation sends the reply to `run` later, when its duration has passed.
 nlohmann::json carry_out(const std::string& line, Simulation& simulation);
-/// Executes a line in the middle of a frame, while board time waits for a program. Commands that change the board are
-/// refused.
+/// Executes a command line in the middle of a frame, while board time waits for a program. Commands that change the
+/// board are refused.
 nlohmann::json carry_out_within_frame(const std::string& line, Simulation& simulation);
 
 }  // namespace inkwell::virtual_board

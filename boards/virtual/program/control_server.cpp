@@ -21,8 +21,7 @@ bool refuse(int socket, std::string_view reason) {
   return false;
 }
 
-/// Whether the line can belong to this protocol. The lines of other protocols, such as a browser's request, must not be
-/// executed.
+/// True if the line may be a command. Lines of other protocols, such as browser requests, must not be executed.
 bool may_be_command(std::string_view line) {
   const auto first = line.find_first_not_of(" \t\r");
   return first == std::string_view::npos || line[first] == '{';
@@ -105,7 +104,7 @@ bool ControlServer::serve_lines(int socket, std::string& received) {
     const std::string line = received.substr(begin, end - begin);
     if (!may_be_command(line)) break;
     const auto reply = ask(line);
-    // An error may quote bytes that are not UTF-8.
+    // An error message may quote bytes that are not valid UTF-8.
     constexpr auto replace = nlohmann::json::error_handler_t::replace;
     if (!reply || !local::send_all(socket, reply->dump(-1, ' ', false, replace) + '\n')) return false;
   }

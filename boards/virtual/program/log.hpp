@@ -1,4 +1,4 @@
-// The program's log: lines on stderr, with the board time if available.
+// The log of the program: lines on stderr, with board time if available.
 #pragma once
 
 #include <string>

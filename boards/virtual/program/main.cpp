@@ -1,4 +1,4 @@
-// virtual-board: runs unchanged firmware on the virtual board.
+// Main program of virtual-board, which runs unchanged firmware on the virtual board.
 #include <atomic>
 #include <csignal>
 #include <cstdio>

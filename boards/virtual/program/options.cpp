@@ -17,7 +17,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// The options as text, before they are checked.
+/// Command line options as text, before they are checked.
 struct Given {
   Options options;
   std::string usbip = "0", control = "0", gdb;
@@ -201,7 +201,8 @@ std::string footer() {
          explain_commands();
 }
 
-/// Name of the board of the image in the flash file; empty if the file contains no firmware of this project.
+/// Returns the name of the board for which the firmware in the flash file is built; empty if the file contains no
+/// firmware of this project.
 std::string board_in_flash(const std::filesystem::path& file) {
   std::ifstream flash(file, std::ios::binary);
   protocol::ImageIdentity identity{};

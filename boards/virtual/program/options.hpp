@@ -51,8 +51,8 @@ struct Options {
                                                  ///< chip
 };
 
-/// The options, or the exit code if the program must exit: 0 after --help, 2 after an invalid option. The error is
-/// printed on stderr.
+/// Result of reading the command line: the options, or the exit code if the program must exit (0 after --help, 2 after
+/// an invalid option, for which an error is printed on stderr).
 struct CommandLine {
   std::optional<Options> options;
   int exit_code = 0;

@@ -1,4 +1,4 @@
-// Listening address of a port, from its option.
+// Listening address from the option of a port.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace inkwell::virtual_board {
 
-/// A Unix socket without a path is created in a private folder.
+/// Listening address. A Unix socket without a path is created in a private folder.
 struct PortOption {
   local::SocketAddress address{};
   bool is_private = false;
-  /// Parses "PORT", "unix:PATH" or "unix:". Throws std::invalid_argument with a sentence.
+  /// Parses "PORT", "unix:PATH" or "unix:". Throws std::invalid_argument with an error sentence.
   static PortOption of(const std::string& text);
 };
 
-/// Text for a port in the line "ready ...": its number, or "unix:PATH".
+/// Returns the text for a port in the line "ready ...": the port number, or "unix:PATH".
 std::string announced(const local::SocketAddress& address);
 
-/// The folder of the private sockets, created at the first use.
+/// Folder of the private sockets. The folder is created when it is first used.
 class PrivateSockets {
  public:
-  /// `name` is the file name of a private socket. Throws std::runtime_error with a sentence.
+  /// `name` is the file name of a private socket. Throws std::runtime_error with an error sentence.
   local::SocketAddress address_of(const PortOption& option, const std::string& name);
 
  private:

@@ -1,4 +1,4 @@
-// Cycles of the longest interrupt, by instruction.
+// Cycles of each instruction in the longest interrupt.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,15 @@
 
 namespace inkwell::virtual_board {
 
-/// Records the longest run of any handler, instruction by instruction. Preemption splits a run into separate runs.
+/// Records the longest run of an exception handler, instruction by instruction. If a handler is preempted, its parts
+/// count as separate runs.
 class Profile {
  public:
-  /// Call before each instruction with the active exception (0: thread mode), the address, and the cycle count.
+  /// Call this before each instruction with the active exception (0: thread mode), the address, and the cycle count.
   void instruction(unsigned exception, std::uint32_t address, std::uint64_t cycles);
 
-  /// Writes one line per instruction of the longest run, in order: hexadecimal address and cycles. Throws
-  /// std::runtime_error if the file cannot be written.
+  /// Writes the hexadecimal address and the cycles of each instruction of the longest run, one line per instruction.
+  /// Throws std::runtime_error if the file cannot be written.
   void write(const std::filesystem::path& file) const;
 
  private:

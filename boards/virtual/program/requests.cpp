@@ -12,7 +12,8 @@ using nlohmann::json;
 
 namespace {
 
-/// Limit of trace rows in a reply, which bounds its memory. The next reply returns the remaining rows.
+/// Largest number of trace rows in a reply, which limits the memory of the reply. The next reply contains the remaining
+/// rows.
 constexpr std::size_t rows_of_answer_maximum = 100'000;
 constexpr double reach_m = 2.0;  // beyond the reach of any arm that a description allows
 
@@ -131,7 +132,7 @@ Request read_request(std::string_view line) {
   if (values.is_discarded() || !values.is_object())
     throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
   const json& name = at(values, "command", "the name of a command, such as \"status\"");
-  // The error quotes only strings, because printing a nested list needs stack in proportion to its depth.
+  // The error message quotes only strings, because the stack use of printing a nested list grows with its depth.
   if (!name.is_string()) throw Refused("\"command\" must be the name of a command, such as \"status\"");
   const auto table = command_table();
   const auto found = std::ranges::find(table, name.get_ref<const std::string&>(), &CommandInfo::name);

@@ -14,7 +14,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Lock byte after the slots, locked by a board that joins.
+/// Byte after the slots, which a joining board locks.
 constexpr off_t joining = SharedClock::boards_maximum;
 
 struct flock lock_of(off_t byte, short type) {

@@ -118,8 +118,7 @@ void Simulation::serve(ControlRequest request) {
   request.reply.set_value(std::move(reply));
 }
 
-/// Answers commands while board time is stopped in the middle of a frame, because a program does not read its
-/// transfers.
+/// Executes commands while board time is stopped in the middle of a frame, waiting for a program to read its transfers.
 void Simulation::answer_within_frame() {
   while (auto request = server_.take(Clock::time_point::min()))
     request->reply.set_value(carry_out_within_frame(request->line, *this));
@@ -136,8 +135,7 @@ void Simulation::advance() {
     case Stop::requested:
     case Stop::debugger: break;
     case Stop::locked_up:
-      // With --seconds no user may be present to reset the board. Board time continues, because a watchdog may reset
-      // it.
+      // With --seconds, board time continues after a lock-up, because a watchdog may reset the board.
       if (options_.seconds) break;
       end_run("the processor locked up: " + board_.chip().lockup_reason());
       return pause();
@@ -161,8 +159,8 @@ void Simulation::start_pacing() {
   pace_board_ = board_.chip().now();
 }
 
-// Sleeps while board time is ahead of real time. A large lag is dropped and counted, because catching up would show the
-// user a burst of motion that never happened.
+// Sleeps while board time is ahead of real time. A large lag of board time is dropped and counted, because the user
+// would otherwise see the arm in fast motion.
 void Simulation::pace() {
   const double board_s = seconds(board_.chip().now() - pace_board_);
   const double wall_s = std::chrono::duration<double>(Clock::now() - pace_wall_).count();

@@ -1,9 +1,9 @@
-// Controls board time: free, in real time, or for the duration of a client's request.
+// Controls board time, which runs freely, in real time, or for the duration of a `run` command.
 //
 // Board time passes in slices of one millisecond. Requests of local programs, such as USB transfers and control socket
-// commands, take effect only between two slices. The wall-clock duration of a slice therefore has no effect. A program
-// that waits for each answer before its next request gets reproducible results. While board time waits for a stopped
-// program in the middle of a slice, commands that change nothing are still answered.
+// commands, take effect only between two slices. The wall-clock duration of a slice therefore has no effect. The
+// results are reproducible for a program that waits for each answer before its next request. While board time waits for
+// a stopped program in the middle of a slice, commands that do not change the board are still executed.
 #pragma once
 
 #include <atomic>
@@ -29,7 +29,8 @@ class Simulation {
   Simulation(const Options& options, Board& board, ControlServer& server, StreamServer* gdb_server, UartLinks& uarts);
 
   /// Runs until a client quits, `end_requested` is set, the time of --seconds has passed or the firmware exits. Without
-  /// --seconds, board time stops for a locked-up board, so that a user can inspect or reset it. Returns the exit code.
+  /// --seconds, board time stops when the processor locks up, so that a user can inspect or reset the board. Returns
+  /// the exit code.
   int run(const std::atomic<bool>& end_requested);
 
   // ---- interface for the commands ----
@@ -37,16 +38,16 @@ class Simulation {
   const Options& options() const { return options_; }
   bool paused() const { return passing_ != Passing::freely; }
   bool stands_by() const { return passing_ == Passing::when_asked; }
-  /// Lag of board time that was dropped because the computer was too slow.
+  /// Dropped lag of board time. Lag is dropped if the computer is too slow.
   double time_dropped_s() const { return time_dropped_s_; }
   void pause();
-  /// Stops board time, except during USB control transfers, which run at full speed.
+  /// Stops board time, except during USB control transfers, during which board time runs freely.
   void stand_by();
   void resume();
   void quit() { quit_ = true; }
   bool is_running_for() const { return run_.has_value(); }
-  /// Runs for this duration, then answers the present request. Afterward board time is paused, or stands by if it stood
-  /// by before this call.
+  /// Runs for `duration_s`, then replies to the present request. Afterward board time is paused, or on standby if it
+  /// was on standby before this call.
   void run_for(double duration_s);
 
  private:
@@ -57,7 +58,7 @@ class Simulation {
     std::promise<nlohmann::json> reply;
   };
   bool time_passes() const;
-  /// Another board with the same clock is behind.
+  /// True if another board with the same shared clock has not reached this board's time.
   bool waits_for_others();
   void serve_debugger();
   bool ends_by_violation() const;

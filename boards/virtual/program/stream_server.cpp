@@ -78,7 +78,7 @@ void StreamServer::receive_from(int client) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     const std::string_view bytes(chunk.data(), static_cast<std::size_t>(count));
-    // A browser sends the start of its request in one piece.
+    // One check is sufficient, because a browser sends the start of its request in one piece.
     if (!is_welcome && !welcome_(bytes)) break;
     {
       const std::lock_guard lock(mutex_);
@@ -96,7 +96,7 @@ void StreamServer::receive_from(int client) {
   on_arrival_();
 }
 
-/// Returns false if the server ends, or if a new client replaces a disconnected one.
+/// Returns false if the server closes, or if `client` has disconnected and another client waits.
 bool StreamServer::wait_for_room(int client) {
   std::unique_lock lock(mutex_);
   while (!closing_ && arrived_.bytes.size() >= unread_maximum) {

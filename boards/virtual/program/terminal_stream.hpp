@@ -1,4 +1,4 @@
-// The program's terminal, or a pseudo-terminal for picocom and similar programs.
+// Standard input and output, or a pseudo-terminal for programs such as picocom.
 #pragma once
 
 #include <filesystem>
@@ -15,8 +15,8 @@ class TerminalStream final : public ByteStream {
  public:
   /// Uses standard input and output. `on_arrival`: see StreamServer.
   explicit TerminalStream(std::function<void()> on_arrival);
-  /// Creates a pseudo-terminal, and a link `path` to it for the lifetime of the object.
-  /// @throws std::runtime_error with a sentence if the pseudo-terminal cannot be created.
+  /// Creates a pseudo-terminal and, for the lifetime of the object, a symbolic link `path` to the pseudo-terminal.
+  /// @throws std::runtime_error with an error sentence if the pseudo-terminal cannot be created.
   TerminalStream(const std::filesystem::path& path, std::function<void()> on_arrival);
   ~TerminalStream() override;
   TerminalStream(const TerminalStream&) = delete;

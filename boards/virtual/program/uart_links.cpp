@@ -13,9 +13,10 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Limit of bytes that wait until the firmware enables the receiver.
+/// Largest number of bytes that are queued until the firmware enables the receiver.
 constexpr std::size_t kept_maximum = 4096;
-/// Limit of bytes on the wire, larger than the number received by the fastest UART between two calls of serve().
+/// Largest number of bytes that are queued in the UART model. The fastest UART receives fewer bytes between two calls
+/// of serve().
 constexpr std::size_t line_maximum = 4096;
 
 bool may_be_anything(std::string_view) { return true; }
@@ -65,7 +66,7 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, Private
     } else {
       const std::string name = fmt::format("uart{}", option.number);
       const local::SocketAddress where = sockets.address_of(option.socket, name);
-      // A browser cannot connect to a Unix socket.
+      // Only TCP clients are checked, because a browser cannot connect to a Unix socket.
       const FirstBytes welcome = where.is_unix() ? &may_be_anything : &may_be_terminal;
       auto server = std::make_unique<StreamServer>(where, "--uart", welcome, on_arrival);
       announcement_ += fmt::format(" {}={}", name, announced(server->address()));
@@ -83,7 +84,7 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, Private
 void UartLinks::serve() {
   for (UartLink& link : links_) {
     if (link.arrived.size() < kept_maximum) link.arrived += link.stream->take().bytes;
-    // A client cannot know when the firmware enables its receiver, so earlier bytes wait.
+    // A client cannot detect when the firmware enables the receiver, so earlier bytes are queued.
     if (chip_.usart_listens(link.number)) {
       const std::size_t room = line_maximum - std::min(chip_.usart_waiting(link.number), line_maximum);
       const std::size_t count = std::min(link.arrived.size(), room);

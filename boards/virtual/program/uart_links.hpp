@@ -1,4 +1,4 @@
-// Connections of the chip's UARTs to terminals and sockets.
+// Connects the UARTs of the chip to terminals and sockets.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ struct UartOption {
   enum class Kind : std::uint8_t { terminal, socket, path } kind = Kind::terminal;
   PortOption socket;
   std::filesystem::path path;
-  /// Parses a text such as usart1=stdio, uart4=5000, uart5=unix:PATH, usart3=PATH. Throws std::invalid_argument with a
-  /// sentence.
+  /// Parses a text such as usart1=stdio, uart4=5000, uart5=unix:PATH or usart3=PATH. Throws std::invalid_argument with
+  /// an error sentence.
   static UartOption of(const std::string& text);
 };
 
 class UartLinks {
  public:
-  /// Throws std::runtime_error with a sentence if a link fails. `on_arrival`: see StreamServer.
+  /// Throws std::runtime_error with an error sentence if a link cannot be created. `on_arrival`: see StreamServer.
   UartLinks(const std::vector<UartOption>& options, Chip& chip, PrivateSockets& sockets,
             const std::function<void()>& on_arrival);
-  /// Text for the line "ready ...": " uart1=PORT" or " uart1=unix:PATH" for each listening UART.
+  /// Returns the text for the line "ready ...": " uart1=PORT" or " uart1=unix:PATH" for each listening UART.
   const std::string& announcement() const { return announcement_; }
-  /// Transfers bytes in both directions. Call between two slices of board time.
+  /// Transfers bytes in both directions. Call this between two slices of board time.
   void serve();
 
  private:

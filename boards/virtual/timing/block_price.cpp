@@ -51,13 +51,13 @@ bool is_single_access(const Instruction& it) { return it.kind == Kind::load || i
 
 bool is_indexed_store(const Instruction& it) { return it.kind == Kind::store && it.register_offset; }
 
-/// True if `next` starts while the load `it` still waits for its data.
+/// True if `next` starts while the load instruction `it` still waits for its data.
 bool hides_load(const Instruction& it, const Instruction& next, std::uint32_t next_address) {
   if (next.kind == Kind::hint && next.bytes == 2) return true;
   if (!is_single_access(next)) return false;
   if ((next.address_registers & it.written) != 0) return false;
   if (next.kind == Kind::store) return !next.register_offset;
-  // A wide load can start only at a word address.
+  // A wide load can start early only at a word address.
   return next.bytes == 2 || next_address % 4 == 0;
 }
 
@@ -73,24 +73,25 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
     const bool only_written_back = it.touches_memory && it.writes_back && !it.reads_memory;
     cycles += only_written_back ? costs[Cost::same_base_written_back] : costs[Cost::address_from_previous];
   }
-  // float_read does not contain the addend of a multiply-accumulate, which is also its destination.
+  // float_read excludes the addend register of a multiply-accumulate, which is also the destination register.
   const bool latency = it.kind == Kind::float_arithmetic || it.kind == Kind::float_accumulate;
   if (latency && (next.float_read & it.float_written) != 0) cycles += costs[Cost::float_result_used_next];
   return cycles;
 }
 
-/// Instruction fetch without wait states: one word per cycle into a buffer of three words.
+/// Model of the instruction fetch without wait states: one word per cycle, into a buffer of three words.
 class Fetch {
  public:
   Fetch(std::uint32_t address, CodeMemory memory, bool after_branch)
       : fetched_to_(after_branch ? (address & ~3u) + 4 : (address & ~3u) + fetch_buffer_bytes), memory_(memory) {}
-  /// Cycles that the instruction at `address` waits for its second half-word.
+  /// Number of cycles that the instruction at `address` waits until it is fetched completely.
   unsigned wait_for(std::uint32_t address, std::uint32_t bytes) {
     unsigned waited = 0;
     for (; fetched_to_ < address + bytes; fetched_to_ += 4) ++waited;
     return waited;
   }
-  /// Advances the fetch by an instruction of `cycles`. In SRAM its data accesses delay the fetch.
+  /// Advances the fetch by the execution of an instruction that lasts `cycles`. For code in SRAM, the data accesses of
+  /// the instruction delay the fetch.
   void run(std::uint32_t address, unsigned cycles, unsigned accesses) {
     if (memory_ == CodeMemory::sram) cycles -= std::min(cycles, accesses);
     const std::uint32_t limit = (address & ~3u) + fetch_buffer_bytes;
@@ -107,7 +108,7 @@ unsigned accesses_of(const Instruction& it) {
   return it.words != 0 ? it.words : 1;
 }
 
-/// One pass over the run. Fills `block`, or only counts the cycles if `block` is null.
+/// One pass over the instructions of a block. Fills `block`, or only counts the cycles if `block` is null.
 class Walk {
  public:
   Walk(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
@@ -128,7 +129,7 @@ class Walk {
       if (it.uses_float()) cycle = std::max(cycle, float_ready);
       if (block != nullptr) note(*block, it, at, cycle, line);
       unsigned own = base_cycles(it, costs_);
-      // After a narrow instruction, IT needs no separate cycle.
+      // IT needs no cycle if the previous instruction is narrow.
       if (it.kind == Kind::if_then && !first && before.bytes == 2 && governed == 0) own = 0;
       if (it.kind == Kind::float_divide) float_ready = cycle + costs_[Cost::float_divide];
       fetch.run(at, own, accesses_of(it));

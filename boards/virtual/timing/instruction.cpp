@@ -19,7 +19,7 @@ void writes(Instruction& it, std::uint32_t number) {
   it.written = static_cast<std::uint16_t>(it.written | one(number));
 }
 
-/// Transfer of one register to or from memory.
+/// Decodes the transfer of one register to or from memory.
 void single(Instruction& it, bool load, std::uint32_t data, std::uint32_t base) {
   it.kind = load ? Kind::load : Kind::store;
   it.reads_memory = load;
@@ -246,7 +246,7 @@ void decode_branch_or_system(Instruction& it, std::uint32_t first, std::uint32_t
   it.kind = Kind::branch_immediate;
   if ((second & 0xD000) == 0xD000) it.written = one(link_register);
   if ((second & 0xD000) != 0x8000 || (first & 0x0380) != 0x0380) return;
-  // Conditions 14 and 15 are not branches.
+  // Encodings with condition 14 or 15 are not branches.
   it.kind = Kind::system_register;
   if ((first & 0xFFF0) == 0xF3A0) it.kind = Kind::hint;
   if ((first & 0xFFF0) == 0xF3B0) it.kind = bits(second, 7, 4) == 6 ? Kind::instruction_barrier : Kind::barrier;
@@ -289,7 +289,7 @@ void decode_multiply(Instruction& it, std::uint32_t first, std::uint32_t second)
   it.written = static_cast<std::uint16_t>(it.written | one(bits(second, 15, 12)));
 }
 
-/// ADR, MOVW and MOVT, with which code builds the address of a table.
+/// Decodes ADR, MOVW and MOVT, with which code computes table addresses.
 void decode_constant(Instruction& it, std::uint32_t first, std::uint32_t second, std::uint32_t address) {
   const std::uint32_t sort = first & 0xFBF0, low = bits(second, 14, 12) << 8 | (second & 0xFF);
   const std::uint32_t twelve = (first & 0x0400) << 1 | low;

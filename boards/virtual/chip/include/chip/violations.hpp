@@ -8,7 +8,7 @@
 // 1. Add a row to INKWELL_CHIP_RULES.
 // 2. In the model, call violate(Rule::NAME) at the violation and emulate the effect on silicon.
 // 3. In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp. The test firmware must
-// break only the new rule.
+//    break only the new rule.
 //
 // `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use `--strict`.
 

@@ -1,4 +1,4 @@
-// A byte stream between the board and a local program. Received bytes wait for the simulation thread.
+// A byte stream between the board and a local program. Received bytes are queued for the simulation thread.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace inkwell::virtual_board {
 
 class ByteStream {
  public:
-  /// Limit of bytes that wait for take(); the sender is blocked above it.
+  /// Largest number of bytes that are queued for take(). The sender is blocked while the queue is full.
   static constexpr std::size_t unread_maximum = 64 * 1024;
 
   struct Arrived {
@@ -19,7 +19,7 @@ class ByteStream {
   };
   virtual ~ByteStream() = default;
   virtual Arrived take() = 0;
-  /// Without a reader, the bytes are discarded.
+  /// Sends bytes to the local program. If no program is connected, the bytes are discarded.
   virtual void send(std::string_view bytes) = 0;
 };
 

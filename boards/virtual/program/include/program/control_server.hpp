@@ -1,4 +1,4 @@
-// The control socket: JSON lines from several clients, passed to the simulation thread one by one.
+// Server for the control socket. It passes JSON lines from several clients to the simulation thread, one by one.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 
 namespace inkwell::virtual_board {
 
-/// One line of a client. The client waits until `reply` is set.
+/// One command line of a client. The client waits until `reply` is set.
 struct ControlRequest {
   std::string line;
   std::promise<nlohmann::json> reply;
@@ -25,10 +25,10 @@ struct ControlRequest {
 
 class ControlServer {
  public:
-  /// Further clients are refused with a sentence.
+  /// Largest number of clients. Further clients are refused with an error sentence.
   static constexpr std::size_t clients_maximum = 32;
 
-  /// @throws std::runtime_error with a sentence that names --control if listening fails.
+  /// @throws std::runtime_error with an error sentence that names --control if the server cannot listen.
   explicit ControlServer(const local::SocketAddress& where);
   /// Answers pending requests, disconnects all clients and joins their threads.
   ~ControlServer();
@@ -36,9 +36,10 @@ class ControlServer {
   ControlServer& operator=(const ControlServer&) = delete;
 
   const local::SocketAddress& address() const { return listener_.address(); }
-  /// Returns the oldest request. Waits for a request until `give_up` or a call of wake().
+  /// Returns the oldest request. If no request is pending, waits for a request until `give_up` or until wake() is
+  /// called.
   std::optional<ControlRequest> take(std::chrono::steady_clock::time_point give_up);
-  /// Ends the present or next wait of take(). May be called from any thread.
+  /// Ends the present wait of take(), or the next wait. May be called from any thread.
   void wake();
 
  private:

@@ -1,4 +1,4 @@
-// Requests of control socket clients, parsed and checked as far as possible without a board. Each error states the
+// Requests of control socket clients: parsing, and all checks that need no board. Each error message states the
 // expected input.
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace inkwell::virtual_board {
 
-/// A command that is refused; what() is the sentence for the client.
+/// Thrown for a refused command. what() is the error sentence for the client.
 class Refused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -51,7 +51,7 @@ enum class Command : std::uint8_t {
   trace,
 };
 
-/// Name, keys and help of a command. The parser, the checks and --help use only this data.
+/// Name, keys and help text of a command. The parser, the checks and --help all use this data.
 struct CommandInfo {
   Command command;
   std::string_view name;
@@ -67,12 +67,12 @@ struct Request {
   const CommandInfo* info;
   nlohmann::json values;  ///< an object with known keys and unchecked values
 };
-/// Parses a client's line. This function and all following ones throw Refused.
+/// Parses a command line of a client. read_request() and all functions below throw Refused.
 Request read_request(std::string_view line);
 
 bool truth_value(const nlohmann::json& request, const char* key);
 double run_time_s(const nlohmann::json& request);
-/// Number of the flash operation during which the power fails; std::nullopt: immediately.
+/// Number of the flash operation during which the power fails. std::nullopt means an immediate power failure.
 std::optional<std::uint64_t> flash_operation(const nlohmann::json& request);
 double supply_voltage_V(const nlohmann::json& request);
 double glitch_time_s(const nlohmann::json& request);
@@ -81,7 +81,7 @@ enum class MeterAction : std::uint8_t { start, read };
 MeterAction meter_action(const nlohmann::json& request);
 enum class TraceAction : std::uint8_t { start, stop, read };
 TraceAction trace_action(const nlohmann::json& request);
-/// Largest number of rows to read.
+/// Largest number of trace rows to read.
 std::size_t trace_rows(const nlohmann::json& request);
 
 struct HandRequest {

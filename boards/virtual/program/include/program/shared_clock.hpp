@@ -1,4 +1,4 @@
-// Common clock of simultaneous virtual boards: no board gets more than a millisecond ahead of another.
+// Common clock of simultaneous virtual boards: the board times differ by at most one millisecond.
 #pragma once
 
 #include <array>
@@ -9,34 +9,34 @@
 
 namespace inkwell::virtual_board {
 
-/// The boards of a group share a small file with one slot per board. Each board owns a file lock on its slot. The
-/// system releases the lock when the board's process exits for any reason.
+/// The boards of a group share a small file with one slot per board. Each board has a file lock on its slot. The
+/// operating system releases the lock when the board's process exits.
 class SharedClock {
  public:
   static constexpr std::size_t boards_maximum = 16;
 
-  /// Joins the group or creates it. A later board starts at the group's time. Throws std::runtime_error with a
-  /// sentence.
+  /// Joins or creates the group of boards. A board that joins later starts at the group's time. Throws
+  /// std::runtime_error with an error sentence.
   explicit SharedClock(const std::filesystem::path& file);
   ~SharedClock();
   SharedClock(const SharedClock&) = delete;
   SharedClock& operator=(const SharedClock&) = delete;
 
-  /// Publishes that `milliseconds` of this board's time have passed since it joined.
+  /// Publishes the board time, in milliseconds since this board joined the group.
   void note(std::uint64_t milliseconds);
-  /// Returns true if all other boards have reached this board's time. The next millisecond of this board may then
-  /// begin.
+  /// Returns true if all other boards have reached this board's time, so that the next millisecond of this board may
+  /// start.
   bool lets_pass();
 
  private:
-  /// 0: the slot is free. Otherwise 1 plus the group time of the board in milliseconds.
+  /// Content of a slot: 0 if the slot is free, otherwise 1 plus the group time of the board in milliseconds.
   using Place = std::atomic<std::uint64_t>;
   static_assert(Place::is_always_lock_free, "processes share it");
   using Places = std::array<Place, boards_maximum>;
 
   void join();
   bool is_taken(std::size_t place) const;
-  /// Largest value of all slots; 1 if there is no board.
+  /// Largest value of all slots; 1 if all slots are free.
   std::uint64_t farthest() const;
 
   int file_ = -1;

@@ -1,4 +1,4 @@
-// Server for GDB, or for a terminal on a UART, with one client at a time.
+// Server for GDB or for a UART terminal, with one client at a time.
 #pragma once
 
 #include <condition_variable>
@@ -14,18 +14,18 @@
 
 namespace inkwell::virtual_board {
 
-/// Returns whether the first bytes of a client can belong to the expected protocol.
+/// Function that returns true if the first bytes of a client may belong to the expected protocol.
 using FirstBytes = bool (*)(std::string_view bytes);
-/// GDB starts with an acknowledgment, a packet or Ctrl-C.
+/// True if the first byte is that of an acknowledgment, a GDB packet or Ctrl-C.
 bool may_be_gdb(std::string_view bytes);
-/// A UART accepts any bytes except the requests of a browser: HTTP or the start of TLS.
+/// True unless the first bytes are those of a browser request (HTTP or TLS).
 bool may_be_terminal(std::string_view bytes);
 
 class StreamServer final : public ByteStream {
  public:
   /// A client is disconnected if `welcome` rejects its first bytes. Until the first bytes arrive, the client is not
-  /// reported as connected. `on_arrival` is called from another thread when take() has data.
-  /// @throws std::runtime_error with a sentence that names `option` if listening fails.
+  /// reported as connected. The server thread calls `on_arrival` when take() has data.
+  /// @throws std::runtime_error with an error sentence that names `option` if the server cannot listen.
   StreamServer(const local::SocketAddress& where, std::string_view option, FirstBytes welcome,
                std::function<void()> on_arrival);
   ~StreamServer() override;

@@ -1,4 +1,4 @@
-// Cost of a straight run of instructions with memory without wait states.
+// Cost of a basic block in cycles, for memory without wait states.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace inkwell::virtual_board {
 
-/// Bus that fetches the instructions.
+/// Memory from which the core fetches the instructions.
 enum class CodeMemory : std::uint8_t {
   flash,  ///< separate bus, 128 bits per line
   sram,   ///< bus shared with data in SRAM
 };
 
-/// A run from its first to its last instruction. A run is priced once, and the price is used at each execution.
+/// Price of a basic block, that is, its duration in cycles. A block is priced once, and each execution uses this price.
 struct BlockPrice {
-  /// A flash access. The time of a request is relative to the start of the block.
+  /// A flash access. `after_cycles` is the time of the access, relative to the start of the block.
   struct Request {
     std::uint32_t address;
     std::uint16_t after_cycles;
@@ -30,7 +30,7 @@ struct BlockPrice {
     bool is_signed;
     bool known_at_entry;  ///< the block does not write the operands before the divide
   };
-  /// A load that may read a table in the flash.
+  /// A load instruction that may read a table in the flash.
   struct Read {
     std::uint32_t instruction;  ///< address of the instruction
     std::uint16_t after_cycles;
@@ -57,17 +57,18 @@ struct BlockPrice {
   std::vector<Read> reads;
 };
 
-/// Reads a word of memory without side effects; may be empty.
+/// Function that reads a word of memory without side effects; may be empty.
 using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Returns the price of the instructions in `code` (whole half-words) at `address`. `word` reads the literals.
+/// Returns the price of the block with the instructions `code` (whole half-words) at `address`. `word` reads the
+/// literals.
 BlockPrice price(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
                  const WordReader& word = {});
 
-/// Additional cycles, above the shortest time, of a divide with unknown operands.
+/// Additional cycles of a divide with unknown operands, above the shortest divide.
 unsigned divide_mean(const Costs& costs);
 
-/// Cycles of a divide. This is a guess: the time increases by one cycle per four quotient bits.
+/// Cycles of a divide. The rule is a guess: one additional cycle for every four quotient bits.
 unsigned divide_cycles(std::uint32_t dividend, std::uint32_t divisor, bool is_signed, const Costs& costs);
 
 }  // namespace inkwell::virtual_board

@@ -10,7 +10,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Selects one of the two values of each cost.
+/// Selects the likely or the conservative value of each cost.
 enum class Pricing : std::uint8_t { likely, conservative };
 
 /// Source of a value.
@@ -43,14 +43,14 @@ inline constexpr CostInfo cost_table[] = {
 #undef X
 };
 
-// For this row the smaller value is the conservative one, because fewer lines enter the cache.
+// For prefetched_line_is_cached the smaller value is conservative, because fewer lines enter the cache.
 static_assert([] {
   for (const CostInfo& row : cost_table)
     if (row.likely > row.conservative && row.cost != Cost::prefetched_line_is_cached) return false;
   return true;
 }());
 
-/// The values of one pricing.
+/// The cost values of one Pricing.
 class Costs {
  public:
   constexpr explicit Costs(Pricing pricing) : pricing_(pricing) {}

@@ -1,4 +1,4 @@
-// Counts the cycles of a program during execution, block by block.
+// Counts the cycles of the firmware during execution, block by block.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace inkwell::virtual_board {
 
-/// Addresses of the two memories for instructions, in bytes.
+/// Base addresses and sizes of the two instruction memories.
 struct CodeMap {
   std::uint32_t flash_base, flash_bytes, sram_base, sram_bytes;
 };
 
 class CycleCounter {
  public:
-  /// `word` reads memory without side effects.
+  /// `word` must read memory without side effects.
   CycleCounter(Pricing pricing, const CodeMap& map, WordReader word);
 
   const Costs& costs() const { return costs_; }
   FlashAccelerator& flash() { return flash_; }
   const FlashAccelerator& flash() const { return flash_; }
 
-  /// Price of the run of `bytes` at `address` if it is known and the code has not changed; otherwise null.
+  /// Price of the block of `bytes` at `address`, or null if the block has no valid price.
   const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
     if (forgets_) forget_prices();
     const Known* known = *place_of(address).known;
@@ -33,35 +33,36 @@ class CycleCounter {
         known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
     return fits ? &known->price : nullptr;
   }
-  /// Price of the run of `code` at `address`. The reference is valid while the block runs.
+  /// Price of the block `code` at `address`. The reference is valid while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
-  /// Cycles that the block waits at its start at cycle `now`, for the branch refill and the FPU.
+  /// Wait cycles at the start of the block at cycle `now`, for the branch refill and the FPU.
   unsigned enter(const BlockPrice& block, std::uint64_t now);
-  /// Cycles that the whole block waits for the flash if it starts at cycle `now`. `register_value` reads a register at
-  /// that time. Data reads with an unknown base are not counted. An unknown index is assumed to be anywhere in a small
-  /// table.
+  /// Cycles that the whole block waits for the flash if the block starts at cycle `now`. `register_value` returns the
+  /// value of a register at cycle `now`. Data reads with an unknown base are not counted. An unknown index is replaced
+  /// by a random index into a small table.
   template <class RegisterValue>
   unsigned wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value);
-  /// Wait cycles of a read at cycle `now` with the current registers.
+  /// Wait cycles of a read at cycle `now`, with the register values at this cycle.
   template <class RegisterValue>
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
-  /// Wait cycles of a request at cycle `now`.
+  /// Wait cycles of a flash access at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
-  /// Call this when the emulator has read the instruction at `address` again, because it may have changed.
+  /// Call this when the emulator has read the instruction at `address` again, because the instruction may have changed.
   void read_anew(std::uint32_t address);
-  /// Call this when exception entry, exception return or reset has changed the next instruction.
+  /// Call this when the next instruction does not follow from the last block: after an exception entry, an exception
+  /// return or a reset.
   void redirect() { redirected_ = true; }
-  /// Sets whether the next FPU instruction must stack the context of the interrupted code.
+  /// `due` is true if the next FPU instruction must stack the FPU context of the interrupted code.
   void stack_lazily(bool due) { lazy_stacking_due_ = due; }
   bool lazy_stacking_due() const { return lazy_stacking_due_; }
-  /// Call this when instructions in the flash have changed. The running block keeps its price.
+  /// Call this when instructions in the flash have changed. The price of the running block stays valid.
   void forget() {
     forgets_ = redirected_ = true;
     flash_.forget_lines();
   }
 
  private:
-  /// Hundreds of blocks run in each control period, so the members that each run needs share cache lines.
+  /// Hundreds of blocks run in each control period, so the members used in each run share cache lines.
   struct alignas(64) Known {
     bool is_current = false;  ///< the code has not been read again since the pricing
     BlockPrice price;
@@ -85,14 +86,14 @@ class CycleCounter {
   bool in_flash(std::uint32_t address) const {
     return address < map_.flash_bytes || address - map_.flash_base < map_.flash_bytes;
   }
-  /// Checks for flash reads are slower than the run itself, so only the first runs and every 64th run are checked.
+  /// Checking a block for flash reads takes longer than the block, so only the first runs and every 64th run are
+  /// checked.
   static bool asks_for_reads(const BlockPrice& block) {
     if (!block.has_reads) return false;
     const std::uint32_t run = block.runs++;
     return block.reads_flash || run < runs_asked_at_first || run % runs_between_asking == 0;
   }
-  /// Index for an address that the block itself computes: anywhere in a table of 1 KiB, repeatable for each run of the
-  /// program.
+  /// Pseudo-random index into a table of 1 KiB, for an index that the block computes. The sequence is repeatable.
   std::uint32_t any_index() {
     random_ = random_ * 1664525 + 1013904223;
     return random_ >> 22 & ~3u;
@@ -105,7 +106,7 @@ class CycleCounter {
   std::vector<Known*> known_in_flash_, known_in_sram_;  ///< index: half-word
   std::unordered_map<std::uint32_t, Known*> known_elsewhere_;
   WordReader word_;
-  // State after the previous block.
+  // State at the end of the previous block.
   std::uint32_t last_end_ = 0;
   unsigned last_taken_cycles_ = 0;
   bool redirected_ = true, forgets_ = false;

@@ -1,4 +1,5 @@
-// ART accelerator between the core and the flash (RM0090, "Adaptive real-time memory accelerator").
+// Adaptive real-time (ART) accelerator between the core and the flash (RM0090, "Adaptive real-time memory
+// accelerator").
 #pragma once
 
 #include <array>
@@ -8,11 +9,11 @@
 
 namespace inkwell::virtual_board {
 
-/// Cache of 128-bit lines with replacement of the least recently used line. The associativity is not documented; this
-/// model is fully associative.
+/// Cache of 128-bit lines, which replaces the least recently used line. The associativity is not documented; the model
+/// is fully associative.
 class LineCache {
  public:
-  /// Cache of up to 254 `places` for a memory of `lines` lines.
+  /// Creates a cache with `places` entries (at most 254) for a memory of `lines` lines.
   LineCache(std::size_t places, std::size_t lines);
   /// Returns true if the line is in the cache, and marks the line as most recently used.
   bool holds(std::uint32_t line) {
@@ -26,8 +27,8 @@ class LineCache {
 
  private:
   static constexpr std::uint32_t nobody = ~0u;
-  /// Entry of a ring in order of use. Entry 0 is a sentinel without a line: its `newer` is the most recently used
-  /// entry, its `older` the next to be replaced.
+  /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. Its `newer` is the most
+  /// recently used entry, its `older` is the entry that is replaced next.
   struct Place {
     std::uint32_t line = nobody;
     std::uint8_t older = 0, newer = 0;
@@ -42,16 +43,16 @@ class FlashAccelerator {
   static constexpr std::uint32_t line_bytes = 16;
   static constexpr std::size_t instruction_lines = 64, data_lines = 8;
 
-  /// `flash_bytes` must be a multiple of line_bytes. Addresses are offsets in the flash.
+  /// `flash_bytes` must be a multiple of line_bytes. Addresses are offsets from the start of the flash.
   FlashAccelerator(std::uint32_t flash_bytes, const Costs& costs);
 
-  /// Applies FLASH_ACR: wait states, prefetch and caches.
+  /// Applies the settings in FLASH_ACR: wait states, prefetch and caches.
   void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
   void forget_instructions() { instructions_.forget(); }  ///< ICRST
   void forget_data() { data_.forget(); }                  ///< DCRST
-  /// Call this after an erase or program operation, because the line buffers of the flash are outdated.
+  /// Call this after an erase or program operation, which invalidates the line buffers of the flash.
   void forget_lines() { current_ = ahead_ = nobody; }
-  /// True if no access waits.
+  /// True if the flash has no wait states.
   bool is_free() const { return wait_states_ == 0; }
   unsigned wait_states() const { return wait_states_; }
 
@@ -63,7 +64,7 @@ class FlashAccelerator {
   }
   /// Cycles that the core waits at cycle `now` for data in the line at `offset`.
   unsigned read(std::uint32_t offset, std::uint64_t now);
-  /// Cycles that the core waits at cycle `now` for an uncached line.
+  /// Cycles that the core waits at cycle `now` for a line that is not cached.
   unsigned miss(std::uint64_t now) const {
     const bool busy = miss_waits_ && ahead_ != nobody && ahead_at_ > now;
     return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;

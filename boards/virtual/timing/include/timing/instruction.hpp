@@ -1,4 +1,4 @@
-// Properties of a Thumb-2 instruction that determine its time (ARMv7-M Architecture Reference Manual, A5).
+// Properties of a Thumb-2 instruction that determine its duration (ARMv7-M Architecture Reference Manual, A5).
 #pragma once
 
 #include <cstdint>
@@ -45,10 +45,11 @@ struct Instruction {
   std::uint8_t dividend = 0, divisor = 0;  ///< registers of a divide
   bool is_signed = false;                  ///< for divides
   bool has_literal = false;                ///< reads a word at `literal`, relative to the program counter
-  /// Effect on a known constant: none, `literal` itself (ADR, MOVW), or `literal` as high half (MOVT).
+  /// Effect of the instruction on a register constant: none, `literal` as the whole value (ADR, MOVW), or `literal` as
+  /// the high half-word (MOVT).
   enum class Constant : std::uint8_t { none, whole, high_half } constant = Constant::none;
   std::uint32_t literal = 0;
-  // Address of a load: base + (index << shift) + offset.
+  // The address of a load is base + (index << shift) + offset.
   static constexpr std::uint8_t stack_pointer = 13;
   static constexpr std::uint8_t no_register = 0xFF;
   std::uint8_t base = no_register, index = no_register, shift = 0;
@@ -57,7 +58,7 @@ struct Instruction {
   bool uses_float() const { return kind >= Kind::float_plain; }
 };
 
-/// True if an instruction with this first half-word has a second one.
+/// True if an instruction with this first half-word has a second half-word.
 constexpr bool is_wide(std::uint16_t first) { return first >= 0xE800; }
 
 /// Decodes the instruction at `address`. Narrow instructions ignore `second`; invalid instructions count as plain.

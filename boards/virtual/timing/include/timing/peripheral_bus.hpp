@@ -8,19 +8,19 @@
 
 namespace inkwell::virtual_board {
 
-/// The bridges to APB1 and APB2 handle one access at a time. A write releases the core immediately and occupies the
-/// bridge; a read occupies both.
+/// The bridges to APB1 and APB2 handle one access at a time. During a write only the bridge is busy; during a read the
+/// core also waits.
 class PeripheralBus {
  public:
   explicit PeripheralBus(const Costs& costs) : costs_(costs) {}
 
-  /// Sets HCLK, PCLK1 and PCLK2. The ratios of the clocks are powers of two; 0 is a stopped clock.
+  /// Sets HCLK, PCLK1 and PCLK2. The frequency ratios must be powers of two. A frequency of 0 means a stopped clock.
   void set_clocks(std::uint32_t hclk_Hz, std::uint32_t pclk1_Hz, std::uint32_t pclk2_Hz) {
-    // The ratio is rounded, because frequencies of a crystal with a deviation are rounded.
+    // The ratio is rounded, because a crystal deviation makes the frequencies inexact.
     const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : (hclk_Hz + bus_Hz / 2) / bus_Hz; };
     ratios_ = {ratio(pclk1_Hz), ratio(pclk2_Hz)};
   }
-  /// Additional HCLK cycles compared with a RAM access.
+  /// Additional HCLK cycles of a register access, compared with a RAM access.
   unsigned access(std::uint32_t address, bool write, std::uint64_t now) {
     constexpr std::uint32_t apb2_base = 0x4001'0000, ahb1_base = 0x4002'0000, private_base = 0xE000'0000;
     if (address >= private_base) return costs_[Cost::private_bus];
