@@ -18,7 +18,7 @@ constexpr std::uint8_t get_status = 0, set_address = 5, get_descriptor = 6, get_
 }
 constexpr std::uint8_t class_out = 0x21, class_in = 0xA1;
 
-/// Readable and writable memory, one string per alternate setting (UM0424, "DfuSe memory layout").
+/// Memory areas that the host may read or write, one string per alternate setting (UM0424, "DfuSe memory layout").
 constexpr std::string_view alternates[] = {
     "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg",
     "@Option Bytes  /0x1FFFC000/01*016 e",
@@ -45,7 +45,7 @@ std::vector<std::byte> configuration_descriptor() {
          {std::uint8_t{9}, std::uint8_t{4}, std::uint8_t{0}, i, std::uint8_t{0}, application_class, firmware_update,
           dfu_mode, static_cast<std::uint8_t>(first_alternate + i)})
       bytes.push_back(byte);
-  // Attributes: download, upload, will detach, not manifestation tolerant.
+  // The DFU attributes are: can download, can upload, will detach, not manifestation tolerant.
   for (const unsigned byte : {9u, 0x21u, 0x0Bu, 255u, 0u, BootLoaderDfu::transfer_bytes & 0xFFu,
                               unsigned{BootLoaderDfu::transfer_bytes} >> 8, 0x1Au, 0x01u})
     bytes.push_back(static_cast<std::uint8_t>(byte));
@@ -61,7 +61,7 @@ std::vector<std::byte> string_descriptor(std::string_view text) {
   return bytes;
 }
 
-/// Serial number from the chip's unique identifier, with the algorithm of ST's device library.
+/// Derives the serial number from the chip's unique identifier, with the algorithm of ST's device library.
 std::string serial_of(DebugPort& memory) {
   std::array<std::uint32_t, 3> id{};
   std::array<std::uint8_t, sizeof id> bytes{};
@@ -116,7 +116,7 @@ Handshake BootLoader::setup(unsigned address, unsigned endpoint, std::span<const
   return Handshake::ack;
 }
 
-/// Whether the request must wait. Only class requests wait for a running operation.
+/// True if the request must wait. Only class requests wait until the running operation has finished.
 bool BootLoader::has_to_wait() const { return (request_.type & 0x60) != 0 && dfu_.is_busy(); }
 
 Handshake BootLoader::out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) {

@@ -1,4 +1,4 @@
-// Requests of DFU 1.1 and of ST's extension (AN3156).
+// Requests of DFU 1.1 and of ST's DFU extension (AN3156).
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -20,13 +20,13 @@ constexpr std::uint32_t flash_begin = 0x0800'0000, flash_end = 0x0810'0000, ram_
                         ram_end = 0x2002'0000, system_begin = 0x1FFF'0000, system_end = 0x1FFF'7A30,
                         options_begin = 0x1FFF'C000, options_bytes = 16;
 
-/// RM0090, "Embedded Flash memory interface".
+/// Flash registers (RM0090, "Embedded Flash memory interface").
 constexpr std::uint32_t flash_keyr = 0x4002'3C04, flash_optkeyr = 0x4002'3C08, flash_sr = 0x4002'3C0C,
                         flash_cr = 0x4002'3C10, flash_optcr = 0x4002'3C14, aircr = 0xE000'ED0C;
 constexpr std::uint32_t cr_pg = 1, cr_ser = 2, cr_mer = 4, cr_word_parallelism = 2 << 8, cr_strt = 1 << 16,
                         cr_lock = 1u << 31, sr_errors = 0xF2, optcr_lock = 1, optcr_start = 2;
 constexpr std::uint32_t system_reset_request = 0x05FA'0004;
-/// Bits of OPTCR that are option bytes: user options, RDP and nWRP.
+/// OPTCR bits that contain option bytes: user options, RDP and nWRP.
 constexpr std::uint32_t user_options = 0xEC, write_protection = 0xFFF;
 
 constexpr bool lies_in(std::uint32_t address, std::uint32_t begin, std::uint32_t end) {
@@ -127,7 +127,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   if (request.value == 0)
     return std::vector{std::byte{dfu_command::get_commands}, std::byte{dfu_command::set_address},
                        std::byte{dfu_command::erase}, std::byte{dfu_command::read_unprotect}};
-  // AN3156: block addresses use the length of this request, not the length in the descriptor.
+  // AN3156: block addresses are multiples of the request length, not of the transfer size in the descriptor.
   const std::uint32_t length = std::min(request.length, transfer_bytes);
   asked_ = Operation{.kind = Operation::Kind::read,
                      .address = pointer_ + (request.value - first_data_block) * length,
@@ -135,7 +135,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   return std::vector<std::byte>{};
 }
 
-/// Starts the waiting operation with this answer. The next answer follows after the operation.
+/// Answers the status request and starts the waiting operation. The next status answer follows after the operation.
 std::vector<std::byte> BootLoaderDfu::status() {
   State told = state_;
   unsigned poll_ms = 0;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Link target in /proc for the socket with this local port; empty if the socket does not exist.
+/// Returns the link target in /proc of the socket with this local port; empty if the socket does not exist.
 std::string link_of_socket(std::uint16_t port) {
   std::ostringstream address;
   address << "0100007F:" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << port;
@@ -28,7 +28,7 @@ std::string link_of_socket(std::uint16_t port) {
     std::string number, local, ignored, inode;
     words >> number >> local;
     for (int i = 0; i < 7; ++i) words >> ignored;
-    // A closed connection with this port may still be listed, without a socket.
+    // The list may still contain a closed connection of this port, with inode 0.
     const bool is_open = words >> inode && inode != "0";
     if (is_open && local == address.str()) return "socket:[" + inode + "]";
   }

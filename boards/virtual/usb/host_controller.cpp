@@ -9,14 +9,13 @@ namespace inkwell::virtual_board {
 namespace {
 constexpr double nominal_frame_s = 0.001;
 constexpr Ticks byte_ticks = 8 * bit_ticks;
-// Bus time per transaction in addition to the payload, in bytes (USB 2.0, tables 5-8 to 5-10). The time covers token,
-// handshake, synchronization and turn-around. 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added
-// separately.
+// Overhead of a transaction in bytes (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronization and turn-around.
+// Therefore 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added separately.
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
-// An endpoint that is not ready is polled again at increasing intervals. Real controllers differ in this. Polling an
-// idle endpoint 180 times per frame has no benefit.
+// An endpoint that is not ready is polled again at increasing intervals, because polling an idle endpoint 180 times per
+// frame has no benefit. Real controllers use different intervals.
 constexpr Ticks retry_first = refused_in_bytes * byte_ticks;
 constexpr Ticks retry_maximum = ticks(nominal_frame_s / 4);
 constexpr unsigned frames_until_suspend = 3;
@@ -70,7 +69,7 @@ void HostController::select_alternate(const ConfigurationDescription& configurat
     if (endpoint.interface == interface && endpoint.alternate == alternate) open(endpoint);
 }
 
-// Completes the transfers of a removed pipe with the status that the host's driver would see.
+// Completes the transfers of a removed pipe with the status that a driver on the host expects.
 void HostController::close(Pipe& pipe) {
   std::deque<Urb> urbs = std::move(pipe.urbs);
   pipe = Pipe{};
@@ -99,8 +98,8 @@ void HostController::submit(Urb&& urb) {
     client_.completed(std::move(urb), transfer_status::invalid);
     return;
   }
-  // The schedule of a frame is fixed at its start. If a report were sent in the frame of its submission, one command
-  // between two forces would delay every later force by a frame.
+  // The host controller fixes the schedule of a frame at the start of the frame. The first report of an idle OUT
+  // endpoint is therefore sent at the earliest in the frame after its submission.
   if (pipe.type == TransferType::interrupt && !urb.in && pipe.urbs.empty())
     pipe.due_frame = std::max(pipe.due_frame, frame_ + 1);
   pipe.urbs.push_back(std::move(urb));
@@ -199,8 +198,8 @@ std::span<const std::byte> HostController::next_out_data(const Pipe& pipe, const
   return length == 0 ? std::span<const std::byte>{} : std::span<const std::byte>(urb.data).subspan(urb.sent, length);
 }
 
-// Returns false if the transaction does not fit in the rest of the frame. The device receives an OUT or SETUP packet at
-// the end of the transaction, and an IN token at its start.
+// Returns false if the transaction is too long for the rest of the frame. The device receives an OUT or SETUP packet at
+// the end of a transaction, and an IN token at the start.
 bool HostController::start(unsigned index) {
   Pipe& pipe = pipes_[index];
   const Urb& urb = pipe.urbs.front();
@@ -342,7 +341,8 @@ void HostController::complete(unsigned index, std::int32_t status) {
   if (pipe.urbs.empty()) busy_pipes_ &= ~(1u << index);
   pipe.errors = 0;
   pipe.retry_after = 0;
-  // A driver learns of a completed control transfer at the end of the frame, and then submits the next one.
+  // A driver is notified of a completed control transfer at the end of the frame, so the next control transfer starts
+  // in the next frame.
   pipe.retry_at = pipe.type == TransferType::control ? frame_begin_ + frame_ticks_ : 0;
   client_.completed(std::move(urb), status);
 }

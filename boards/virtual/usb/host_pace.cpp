@@ -51,7 +51,8 @@ bool HostPace::is_waited_for_without_limit() const {
 bool HostPace::waits_for_board() const {
   const auto has_asked = [](const Endpoint& one) { return one.most > 0; };
   if (std::ranges::none_of(in_endpoints_, has_asked)) return is_asked();
-  // A streaming reader renews its requests in time. A reader with single requests decides when board time passes.
+  // A streaming host renews its requests in time. A host with single requests controls board time: it passes only while
+  // a request is pending.
   return std::ranges::none_of(in_endpoints_, [](const Endpoint& one) { return one.most == 1 && one.requests == 0; });
 }
 

@@ -10,13 +10,13 @@
 namespace inkwell::virtual_board {
 
 namespace {
-/// Words of the receive FIFO that are reserved from data packets: ten for SETUP packets, one for the global OUT NAK
+/// Words of the receive FIFO that data packets must leave empty: ten for SETUP packets, one for the global OUT NAK
 /// (RM0090, "Peripheral FIFO architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
-/// Longest time for a device to detect the loss of VBUS (USB 2.0, section 7.1.5).
+/// Longest time within which a device must release the pull-up after VBUS is lost (USB 2.0, section 7.1.5).
 constexpr Ticks pull_up_release = 10 * ticks_per_s;
-/// From an IN token to the end of the handshake time-out, without the data and its stuffed bits.
+/// Bit times from an IN token to the end of the handshake time-out, excluding the data and stuffed bits.
 constexpr Ticks in_transaction_bits = 8 * 14;
 
 /// End of the periodic part of a frame, in thousandths of a frame (DCFG.PFIVL).
@@ -41,8 +41,8 @@ void OtgFsDevice::check_bus_power() {
   if (pulled_up_ && !bus_power_) rules_.violate(Rule::usb_pull_up_unpowered);
 }
 
-// In the endpoint registers the core clears only USBAEP. Enables, stalls and FIFOs do not change until the firmware
-// clears them.
+// At a bus reset the core clears only USBAEP in the endpoint registers. Enable bits, stall bits and FIFOs do not change
+// until the firmware clears them.
 void OtgFsDevice::begin_reset() {
   bus_is_silent_ = true;
   suspended_ = false;
@@ -125,7 +125,8 @@ void OtgFsDevice::push_data(std::span<const std::byte> data) {
   }
 }
 
-// SETUP packets are always accepted, regardless of NAK and STALL. A SETUP packet sets NAK on both sides of endpoint 0.
+// SETUP packets are always accepted, regardless of NAK and STALL. A SETUP packet sets NAK in both directions of
+// endpoint 0.
 Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) {
   if (endpoint != 0 || !answers(address, endpoint)) return Handshake::nothing;
   check_turnaround();
@@ -154,7 +155,7 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   return Handshake::ack;
 }
 
-// The next token shows that no further SETUP packet follows.
+// The next token ends the setup stage, because no further SETUP packet can follow.
 void OtgFsDevice::end_setup_stage() {
   if (!setup_stage_open_) return;
   setup_stage_open_ = false;
@@ -178,7 +179,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
     endpoint.interrupts |= otg.doepint.otepdis.mask();
     update_interrupt();
   }
-  // The empty packet of a status stage requires no packet count.
+  // The empty packet of a status stage is accepted even if PKTCNT is 0.
   const bool is_expected = endpoint.packets != 0 || (number == 0 && data.empty());
   if (!enabled || otg.doepctl.naksts.in(endpoint.control) || !is_expected || global_out_nak_asked_)
     return Handshake::nak;

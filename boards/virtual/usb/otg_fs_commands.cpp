@@ -11,19 +11,19 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr Ticks transceiver_clock = ticks_per_s / 48'000'000;
-/// RM0090, OTG_FS reset register: a flush takes eight clocks of the slower of PHY and AHB.
+/// RM0090, OTG_FS reset register: a flush lasts eight cycles of the slower clock (PHY or AHB).
 constexpr Ticks command_duration = 8 * transceiver_clock;
-/// The manual states no duration, but requires the firmware to poll the bit.
+/// The manual states no duration for a core reset, but requires the firmware to poll CSRST.
 constexpr Ticks core_reset_duration = ticks_per_s / 1'000'000;
-/// Minimum time from the core's reset to the first access to the PHY clock domain.
+/// Minimum time from the core reset to the first access to the PHY clock domain.
 constexpr Ticks rest_after_reset = 3 * transceiver_clock;
 
 bool is_fifo_of(std::uint32_t offset, unsigned endpoint) {
   return offset >= otg_fifo_base && (offset - otg_fifo_base) / otg_fifo_window_bytes == endpoint;
 }
 bool is_transmit_size(std::uint32_t offset) { return offset == otg.dieptxf0 || otg.dieptxf.covers(offset); }
-/// Whether the register is the control or transfer-size register of this IN endpoint. Interrupt flags are excluded,
-/// because the firmware may clear them at any time.
+/// True for the control register and the transfer-size register of this IN endpoint. The interrupt register is
+/// excluded, because the firmware may clear interrupt flags at any time.
 bool is_of_in(std::uint32_t offset, unsigned endpoint) {
   const std::uint32_t of_device = offset - otg_device_base;
   return (otg.diepctl.covers(of_device) && otg.diepctl.index(of_device) == endpoint) ||
@@ -101,7 +101,7 @@ void OtgFsDevice::check_flush(std::uint32_t value) {
 
 // --- NAK and disabling ------------------------------------------------------------------------------------
 
-// Returns the end of the packet on the wire, or 0 without a packet.
+// Returns the time at which the packet on the wire ends, or 0 if no packet is on the wire.
 Ticks OtgFsDevice::free_of_packet(const InEndpoint& endpoint) const {
   return endpoint.bytes_on_wire ? endpoint.wire_until : 0;
 }

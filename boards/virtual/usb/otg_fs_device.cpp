@@ -13,7 +13,8 @@ namespace {
 constexpr Ticks millisecond = ticks_per_s / 1000;
 /// RM0090, OTG_FS_GUSBCFG: FDMOD.
 constexpr Ticks mode_change_duration = 25 * millisecond;
-/// A host resets the device only after D+ has been high for 100 ms. A driver finishes its settings earlier.
+/// A host resets the device only after D+ has been high for 100 ms. Firmware must finish the USB settings before this
+/// reset.
 constexpr Ticks connection_settles = 50 * millisecond;
 
 /// RM0090, table "TRDT values".
@@ -55,7 +56,7 @@ void OtgFsDevice::reset() {
   reset_core();
 }
 
-// CSRST. The settings of the wiring (GUSBCFG, GCCFG, the speed in DCFG, PCGCCTL) are retained.
+// A core reset (CSRST) retains the settings that depend on the wiring: GUSBCFG, GCCFG, the speed in DCFG, and PCGCCTL.
 void OtgFsDevice::reset_core() {
   scheduler_.cancel(end_of_periodic_frame_);
   cancel_commands();
@@ -239,8 +240,8 @@ void OtgFsDevice::write_device(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
-// A new address applies after the status stage of its request. The manual requires the firmware to write the address
-// before that stage.
+// A new device address applies after the status stage of SET_ADDRESS. The manual requires the firmware to write the
+// address before the status stage.
 void OtgFsDevice::write_device_configuration(std::uint32_t value) {
   device_configuration_ = (device_configuration_ & ~writable(otg.dcfg)) | (value & writable(otg.dcfg));
   if (!control_transfer_open_) address_ = programmed_address();
@@ -298,7 +299,7 @@ bool OtgFsDevice::clock_is_exact() const {
   return chip_.usb_Hz() >= nominal_Hz - tolerance_Hz && chip_.usb_Hz() <= nominal_Hz + tolerance_Hz;
 }
 
-// Checks the conditions for the host to detect the device.
+// Checks all conditions under which a host can detect the device.
 void OtgFsDevice::check_connection() {
   if (!pulled_up_) return;
   if (!pins_connected()) rules_.violate(Rule::usb_pins);
@@ -307,7 +308,7 @@ void OtgFsDevice::check_connection() {
   if (!otg.gusbcfg.fdmod.in(usb_configuration_) && !chip_.has_function('A', 10, otg_fs)) rules_.violate(Rule::usb_mode);
 }
 
-// Checks the conditions for transfers after the host has reset the bus.
+// Checks all conditions for transfers, after the host has reset the bus.
 void OtgFsDevice::check_core() {
   if (!otg.gusbcfg.physel.in(usb_configuration_))
     rules_.violate(Rule::usb_transceiver);
@@ -316,7 +317,7 @@ void OtgFsDevice::check_core() {
   if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
 }
 
-// Called from the first answered packet on; the firmware may set TRDT after speed enumeration.
+// Called for each answered packet, because the firmware may set TRDT as late as after speed enumeration.
 void OtgFsDevice::check_turnaround() {
   if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
     rules_.violate(Rule::usb_turnaround);
@@ -326,7 +327,7 @@ std::uint32_t OtgFsDevice::in_interrupts(unsigned endpoint) const {
   return in_[endpoint].interrupts | otg.diepint.txfe.with(transmit_empty_level(endpoint));
 }
 
-// DAINT: TXFE has a separate mask with one bit for each endpoint.
+// DAINT. The TXFE interrupt has a separate mask register with one bit for each endpoint.
 std::uint32_t OtgFsDevice::endpoint_interrupts() const {
   std::uint32_t active = 0;
   for (unsigned i = 0; i < endpoint_count; ++i) {

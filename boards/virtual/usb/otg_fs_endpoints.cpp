@@ -9,7 +9,8 @@ namespace inkwell::virtual_board {
 
 namespace {
 
-/// Longest time from an empty receive FIFO to clearing NAK: a few instructions with interrupts disabled.
+/// Longest allowed time from the check of an empty receive FIFO to the clearing of NAK: a few instructions with
+/// interrupts disabled.
 constexpr Ticks look_before_clearing_nak = ticks_per_s / 1'000'000;
 
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
@@ -24,7 +25,7 @@ constexpr std::uint32_t stored_out_bits(unsigned endpoint) {
   return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
 }
 
-// Endpoint 0 has narrower size and packet fields.
+// The size and packet count fields of endpoint 0 are narrower.
 constexpr std::uint32_t transfer_bytes(std::uint32_t size, unsigned endpoint) {
   return otg.dieptsiz.xfrsiz.of(size) & (endpoint == 0 ? 0x7F : otg.dieptsiz.xfrsiz.maximum());
 }
@@ -129,7 +130,7 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
   WordFifo& fifo = transmit_[fifo_number];
 
   if (endpoint.packet_words_to_load != 0 && writing_endpoint_ != number && !endpoint.damaged) {
-    // Observed on silicon: the packet is sent with a bad CRC repeatedly, until the FIFO is flushed.
+    // Observed on silicon: the core repeatedly sends the packet with a bad CRC until the FIFO is flushed.
     rules_.violate(Rule::usb_interleaved);
     endpoint.damaged = true;
   }
@@ -188,7 +189,7 @@ bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
   return transmit_[fifo].count() <= level;
 }
 
-// Regions must not overlap in the packet memory. The core does not check this and overwrites data.
+// FIFO regions must not overlap in the packet memory. The core does not check for an overlap and overwrites data.
 void OtgFsDevice::note_memory_layout() {
   if (!layout_changed_) return;
   layout_changed_ = false;
@@ -278,7 +279,7 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
 }
 
 // The manual requires EPENA and CNAK together. Existing drivers, for example in ChibiOS, start an OUT transfer with
-// CNAK alone, and silicon accepts its packets.
+// CNAK alone, and silicon then accepts packets.
 bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
   const OutEndpoint& endpoint = out_[number];
   const bool clears_nak =
@@ -301,8 +302,8 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
 }
 
-// Observed on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word loses that
-// word. The firmware cannot avoid this if the packet arrived just after its last check of the FIFO.
+// Observed on silicon: the setup-done word of a SETUP packet is lost if NAK on endpoint 0 is cleared before the word is
+// popped. Firmware cannot avoid the loss if the packet arrives just after the last check of the FIFO.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
   const bool looked = scheduler_.now() - receive_found_empty_at_ <= look_before_clearing_nak;

@@ -1,12 +1,12 @@
-// Registers of the OTG_FS core (RM0090, "OTG_FS control and status registers"). Offsets are relative to each block's
-// base.
+// Registers of the OTG_FS core (RM0090, "OTG_FS control and status registers"). Register offsets are relative to the
+// base of their block.
 #pragma once
 
 #include <chip/register_map.hpp>
 
 namespace inkwell::virtual_board {
 
-/// GRXSTSR and GRXSTSP; reading GRXSTSP pops the entry.
+/// GRXSTSR and GRXSTSP. Reading GRXSTSP also pops the FIFO entry.
 struct OtgReceiveStatus : Register {
   Field epnum{"EPNUM", 0, 4, Access::r}, bcnt{"BCNT", 4, 11, Access::r}, dpid{"DPID", 15, 2, Access::r},
       pktsts{"PKTSTS", 17, 4, Access::r}, frmnum{"FRMNUM", 21, 4, Access::r};
@@ -144,18 +144,19 @@ struct OtgPowerRegisters {
 inline constexpr OtgPowerRegisters otg_power;
 inline constexpr std::uint32_t otg_power_base = 0xE00;
 
-/// All blocks, for code that needs a register's fields but not its address.
+/// All register blocks in one structure, for code that uses fields but no addresses.
 struct OtgRegisters : OtgGlobalRegisters, OtgDeviceRegisters, OtgPowerRegisters {};
 inline constexpr OtgRegisters otg;
 
-/// Read-only configuration of the synthesized core. The configuration is not in the manual, but common drivers read it.
+/// Read-only synthesis configuration of the core. The manual does not describe these registers, but common drivers read
+/// them.
 struct OtgSynthesisRegisters {
   Register gsnpsid{"GSNPSID", 0x040, 0x4F54'281A}, ghwcfg1{"GHWCFG1", 0x044}, ghwcfg2{"GHWCFG2", 0x048, 0x229D'CD20},
       ghwcfg3{"GHWCFG3", 0x04C, 0x0200'01E8}, ghwcfg4{"GHWCFG4", 0x050, 0x0FF0'8030};
 };
 inline constexpr OtgSynthesisRegisters otg_synthesis;
 
-/// FIFO access: one window per endpoint.
+/// Address windows for FIFO access, one window per endpoint.
 inline constexpr std::uint32_t otg_fifo_base = 0x1000, otg_fifo_window_bytes = 0x1000;
 
 }  // namespace inkwell::virtual_board

@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 
 namespace {
-// Times in frames of 1 ms (USB 2.0, sections 7.1.7 and 9.2.6).
+// Times of the host port, in frames of 1 ms (USB 2.0, sections 7.1.7 and 9.2.6).
 constexpr unsigned debounce_frames = 100;
 constexpr unsigned reset_frames = 20;
 constexpr unsigned reset_recovery_frames = 10;
@@ -77,7 +77,7 @@ std::optional<Urb> RootPort::unlink(std::uint32_t sequence) {
 }
 
 void RootPort::between_transactions() {
-  // A hub detects a missing pull-up within microseconds, even if the pull-up returns before the next frame.
+  // A hub detects within microseconds that the pull-up is off, even if it is on again before the next frame.
   const std::uint32_t attachment = plugged_ ? device_.attachment() : 0;
   if (attachment != attachment_) {
     detach();
@@ -248,7 +248,7 @@ void RootPort::answered(const Urb& urb) {
   }
 }
 
-// Handles requests after which host and device must agree on endpoints and toggles.
+// Updates the endpoints and toggles of the host controller after a standard request that changes them in the device.
 void RootPort::follow_standard_request(const Urb& urb) {
   const std::uint8_t type = setup_byte(urb, 0);
   const std::uint8_t value = setup_byte(urb, 2);

@@ -1,14 +1,14 @@
-// One device for several simultaneous programs, like the device sharing of an operating system.
+// Shares one device between several simultaneous programs, like an operating system.
 //
-// USB/IP allows one importer of a device. Here each importing program has its own view of the device:
+// USB/IP allows only one importer per device. SharedPort lets several programs import the same device, with these
+// rules:
 //
-//   interrupt IN   each report goes to every program that has requested one
-//   bulk           belongs to the first requesting program until it disconnects or unlinks its requests; the other
-//                  programs get "busy", as from a claimed interface
-//   control, OUT   are executed one after the other; a second SET_CONFIGURATION is answered here, because it would
-//   reset
-//                  the endpoints of the other programs
-//   import         resets and addresses the device for the first program only
+//   interrupt IN   every program that has requested a report receives the report
+//   bulk           the first requesting program uses the endpoint until it disconnects or unlinks its requests; the
+//                  other programs get "busy", as from a claimed interface
+//   control, OUT   transfers are executed one after the other; SharedPort answers a second SET_CONFIGURATION, because
+//                  it would reset the endpoints of the other programs
+//   import         the import by the first program resets and addresses the device
 #pragma once
 
 #include <cstdint>
@@ -38,14 +38,15 @@ class SharedPort final : private RootPort::Client {
   bool imported() const { return port_.imported(); }
 
   void import(std::uint32_t session);
-  /// The program has disconnected: its transfers are discarded. After the last program the bus suspends.
+  /// Call this when a program has disconnected. The program's transfers are discarded. After the last program has
+  /// disconnected, the bus suspends.
   void release(std::uint32_t session);
   void submit(std::uint32_t session, Urb&& urb);
-  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
+  /// Removes and returns a transfer, or returns std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t session, std::uint32_t sequence);
 
  private:
-  /// Recipient of the answer to a transfer on the bus.
+  /// Program and transfer to which the answer of a bus transfer belongs.
   struct Owner {
     std::uint32_t session;
     std::uint32_t sequence;  ///< the program's sequence number
@@ -62,7 +63,7 @@ class SharedPort final : private RootPort::Client {
 
   bool is_of_type(const Urb& urb, TransferType type) const;
   void pass_on(const Owner& owner, Urb&& urb);
-  /// Maintains one request on the bus for all programs that wait for a report of this endpoint.
+  /// Keeps one request pending on the bus for all programs that wait for a report from this endpoint.
   void keep_asking(std::uint8_t endpoint);
   void stop_asking_in_vain();
   void hand_out(const Urb& report, std::int32_t status);

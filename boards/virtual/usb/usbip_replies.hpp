@@ -1,4 +1,4 @@
-// Replies of the USB/IP server as bytes: descriptions and transfer results.
+// Serializes the replies of the USB/IP server: device descriptions and transfer results.
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,7 @@ void check_transfer(const usbip::TransferHeader& header) {
   if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
 }
 
-/// Number of packet descriptors after the data of an isochronous transfer.
+/// Returns the number of packet descriptors, which follow the data of an isochronous transfer.
 std::size_t packet_count_of(const usbip::Submit& submit) {
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)
@@ -25,7 +25,7 @@ std::size_t packet_count_of(const usbip::Submit& submit) {
   return submit.packet_count;
 }
 
-/// Converts the header, without data and packets.
+/// Converts the request header to a transfer without data and packets.
 Urb transfer_of(const usbip::Submit& submit) {
   Urb urb;
   urb.sequence = submit.header.sequence;
@@ -35,7 +35,7 @@ Urb transfer_of(const usbip::Submit& submit) {
   urb.length = submit.length;
   urb.setup = submit.setup;
   if (urb.length > transfer_maximum) throw std::runtime_error("a transfer is longer than 16 MiB");
-  // The direction of a control transfer must match its request.
+  // The direction of a control transfer must match the direction bit in its SETUP packet.
   const bool request_in = (urb.setup[0] & std::byte{0x80}) != std::byte{0};
   if (urb.endpoint == 0 && urb.length > 0 && request_in != urb.in)
     throw std::runtime_error("the direction of a control transfer differs from its request");
@@ -45,7 +45,8 @@ Urb transfer_of(const usbip::Submit& submit) {
 }  // namespace
 
 void UsbIpRequests::feed(std::span<const std::byte> bytes) {
-  // Moves the bytes only when half of the buffer is consumed, to keep moves rare.
+  // Moves the remaining bytes to the start of the buffer only when half of the buffer is consumed, because moves are
+  // slow.
   if (consumed_ * 2 >= received_.size()) {
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(consumed_));
     consumed_ = 0;
@@ -53,7 +54,7 @@ void UsbIpRequests::feed(std::span<const std::byte> bytes) {
   received_.insert(received_.end(), bytes.begin(), bytes.end());
 }
 
-/// Checks even an incomplete header, because a browser may send fewer bytes.
+/// Checks the version even if the header is incomplete, because a browser may send fewer bytes than a header.
 void UsbIpRequests::check_version() const {
   const usbip::Big16 expected = usbip::protocol_version;
   const auto version = usbip::bytes_of(expected);

@@ -24,10 +24,11 @@ namespace inkwell::virtual_board {
 
 namespace {
 constexpr std::size_t connections_maximum = 16;
-/// Several importers are allowed because the device is shared (SharedPort).
+/// Largest number of importers, which share the device (SharedPort).
 constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
-/// A client with more unsent data than this does not read and is disconnected.
+/// Largest number of unsent bytes per client. A client that exceeds this limit is disconnected, because it does not
+/// read.
 constexpr std::size_t unsent_maximum = 64u << 20;
 
 }  // namespace
@@ -98,7 +99,7 @@ void UsbIpServer::withdraw() {
 
 void UsbIpServer::wake() {
   const std::uint64_t one = 1;
-  // A full counter means that the thread is about to wake up.
+  // A failed write is ignored: the counter is then full, so the thread is about to wake up.
   [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
 }
 
@@ -123,7 +124,8 @@ void UsbIpServer::run() {
   while (true) {
     descriptors.clear();
     descriptors.push_back({wake_.number(), POLLIN, 0});
-    // A client that cannot be accepted keeps the listener readable, so the wait for remaining data would never end.
+    // The listener is polled only if a client can be accepted. Otherwise it would stay readable, and the wait for
+    // remaining data would never end.
     const bool accepts = accepts_now();
     descriptors.push_back({accepts ? listener_.descriptor() : -1, POLLIN, 0});
     for (const Connection& connection : connections_) {
@@ -174,7 +176,7 @@ void UsbIpServer::accept_connections() {
   }
 }
 
-// Disconnects the oldest client without an import, so that idle connections do not block others.
+// Disconnects the oldest client that has not imported the device, so that idle connections do not block new clients.
 void UsbIpServer::make_room() {
   const auto oldest = std::find_if(connections_.begin(), connections_.end(),
                                    [](const Connection& connection) { return !connection.import; });
@@ -182,7 +184,7 @@ void UsbIpServer::make_room() {
   connections_.erase(oldest);
 }
 
-// Issues the release order immediately, so that it precedes the next import.
+// Queues the release order immediately, so that it precedes the next import order.
 void UsbIpServer::end(Connection& connection) {
   connection.dead = true;
   if (!connection.import) return;

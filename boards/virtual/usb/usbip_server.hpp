@@ -1,7 +1,7 @@
-// Exports the device through USB/IP, on a local TCP port or on a Unix socket.
+// Exports the device through USB/IP, at a local TCP port or a Unix socket.
 //
-// The server thread does all blocking work. The simulation thread exchanges orders and results with the server thread
-// through two queues and never waits for a socket.
+// All blocking calls run on the server thread. The simulation thread exchanges orders and results with the server
+// thread through two queues and never waits for a socket.
 #pragma once
 
 #include <atomic>
@@ -29,7 +29,7 @@ namespace inkwell::virtual_board {
 
 class UsbIpServer {
  public:
-  /// A request of an importer. `session` is the number of the import, which identifies late answers.
+  /// A request of an importer. `session` is the number of the import, by which late answers are detected.
   struct Order {
     enum class Kind : std::uint8_t { import, release, submit, unlink };
     Kind kind;
@@ -47,8 +47,8 @@ class UsbIpServer {
     std::uint32_t unlink_sequence = 0;
   };
 
-  /// Throws std::runtime_error with a sentence that names --usbip if listening fails. `on_order` is called from the
-  /// server thread when take() has orders.
+  /// Throws std::runtime_error with an error sentence that names --usbip if the server cannot listen. The server thread
+  /// calls `on_order` when orders are available to take().
   UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
@@ -57,15 +57,15 @@ class UsbIpServer {
   const local::SocketAddress& address() const { return listener_.address(); }
 
   // For the simulation thread.
-  /// Appends the received orders to `orders`; the call is cheap if there are none.
+  /// Appends the received orders to `orders`. The call is fast if no orders have been received.
   void take(std::vector<Order>& orders);
-  /// Returns once all data that clients sent before this call is among the orders, and all earlier answers are sent.
+  /// Waits until all data that clients sent before this call is converted to orders, and all earlier answers are sent.
   void exchange_all();
-  /// Waits for orders; false if there are none at `give_up_at`.
+  /// Waits for orders. Returns false if no order has been received at `give_up_at`.
   bool wait_for_order(std::chrono::steady_clock::time_point give_up_at);
   void answer(Result&& result);
   void offer(const DeviceDescription& device);
-  /// The device is removed: its importers are disconnected.
+  /// Call this when the device is removed. All importers are disconnected.
   void withdraw();
 
  private:
@@ -109,7 +109,7 @@ class UsbIpServer {
   std::condition_variable order_given_, exchanged_;
   std::atomic<bool> orders_waiting_ = false;
 
-  // The server thread owns the members below.
+  // Only the server thread accesses the members below.
   std::list<Connection> connections_;
   std::uint32_t sessions_ = 0;
   std::chrono::steady_clock::time_point accept_again_at_{};

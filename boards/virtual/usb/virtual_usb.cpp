@@ -45,7 +45,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   bool any(Condition condition) const {
     return std::ranges::any_of(paces, [&](const auto& entry) { return (entry.second.*condition)(); });
   }
-  /// Whether the wait has a time limit.
+  /// True if the wait for this condition has a time limit.
   bool is_limited(Condition condition) const {
     if (is_in_lock_step()) return false;
     if (has_limit || paces.size() > 1) return any(condition);
@@ -53,7 +53,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
       return (entry.second.*condition)() && !entry.second.is_waited_for_without_limit();
     });
   }
-  /// Names of the programs that are waited for.
+  /// Returns the names of all programs for which `is_waited_for` is true.
   template <class Waited>
   std::vector<std::string> names(Waited is_waited_for) const {
     std::vector<std::string> names;
@@ -69,7 +69,8 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     orders.clear();
   }
 
-  /// Waits while the condition is true. A wait without a limit continues only while `goes_on` returns true.
+  /// Waits while the condition is true for a program. A wait without time limit continues only while `goes_on` returns
+  /// true.
   void wait_while(Condition condition, const std::function<bool()>& goes_on) {
     if (!any(condition)) return;
     std::optional<bool> was_limited;

@@ -1,4 +1,4 @@
-// Number of stuffed bits in a packet: a transmitter inserts a zero after six consecutive ones (USB 2.0, section 7.1.9).
+// Number of stuffed bits in a packet: the sender inserts a 0 bit after six consecutive 1 bits (USB 2.0, section 7.1.9).
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace inkwell::virtual_board {
 
-/// Effect of one byte on bit stuffing, for a given number of preceding ones.
+/// Bit stuffing of one byte, for a given number of preceding 1 bits.
 struct StuffedByte {
   std::uint8_t stuffed, ones;  ///< inserted zeros, and consecutive ones at the end of the byte
 };
 
 inline constexpr unsigned ones_before_stuffing = 6;
 
-/// Indexed by the number of preceding ones and by the byte value.
+/// Table that is indexed by the number of preceding 1 bits and by the byte value.
 inline constexpr auto stuffed_bytes = [] {
   std::array<std::array<StuffedByte, 256>, ones_before_stuffing> table{};
   for (unsigned before = 0; before < ones_before_stuffing; ++before)
@@ -32,7 +32,7 @@ inline constexpr auto stuffed_bytes = [] {
   return table;
 }();
 
-/// CRC16 of one byte: x^16 + x^15 + x^2 + 1, least significant bit first (USB 2.0, section 8.3.5.2).
+/// CRC16 of each byte value: x^16 + x^15 + x^2 + 1, least significant bit first (USB 2.0, section 8.3.5.2).
 inline constexpr auto data_checksums = [] {
   constexpr std::uint16_t polynomial = 0xA001;
   std::array<std::uint16_t, 256> table{};
@@ -44,8 +44,8 @@ inline constexpr auto data_checksums = [] {
   return table;
 }();
 
-/// Stuffed bits of a data packet: identifier, payload and checksum. The last bit of the synchronization pattern is a
-/// one and is included.
+/// Number of stuffed bits in the identifier, the payload and the checksum of a data packet. The last bit of the
+/// synchronization pattern is a 1 bit, which also counts.
 inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   constexpr std::uint8_t data0_identifier = 0xC3, data1_identifier = 0x4B;
   unsigned ones = 1, stuffed = 0, checksum = 0xFFFF;
@@ -65,7 +65,7 @@ inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   return stuffed;
 }
 
-/// Largest possible number of stuffed bits, for a schedule that does not depend on the data.
+/// Largest possible number of stuffed bits, so that the schedule does not depend on the data.
 constexpr std::uint64_t stuffed_bits_maximum(std::size_t payload_bytes) { return (payload_bytes * 8 + 24 + 5) / 6; }
 
 }  // namespace inkwell::virtual_board

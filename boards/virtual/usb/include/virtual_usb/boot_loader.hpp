@@ -1,6 +1,6 @@
-// ST's boot loader in the chip's system memory, as a USB device: DFU 1.1 with ST's extensions (AN3156, AN2606). The
-// loader erases and programs through instructions of the virtual chip (chip/loader_order.hpp). Erasing and programming
-// therefore use the flash model and its timing.
+// USB interface of ST's boot loader in the system memory of the chip: DFU 1.1 with ST's extensions (AN3156, AN2606).
+// Instructions on the virtual chip erase and program the flash (chip/loader_order.hpp), with the timing of the flash
+// model.
 #pragma once
 
 #include <array>
@@ -18,31 +18,31 @@
 
 namespace inkwell::virtual_board {
 
-/// A setup packet (USB 2.0, section 9.3).
+/// Contents of a SETUP packet (USB 2.0, section 9.3).
 struct SetupPacket {
   std::uint8_t type, request;
   std::uint16_t value, index, length;
 };
 
-/// DFU requests, independent of the bus.
+/// Execution of DFU requests, independent of the bus.
 class BootLoaderDfu {
  public:
   static constexpr std::uint16_t transfer_bytes = 2048;
 
-  /// Restores the state after start-up.
+  /// Resets the state to that after start-up.
   void start();
-  /// Returns the next order for the virtual chip. Reads of memory and registers happen here and cost no board time.
+  /// Returns the next order for the virtual chip. next_order() itself reads memory and registers, without board time.
   LoaderOrder next_order(DebugPort& memory);
-  /// An order is being carried out, so no request can be answered.
+  /// True while the chip executes an order, so that no request can be answered.
   bool is_busy() const { return asked_.has_value() || is_working_; }
-  /// The next order starts the program.
+  /// True if the next order starts the program.
   bool is_about_to_leave() const { return asked_ && asked_->kind == Operation::Kind::leave; }
-  /// Accepts a request without data, or with its complete data. False: a stall.
+  /// Handles a request without data, or with its complete data. Returns false for a stall.
   bool take(const SetupPacket& request, std::span<const std::byte> data);
-  /// Answers a request for data. std::nullopt is a stall. If the answer requires a memory read, is_busy() is true
-  /// first; call again afterward.
+  /// Answers a request for data; std::nullopt is a stall. If the answer requires a memory read, is_busy() is true; call
+  /// answer() again when is_busy() is false.
   std::optional<std::vector<std::byte>> answer(const SetupPacket& request);
-  /// The loader has started the program or reset the chip.
+  /// True if the loader has started the program or reset the chip.
   bool has_left() const { return has_left_; }
 
  private:
@@ -95,9 +95,9 @@ class BootLoaderDfu {
 /// The USB device of the boot loader: endpoint 0, descriptors and standard requests.
 class BootLoader final : public BusDevice {
  public:
-  /// Returns the loader's next order. The first call connects the loader to the bus.
+  /// Returns the next order of the loader. The first call of next_order() connects the loader to the bus.
   LoaderOrder next_order(DebugPort& memory);
-  /// Call at a reset of the chip.
+  /// Call this at each reset of the chip.
   void stop() { is_running_ = false; }
   bool is_running() const { return is_running_; }
 

@@ -1,4 +1,4 @@
-// The cable between a host controller and one full-speed device: line states and single transactions.
+// Interface between a host controller and one full-speed device: line states and single transactions.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 
-/// Largest data packet of a full-speed device (isochronous; 64 bytes for other types).
+/// Largest data packet of a full-speed device, for isochronous transfers; 64 bytes for other types.
 inline constexpr std::size_t full_speed_packet_maximum = 1023;
 
-/// Result of a transaction for the host (USB 2.0, section 8.4.5).
+/// Result of a transaction as the host receives it (USB 2.0, section 8.4.5).
 enum class Handshake : std::uint8_t {
   ack,      ///< the data was transferred
   nak,      ///< not ready
@@ -23,7 +23,7 @@ enum class Handshake : std::uint8_t {
   nothing,  ///< no answer or a damaged one: the host counts an error and retries
 };
 
-/// The device's answer to an IN token. `length` bytes of `data` are valid if `handshake` is `ack`.
+/// Answer of the device to an IN token. The first `length` bytes of `data` are valid if `handshake` is `ack`.
 struct InReply {
   Handshake handshake = Handshake::nothing;
   bool data1 = false;
@@ -35,7 +35,7 @@ class BusDevice {
  public:
   virtual ~BusDevice() = default;
 
-  /// 0 while the pull-up on D+ is off; otherwise a number that changes each time the pull-up was off.
+  /// Returns 0 while the pull-up on D+ is off, otherwise a number that changes whenever the pull-up has been off.
   virtual std::uint32_t attachment() const = 0;
   /// Applies or removes VBUS.
   virtual void set_bus_power(bool present) = 0;
@@ -43,16 +43,17 @@ class BusDevice {
   virtual void begin_reset() = 0;
   virtual void end_reset() = 0;
   virtual void start_of_frame(std::uint16_t frame_number) = 0;
-  /// The bus has been idle for 3 ms.
+  /// Called when the bus has been idle for 3 ms.
   virtual void suspend() = 0;
-  /// The host drives resume signaling; frames follow.
+  /// Called when the host drives resume signaling, before the next frame.
   virtual void resume() = 0;
 
   virtual Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) = 0;
   virtual Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) = 0;
-  /// The packet is on the wire until `finish_in`.
+  /// Answers an IN token. The returned packet is on the wire until finish_in() is called.
   virtual InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) = 0;
-  /// The host acknowledges the packet of `in`. False if a FIFO flush or a reset has damaged the packet meanwhile.
+  /// Called when the host acknowledges the packet from in(). Returns false if a FIFO flush or a reset has damaged the
+  /// packet.
   virtual bool finish_in(unsigned endpoint) = 0;
 };
 

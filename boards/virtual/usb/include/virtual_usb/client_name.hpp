@@ -1,4 +1,4 @@
-// Name of the program at the other end of a local connection, for log lines and errors.
+// Name of the program at the remote end of a local connection, for log lines and errors.
 #pragma once
 
 #include <sys/types.h>
@@ -8,15 +8,15 @@
 
 namespace inkwell::virtual_board {
 
-/// Properties of the other end that are available without a search.
+/// Properties of the remote end that are available without a search.
 struct Peer {
   std::uint16_t port = 0;  ///< over TCP
   pid_t process = 0;       ///< over a Unix socket
 };
 Peer peer_of(int socket);
 
-/// Returns, for example, "drop-in-well (process 4711)". For a TCP connection the process is found by its port on
-/// 127.0.0.1. If the search fails, the port is returned.
+/// Returns, for example, "drop-in-well (process 4711)". For a TCP connection, searches for the process that uses the
+/// port on 127.0.0.1. If this search fails, returns the port.
 std::string client_name(Peer peer);
 
 }  // namespace inkwell::virtual_board

@@ -1,4 +1,4 @@
-// The device at the board's USB connector: the chip's core, controlled by the firmware or by the boot loader.
+// The USB device of the board: the OTG_FS core, which either the firmware or the boot loader controls.
 #pragma once
 
 #include <virtual_usb/boot_loader.hpp>
@@ -6,7 +6,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Registers of the core and its end of the cable. While the boot loader runs, the cable belongs to the boot loader.
+/// Registers and bus interface of the OTG_FS core. While the boot loader runs, it answers the bus instead of the core.
 class Connector final : public Peripheral, public BusDevice {
  public:
   explicit Connector(const ChipConnections& chip) : core_(chip) {}

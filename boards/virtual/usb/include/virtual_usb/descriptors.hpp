@@ -1,4 +1,4 @@
-// Contents of a device's descriptors (USB 2.0, section 9.6).
+// Contents of USB descriptors (USB 2.0, section 9.6).
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ struct DeviceDescription {
   std::uint8_t configuration_count() const { return byte(17); }
 };
 
-/// Parses a configuration descriptor and the descriptors after it. Parsing stops at the first damaged descriptor; the
-/// result contains the descriptors before it.
+/// Parses a configuration descriptor and the descriptors after it. Parsing stops at the first damaged descriptor. The
+/// result contains all earlier descriptors.
 ConfigurationDescription parse_configuration(std::span<const std::byte> bytes);
 
 }  // namespace inkwell::virtual_board

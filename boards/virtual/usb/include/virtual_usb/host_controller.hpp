@@ -1,8 +1,9 @@
 // A full-speed host controller with one device on its bus: frames, transactions, transfers.
 //
-// A frame lasts 1 ms of the host's clock. The order in a frame is that of USB 2.0, section 5: start of frame, due
-// interrupt endpoints, control, then bulk in rotation. Transactions are sequential and last as long as on a 12 Mbit/s
-// bus, including stuffed bits. A transaction that does not fit in the frame waits for the next frame.
+// A frame lasts 1 ms of the host's clock. As in USB 2.0, section 5, a frame contains the start of frame, then
+// transactions of due interrupt endpoints, of control endpoints, and of bulk endpoints in rotation. Transactions are
+// sequential and have the duration that they have on a 12 Mbit/s bus, including stuffed bits. A transaction that does
+// not fit in the frame waits for the next frame.
 #pragma once
 
 #include <array>
@@ -22,39 +23,39 @@ namespace inkwell::virtual_board {
 
 class HostController {
  public:
-  /// The user of the controller. Called on the simulation's thread.
+  /// Callbacks to the user of the controller, on the simulation thread.
   class Client {
    public:
     virtual ~Client() = default;
-    /// Called between transactions, after each completion. Transfers may be submitted and unlinked here.
+    /// Called between two transactions, after each completed transfer. The callback may submit and unlink transfers.
     virtual void between_transactions() = 0;
     /// Called every millisecond of the host's clock, before the start of frame.
     virtual void frame() = 0;
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
 
-  /// The host's clock is `clock_ppm` parts per million faster than board time.
+  /// The host's clock runs faster than board time by `clock_ppm` parts per million.
   HostController(Scheduler& scheduler, BusDevice& device, Client& client, double clock_ppm = 0.0);
   ~HostController();
   HostController(const HostController&) = delete;
   HostController& operator=(const HostController&) = delete;
 
-  /// Starts or stops the frames. After 3 ms without frames the device suspends.
+  /// Starts or stops the frames. The device suspends after 3 ms without frames.
   void run_frames(bool run);
-  /// False simulates a hung host: it starts no transaction, but its frames continue.
+  /// If `asks` is false, simulates a hung host, which sends frames but starts no transactions.
   void let_ask(bool asks) { asks_ = asks; }
-  /// Sets the address in tokens and the packet size of endpoint 0.
+  /// Sets the device address in tokens and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);
-  /// Enables the endpoints of these interfaces; all toggles start at DATA0.
+  /// Enables the endpoints of all interfaces in `configuration`, with their toggles at DATA0.
   void configure(const ConfigurationDescription* configuration);
   void select_alternate(const ConfigurationDescription& configuration, std::uint8_t interface, std::uint8_t alternate);
   /// Call after CLEAR_FEATURE(ENDPOINT_HALT).
   void reset_toggle(std::uint8_t endpoint_address);
 
   void submit(Urb&& urb);
-  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
+  /// Removes and returns a transfer, or returns std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t sequence);
-  /// Discards all transfers without completing them.
+  /// Discards all transfers without calling completed().
   void cancel_all();
 
  private:

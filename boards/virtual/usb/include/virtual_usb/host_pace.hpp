@@ -1,24 +1,24 @@
-// The rule that synchronizes board time with the program that uses the device.
+// Rules that synchronize board time with the host, that is, the program that uses the USB device.
 //
-// A real board streams to a host controller, which polls in time however busy the computer is. Here the host is a
-// program on the same computer. If board time passed while the program waits for the processor, data would be lost that
-// no real board loses. Board time therefore waits for the host:
+// A real board streams to a host controller, which polls in time even if the computer is busy. The host of a virtual
+// board is a program on the same computer. If board time passed while this program waits for CPU time, data would be
+// lost that a real board does not lose. Board time therefore waits for the host:
 //
 //   - An IN endpoint is tracked (is_kept) from its second request on. The host is then expected to submit a new request
 //     after each answer.
 //   - When a tracked endpoint has no request left, board time stops in the middle of the frame until the next request.
-//   - Before a control socket command is executed, and before a `run` is answered, each answered request must be
-//     renewed. The host then knows all past events, and its next action is reproducible.
-//   - A host with several simultaneous requests streams. Board time waits for this host until it submits a request,
-//     unlinks a request or disconnects. A program stopped by the computer or by a debugger therefore loses no data.
-//     Commands of the control socket are answered meanwhile, but only after `patience`.
-//   - A host with single requests may have read all data that it needs. A host that waits for a control transfer may
-//     also pause its other requests. For both hosts the wait is limited to `patience` of wall-clock time.
-//   - The same limit applies to a board in real time and to several hosts. A hung program must not delay the other
-//     programs, nor the board, which then switches its force off. A real bus waits for no host.
+//   - Each answered request must be renewed before a control socket command is executed or a `run` is answered. The
+//     host has then processed all past events, so its next action is reproducible.
+//   - A host with several simultaneous requests is a streaming host. Board time waits without limit until a streaming
+//     host submits a request, unlinks a request or disconnects. A program that a debugger has stopped therefore loses
+//     no data. After `patience`, control socket commands are executed during this wait.
+//   - A host with single requests may have read all data that it needs, and a host that waits for a control transfer
+//     may pause its other requests. The wait for these hosts is limited to `patience` of wall-clock time.
+//   - If the board runs in real time, or if several programs use the device, every wait is limited to `patience`. A
+//     hung program must not delay the other programs or the board, which then switches the force off.
 //   - Board time does not wait at an untracked endpoint, after an unlinked or failed request, or after an expired
-//     limit. The tracking of the endpoint then restarts as at an import.
-//   - Control and OUT transfers are never waited for: a silent host is also silent for the firmware.
+//     limit. Tracking of the endpoint then restarts as after an import.
+//   - Board time never waits for control or OUT transfers, because the firmware must detect a silent host.
 #pragma once
 
 #include <array>
@@ -36,27 +36,28 @@ class HostPace {
   void submitted(const Urb& urb);
   void completed(const Urb& urb, std::int32_t status);
   void unlinked(const Urb& urb);
-  /// The host unlinked the transfer with this sequence number after the answer.
+  /// Call this when the host has unlinked a transfer that had already been answered.
   void unlinked_too_late(std::uint32_t sequence);
-  /// The host has changed or disconnected.
+  /// Call this when the device is detached. Tracking restarts for all endpoints.
   void start_anew();
 
-  /// A tracked endpoint has no request left.
+  /// True if a tracked endpoint has no pending request.
   bool is_starved() const;
-  /// A tracked endpoint has fewer requests than the host submitted there before.
+  /// True if a tracked endpoint has fewer pending requests than its previous maximum.
   bool is_owed() const;
-  /// The host streams wherever a request is missing, and no control transfer blocks it. The wait has no limit.
+  /// True if the wait for the host has no time limit: at every endpoint with a missing request the host streams, and no
+  /// control transfer is pending.
   bool is_waited_for_without_limit() const;
-  /// The wait for the host has expired: endpoints with a missing request are no longer tracked.
+  /// Call this when the time limit of a wait has expired. Endpoints with a missing request are no longer tracked.
   void lose_patience();
-  /// A control transfer is in progress: the host waits for its answer.
+  /// True while the host waits for the answer to a control transfer.
   bool is_asked() const { return control_transfers_ > 0; }
 
   // ---- lock step (docs/virtual-board.md) ----
 
-  /// The host waits for a requested report, or for a control transfer if it has not requested any report yet.
+  /// True if the host waits for a requested report, or for a control transfer if the host has never requested a report.
   bool waits_for_board() const;
-  /// Like is_starved() and is_owed(), for the endpoints where the host streams.
+  /// Like is_starved() and is_owed(), but only for endpoints at which the host streams.
   bool is_stream_starved() const;
   bool is_stream_owed() const;
 

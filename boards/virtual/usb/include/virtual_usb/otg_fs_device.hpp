@@ -1,6 +1,6 @@
-// The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"). The model has registers
-// for the processor and transactions on the bus. Host mode, DMA and isochronous endpoints are not modeled. The log
-// reports their use, and also violations of the manual by the firmware.
+// The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"). The model has a
+// register interface to the processor and a transaction interface to the bus. Host mode, DMA and isochronous endpoints
+// are not modeled. The log reports the use of unmodeled features, and also firmware that violates the manual.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool finish_in(unsigned endpoint) override;
 
  private:
-  /// The IN side of an endpoint, which sends to the host.
+  /// IN direction of an endpoint, which sends to the host.
   struct InEndpoint {
     std::uint32_t control = 0;               ///< DIEPCTL without its command bits
     std::uint32_t interrupts = 0;            ///< DIEPINT except TXFE, which is a level
@@ -64,7 +64,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     bool disabling = false;  ///< from EPDIS to EPDISD
     Scheduler::Id nak_event = 0, disable_event = 0;
   };
-  /// The OUT side of an endpoint, which receives from the host.
+  /// OUT direction of an endpoint, which receives from the host.
   struct OutEndpoint {
     std::uint32_t control = 0;
     std::uint32_t interrupts = 0;
@@ -99,7 +99,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   Ticks free_of_packet(const InEndpoint& endpoint) const;
   std::uint32_t reset_control() const;
   void check_flush(std::uint32_t reset_control_written);
-  /// Returns false if the store is lost.
+  /// Returns false if the register write comes too early and has no effect.
   bool store_may_come(std::uint32_t offset, std::uint32_t value);
   void check_flushed_fifo(std::uint32_t offset, std::uint32_t value);
   void check_disabled_endpoints(std::uint32_t offset, std::uint32_t value);
@@ -140,14 +140,14 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
   bool clock_is_exact() const;
-  /// True if the firmware has not acknowledged a bus reset yet. Until then, actions that were valid before the reset
-  /// are still allowed.
+  /// True if the firmware has not yet acknowledged a bus reset. Until the acknowledgment, actions that were valid
+  /// before the reset are still allowed.
   bool reset_is_unseen() const;
   void check_connection();
   void check_bus_power();
   void check_core();
   void check_turnaround();
-  /// Logs the access and returns 0, the value of the register.
+  /// Logs an access to an unmodeled register and returns 0.
   std::uint32_t not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value);
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
 
@@ -158,7 +158,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   const ChipState& chip_;
   TriggerLines& triggers_;
 
-  // Registers, named after RM0090 in words.
+  // Registers, whose names are those of RM0090 written out.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
   std::uint32_t bus_configuration_ = 0;                        // GAHBCFG
   std::uint32_t usb_configuration_ = 0;                        // GUSBCFG

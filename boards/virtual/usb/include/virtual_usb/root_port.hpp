@@ -1,10 +1,10 @@
-// The host port of the cable: connection, reset, enumeration, import, suspend.
+// The host port to which the cable connects the device: connection, reset, enumeration, import, suspend.
 //
 //   detached -> debouncing -> resetting -> ... descriptors read ... -> suspended
 //   suspended -> (import) resetting, addressing -> in use -> (release) suspended
 //
-// USB/IP has no messages for bus reset and address. An importer expects a freshly reset and addressed device, so both
-// happen here at each import.
+// USB/IP has no messages for bus reset and device address. An importer expects a device that has just been reset and
+// addressed, so RootPort resets and addresses the device at each import.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Events on a port. Called on the simulation's thread.
+/// Events on a port. The callbacks run on the simulation thread.
 class PortObserver {
  public:
   virtual ~PortObserver() = default;
@@ -27,7 +27,7 @@ class PortObserver {
 
 class RootPort final : private HostController::Client {
  public:
-  /// The user of the device on this port.
+  /// Callbacks to the user of the device on this port.
   class Client : public PortObserver {
    public:
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
@@ -42,12 +42,12 @@ class RootPort final : private HostController::Client {
   bool enumerated() const { return state_ >= State::suspended; }
   bool imported() const { return state_ > State::suspended; }
 
-  /// Resets and addresses the device for a new user. Allowed only while `enumerated` and not `imported`.
+  /// Resets and addresses the device for a new user. Allowed only if enumerated() is true and imported() is false.
   void import();
-  /// The user has disconnected: its transfers are discarded and the bus suspends.
+  /// Call this when the user has disconnected. The user's transfers are discarded, and the bus suspends.
   void release();
   void submit(Urb&& urb);
-  /// Removes and returns a transfer. std::nullopt if the transfer does not exist or has completed.
+  /// Removes and returns a transfer, or returns std::nullopt if the transfer does not exist or has completed.
   std::optional<Urb> unlink(std::uint32_t sequence);
 
  private:

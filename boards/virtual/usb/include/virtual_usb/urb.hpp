@@ -1,4 +1,4 @@
-// A transfer that a driver submits to the host controller, as described by USB/IP and Linux.
+// A transfer that a driver submits to the host controller (USB request block of USB/IP and Linux).
 #pragma once
 
 #include <array>
@@ -26,7 +26,8 @@ struct Urb {
   std::uint32_t flags = 0;
   std::uint32_t length = 0;  ///< bytes to send, or space for received bytes
   std::array<std::byte, 8> setup{};
-  /// Packet of an isochronous transfer, which the host controller does not carry out: offset and length.
+  /// Offset and length of a packet of an isochronous transfer. The host controller does not execute isochronous
+  /// transfers.
   struct Packet {
     std::uint32_t offset, length;
   };

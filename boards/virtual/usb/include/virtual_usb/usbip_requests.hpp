@@ -14,16 +14,17 @@
 
 namespace inkwell::virtual_board {
 
-/// Names and numbers of the one exported device.
+/// Bus identifier, bus number and device number of the exported device.
 inline constexpr char exported_bus_id[] = "1-1";
 inline constexpr std::uint32_t exported_bus_number = 1, exported_device_number = 2;
-/// Longest accepted transfer, the limit of Linux usbfs.
+/// Largest accepted transfer in bytes, which is also the limit of Linux usbfs.
 inline constexpr std::uint32_t transfer_maximum = 16u << 20;
-/// Largest number of packets in an isochronous transfer, also the limit of Linux.
+/// Largest number of packets in an isochronous transfer, which is also the limit of Linux.
 inline constexpr std::uint32_t packets_maximum = 1024;
 
-/// The requests of one client. A request is returned once it is complete. An invalid request throws std::runtime_error,
-/// whose text follows "because ..."; the client's further bytes cannot be parsed then.
+/// Parses the requests of one client. A request is returned when all its bytes have been received. An invalid request
+/// throws std::runtime_error, whose text completes the sentence "... because". After an invalid request, no further
+/// bytes of the client can be parsed.
 class UsbIpRequests {
  public:
   struct ListDevices {};
@@ -38,10 +39,10 @@ class UsbIpRequests {
   using Transfer = std::variant<Urb, Unlink>;
 
   void feed(std::span<const std::byte> bytes);
-  /// Next request of a client that has not imported the device.
+  /// Returns the next request of a client that has not imported the device.
   std::optional<Operation> take_operation();
-  /// Next request of a client that has imported the device. An OUT transfer has all its data, an isochronous transfer
-  /// all its packets.
+  /// Returns the next request of a client that has imported the device. An OUT transfer contains all its data, an
+  /// isochronous transfer all its packets.
   std::optional<Transfer> take_transfer();
 
  private:

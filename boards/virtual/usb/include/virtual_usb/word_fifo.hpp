@@ -1,4 +1,4 @@
-// A FIFO of 32-bit words in the OTG core's packet memory.
+// A FIFO of 32-bit words in the packet memory of the OTG_FS core.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ constexpr std::uint32_t words_for(std::size_t bytes) { return static_cast<std::u
 
 class WordFifo {
  public:
-  /// Largest packet memory in this family of cores.
+  /// Largest packet memory of all OTG cores in this family.
   static constexpr std::size_t storage_words = 1024;
 
   std::size_t count() const { return count_; }
