@@ -9,11 +9,11 @@ import sys
 
 def names_in_help(help_text):
     options, commands = help_text.split("\nControl socket:", 1)
-    faults = options.split("\nFaults that can be put in,", 1)[1].split(":\n", 1)[1]
+    faults = options.split("\nInjected faults,", 1)[1].split(":\n", 1)[1]
     return {
         "Options": re.findall(r"^  (--[a-z0-9-]+)", options, re.MULTILINE),
         "Commands of the control socket": re.findall(r"^  ([a-z]\w*)", commands.split(":", 1)[1], re.MULTILINE),
-        "Faults that can be put in": re.findall(r"^  ([a-z]\w*)", faults, re.MULTILINE),
+        "Injected faults": re.findall(r"^  ([a-z]\w*)", faults, re.MULTILINE),
     }
 
 

@@ -62,9 +62,10 @@ TEST_CASE("a fault put in by the control socket comes at its time, is told, is n
   CHECK(rig.control.status().all.at("injected")[1].at("amount") == 9.0);
   rig.control.heal("shunt_high");
   CHECK(rig.control.status().all.at("injected").size() == 1);
-  CHECK_THROWS_WITH_AS(rig.control.heal("shunt_high", "2"), doctest::Contains("shunt_high 2 is not put in"),
+  CHECK_THROWS_WITH_AS(rig.control.heal("shunt_high", "2"), doctest::Contains("shunt_high 2 is not active or planned"),
                        device::Error);
-  CHECK_THROWS_WITH_AS(rig.control.heal("supply_cut"), doctest::Contains("supply_cut is not put in"), device::Error);
+  CHECK_THROWS_WITH_AS(rig.control.heal("supply_cut"), doctest::Contains("supply_cut is not active or planned"),
+                       device::Error);
   rig.control.heal_all();
   CHECK(rig.control.status().all.at("injected").empty());
 }
@@ -85,8 +86,8 @@ TEST_CASE("the board tells the control period of its firmware, so that a pose's 
 TEST_CASE("the control socket refuses what is no fault with a sentence") {
   BoardRig rig;
   CHECK(refusal_of(rig.control, {.fault = "nothing"}).find("there is no fault \"nothing\"") != std::string::npos);
-  CHECK(refusal_of(rig.control, {.fault = "motor_open"}).find("must say what it is put into") != std::string::npos);
-  CHECK(refusal_of(rig.control, {.fault = "motor_open", .of = "9"}).find("is no motor") != std::string::npos);
+  CHECK(refusal_of(rig.control, {.fault = "motor_open"}).find("motor_open needs a position") != std::string::npos);
+  CHECK(refusal_of(rig.control, {.fault = "motor_open", .of = "9"}).find("is not a valid motor") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "supply_sag", .amount = 99.0}).find("outside 0 to 18") != std::string::npos);
   CHECK(refusal_of(rig.control, {.fault = "supply_cut", .after_s = -1.0}).find("outside 0 to") != std::string::npos);
   CHECK(rig.control.status().all.at("injected").empty());

@@ -35,6 +35,6 @@ TEST_CASE("a processor that is locked up cannot be led astray") {
   CHECK_THROWS_WITH_AS(control.run(0.01), doctest::Contains("locked up"), device::Error);
   REQUIRE(control.status().all.contains("locked_up"));
   CHECK_THROWS_WITH_AS(control.inject({.fault = "program_astray", .of = "0x08000200"}),
-                       doctest::Contains("the processor is locked up; reset it first"), device::Error);
+                       doctest::Contains("the processor is locked up; reset the board first"), device::Error);
   CHECK_NOTHROW(control.inject({.fault = "motor_open", .of = "1"}));
 }

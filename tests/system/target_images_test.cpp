@@ -20,7 +20,7 @@ void check_images(const std::string& mode, std::initializer_list<const char*> na
     INFO(name, " in ", mode, " mode, the end of its log: ", result.err.substr(result.err.size() - shown));
     CHECK(result.exit_code == 0);
     CHECK(result.err.find("Status: SUCCESS!") != std::string::npos);
-    CHECK(result.err.find("the firmware ended with exit code 0") != std::string::npos);
+    CHECK(result.err.find("the firmware exited with code 0") != std::string::npos);
   }
 }
 

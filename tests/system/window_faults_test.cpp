@@ -100,12 +100,12 @@ TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
   rig.enter("faults/search", "motor_hot");
   rig.click("faults/motor_hot");
   rig.click("faults/Inject");
-  look_for(rig, "must say what it is put into, the motor: 1, 2 or 3");
+  look_for(rig, "motor_hot needs a position; add the motor: 1, 2 or 3");
   rig.click("faults/2");
   rig.enter("faults/amount", "1,5");
   rig.click("faults/Inject");
   look_for(rig, "`1,5` is not a number");
-  CHECK_FALSE(rig.look().says("must say what"));
+  CHECK_FALSE(rig.look().says("needs a position"));
   rig.enter("faults/amount", "400");
   rig.click("faults/Inject");
   look_for(rig, "motor_hot 400 K is outside 0 to 300");

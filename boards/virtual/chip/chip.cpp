@@ -13,7 +13,7 @@ namespace {
 std::vector<char> contents_of(const std::filesystem::path& image) {
   std::error_code ignored;
   if (std::filesystem::is_directory(image, ignored))
-    throw ChipError(image.string() + " is a folder. Give the ELF file of the firmware.");
+    throw ChipError(image.string() + " is a folder. Use the ELF file of the firmware.");
   std::ifstream stream(image, std::ios::binary);
   if (!stream)
     throw ChipError("There is no readable file " + image.string() + ". Build the firmware first, or correct the path.");

@@ -58,7 +58,7 @@ class Dac final : public RegisterBlock {
     if (offset == dac.cr) {
       control_ = value & writable(dac.cr);
       if ((control_ & (dac.cr.wave.masks() | dac.cr.dmaen.masks())) != 0)
-        machine_.log.say_once("DAC_CR: waves and DMA are not modelled");
+        machine_.log.say_once("DAC_CR: waves and DMA are not modeled");
     } else if (offset == dac.swtrigr) {
       for (unsigned i = 0; i < 2; ++i)
         if (dac.swtrigr.swtrig.in(value, i)) output_[i] = held_[i];

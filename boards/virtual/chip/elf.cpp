@@ -11,7 +11,7 @@ namespace {
 template <class T>
 T record_at(std::span<const char> file, std::size_t offset, const std::string& name) {
   if (offset > file.size() || sizeof(T) > file.size() - offset)
-    throw ChipError(name + " is truncated: it ends before its own headers do. Build or copy it again.");
+    throw ChipError(name + " is truncated: the headers are incomplete. Build or copy the file again.");
   T record;
   std::memcpy(&record, file.data() + offset, sizeof record);
   return record;
@@ -20,13 +20,13 @@ T record_at(std::span<const char> file, std::size_t offset, const std::string& n
 std::string machine_name(unsigned machine) {
   switch (machine) {
     case EM_386: return "x86";
-    case EM_X86_64: return "x86-64, as the programs of a PC";
+    case EM_X86_64: return "x86-64 (a PC program)";
     case EM_AARCH64: return "64-bit ARM";
-    case EM_ARM: return "ARM in another word size or byte order";
+    case EM_ARM: return "ARM with another word size or byte order";
     case EM_RISCV: return "RISC-V";
     case EM_XTENSA: return "Xtensa";
     case EM_AVR: return "AVR";
-    default: return "the machine of number " + std::to_string(machine);
+    default: return "machine number " + std::to_string(machine);
   }
 }
 
@@ -70,24 +70,24 @@ std::string range_of(std::uint32_t base, std::uint32_t bytes) {
 std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
   const std::uint32_t stack = image.word(flash_base), reset = image.word(flash_base + 4);
   const std::string table = "at " + hexadecimal(flash_base) +
-                            ", where the processor looks for its first stack pointer and " +
-                            "the address of its first instruction";
+                            ", from which the processor loads the initial stack pointer and " +
+                            "the address of the first instruction";
   if (stack == 0xFFFF'FFFF && reset == 0xFFFF'FFFF) {
     std::uint32_t lowest = 0xFFFF'FFFF;
     for (const auto& segment : image.segments) lowest = std::min<std::uint32_t>(lowest, segment.p_paddr);
-    throw ChipError(name + " has nothing " + table + "; it begins at " + hexadecimal(lowest) +
-                    ". It seems to be an application that a boot loader starts: link it to " + hexadecimal(flash_base) +
-                    ", or make one ELF of both.");
+    throw ChipError(name + " has no data " + table + "; the lowest address is " + hexadecimal(lowest) +
+                    ". The file may be an application that a boot loader starts. Link the application to " +
+                    hexadecimal(flash_base) + ", or combine both in one ELF file.");
   }
   if ((reset & 1) == 0 || memory.at(reset & ~1u, 2) == nullptr)
-    throw ChipError(name + " has no vector table " + table + ": they would be " + hexadecimal(stack) + " and " +
+    throw ChipError(name + " has no vector table " + table + ": the values are " + hexadecimal(stack) + " and " +
                     hexadecimal(reset) +
-                    ". Correct the linker script: the section of the vectors comes first, and "
-                    "KEEP holds it.");
+                    ". Correct the linker script: the vector section must be first and needs KEEP.");
   if (memory.ram_at(stack - 4, 4) != nullptr) return {};
-  return name + " begins with its stack pointer at " + hexadecimal(stack) +
+  return name + " has the initial stack pointer " + hexadecimal(stack) +
          ", which is outside of the RAM of the STM32F405 (" + range_of(sram_base, sram_bytes) + " and " +
-         range_of(ccm_base, ccm_bytes) + "): it is firmware for another chip, unless it sets its stack pointer itself.";
+         range_of(ccm_base, ccm_bytes) +
+         "). The firmware is for another chip, unless it sets the stack pointer itself.";
 }
 
 /// Erases the sectors of the segment. Other sectors remain unchanged.
@@ -114,14 +114,14 @@ std::string program_elf(std::span<const char> file, const std::string& name, Mem
     if (segment.p_type != PT_LOAD || segment.p_filesz == 0) continue;
     if (segment.p_offset > file.size() || segment.p_filesz > file.size() - segment.p_offset)
       throw ChipError(name + " is truncated: its segment at " + hexadecimal(segment.p_paddr) +
-                      " is not all in the file. Build or copy it again.");
+                      " is incomplete. Build or copy the file again.");
     if (memory.at(segment.p_paddr, segment.p_filesz) == nullptr)
       throw ChipError(name + " does not fit the STM32F405: " + std::to_string(segment.p_filesz) + " bytes at " +
-                      hexadecimal(segment.p_paddr) + " lie outside of its memories. Correct the linker script.");
+                      hexadecimal(segment.p_paddr) + " are outside of its memories. Correct the linker script.");
     if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // the flash is also mapped at 0
     segments.push_back(segment);
   }
-  if (segments.empty()) throw ChipError(name + " has nothing to load. Link it with a linker script for the STM32F405.");
+  if (segments.empty()) throw ChipError(name + " has no data to load. Link it with a linker script for the STM32F405.");
   const std::string oddity = check_vectors({file, segments}, name, memory);
 
   // The flash contents are replaced only after all checks of the file have passed.

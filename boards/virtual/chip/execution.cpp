@@ -200,7 +200,7 @@ bool Execution::has_handler(unsigned exception) {
   const std::uint32_t place = system_control_.vector_table() + 4 * exception;
   const std::uint32_t vector = machine_.memory.word(place);
   if ((vector & 1) != 0) return true;
-  const std::string what = "the vector table has no handler for " + name_of(exception) + ": it holds " +
+  const std::string what = "the vector table has no handler for " + name_of(exception) + ": the vector is " +
                            hexadecimal(vector) + at(" at", place, processor_.program_counter());
   note_fault(what);
   system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
@@ -222,8 +222,8 @@ void Execution::enter(unsigned exception, bool stacks) {
 void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   const std::string what =
       std::string(is_protected ? "the memory protection unit refuses the stack" : "the stack is not in RAM") +
-      " when " + name_of(exception) +
-      " comes:" + at(" stack pointer", processor_.read(UC_ARM_REG_SP), processor_.program_counter());
+      " at the entry of " + name_of(exception) + ":" +
+      at(" stack pointer", processor_.read(UC_ARM_REG_SP), processor_.program_counter());
   note_fault(what);
   auto& nvic = machine_.nvic;
   const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
@@ -285,7 +285,7 @@ void Execution::handle_breakpoint() {
   }
   const auto answer = semihosting_call(operation, processor_.read(UC_ARM_REG_R1), machine_.memory, on_console);
   if (!answer.known)
-    machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modelled: answers -1");
+    machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modeled and returns -1");
   processor_.write(UC_ARM_REG_R0, answer.result);
   processor_.set_program_counter(address + 2);
   if (answer.exit_code) {
@@ -365,7 +365,7 @@ void Execution::handle(Outcome outcome) {
       if (machine_.nvic.group_priority(exception_svcall) < machine_.nvic.execution_priority(processor_.masks()))
         enter(exception_svcall);
       else
-        raise_fault(exception_hard_fault, 0, at("SVC that can not be taken before", program_counter, program_counter));
+        raise_fault(exception_hard_fault, 0, at("SVC that cannot be handled before", program_counter, program_counter));
       break;
     case Outcome::breakpoint: handle_breakpoint(); break;
     case Outcome::exception_return: handle_return(); break;

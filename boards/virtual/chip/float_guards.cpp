@@ -31,7 +31,7 @@ void Processor::guard_float_instructions() {
     if (!float_guards_.insert(at).second) return;
     uc_hook hook;
     if (uc_hook_add(engine_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(float_hook), this, at, at) != UC_ERR_OK)
-      throw ChipError("The processor (Unicorn) refuses to watch the instructions of the FPU.");
+      throw ChipError("The processor emulation (Unicorn) cannot add hooks to FPU instructions.");
   });
   uc_ctl_remove_cache(engine_, std::uint64_t{guard_address_}, std::uint64_t{guard_address_} + guard_bytes_);
   guard_bytes_ = 0;

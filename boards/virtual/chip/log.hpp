@@ -38,9 +38,9 @@ class Log final : public UnmodelledLog {
   void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) override {
     char text[64];
     if (write)
-      std::snprintf(text, sizeof text, " + 0x%03X is not modelled: write of 0x%08X ignored", offset, value);
+      std::snprintf(text, sizeof text, " + 0x%03X is not modeled: write of 0x%08X ignored", offset, value);
     else
-      std::snprintf(text, sizeof text, " + 0x%03X is not modelled: reads 0", offset);
+      std::snprintf(text, sizeof text, " + 0x%03X is not modeled: reads 0", offset);
     // Each register is logged once per direction, so the key excludes the written value.
     const std::string place = peripheral + (write ? " w " : " r ") + std::to_string(offset);
     if (!places_.insert(place).second) return;

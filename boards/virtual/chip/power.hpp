@@ -46,7 +46,7 @@ class PowerControl final : public RegisterBlock {
       control_ = value & writable(pwr.cr);
       look_at_supply();
       machine_.rcc->set_voltage_scale(pwr.cr.vos.in(control_));
-      if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modelled, the chip only sleeps");
+      if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modeled, and the chip only sleeps");
     }
     if (offset == pwr.csr) status_ = value & writable(pwr.csr);
   }

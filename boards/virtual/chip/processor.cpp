@@ -13,7 +13,7 @@ namespace {
 
 void check(uc_err error, const char* what) {
   if (error != UC_ERR_OK)
-    throw ChipError(std::string("The processor (Unicorn) refuses to ") + what + ": " + uc_strerror(error) + ".");
+    throw ChipError(std::string("The processor emulation (Unicorn) cannot ") + what + ": " + uc_strerror(error) + ".");
 }
 
 template <class Function>
@@ -44,13 +44,13 @@ Processor::Processor(Machine& machine, Bus& bus)
   machine.clock_users.push_back(this);
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // The Cortex-M4 model already selects the M profile; UC_MODE_MCLASS would select another CPU model.
-  check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
+  check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "emulate a Cortex-M4");
   map_memories(bus);
-  check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
-  if (machine.options.mode == Mode::exact) check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "be watched");
+  check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "add a block hook");
+  if (machine.options.mode == Mode::exact) check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "add a code hook");
   check(add_hook(engine_, UC_HOOK_INTR, interrupt_hook, this), "report exceptions");
-  check(add_hook(engine_, UC_HOOK_INSN_INVALID, invalid_hook, this), "report instructions");
-  check(add_hook(engine_, UC_HOOK_MEM_WRITE_PROT, flash_store_hook, this), "report stores into the flash");
+  check(add_hook(engine_, UC_HOOK_INSN_INVALID, invalid_hook, this), "report invalid instructions");
+  check(add_hook(engine_, UC_HOOK_MEM_WRITE_PROT, flash_store_hook, this), "report stores to the flash");
 }
 
 Processor::~Processor() {
@@ -79,7 +79,7 @@ void Processor::map_memories(Bus& bus) {
 void Processor::map_holes() {
   uc_mem_region* regions = nullptr;
   std::uint32_t count = 0;
-  check(uc_mem_regions(engine_, &regions, &count), "tell its memories");
+  check(uc_mem_regions(engine_, &regions, &count), "list the memories");
   std::vector<std::pair<std::uint64_t, std::uint64_t>> taken;  // first byte, end
   for (std::uint32_t i = 0; i < count; ++i) taken.emplace_back(regions[i].begin, regions[i].end + 1);
   uc_free(regions);
@@ -92,7 +92,7 @@ void Processor::map_holes() {
       check(uc_mmio_map(
                 engine_, at, first - at, [](uc_engine*, std::uint64_t, unsigned, void*) { return std::uint64_t{0}; },
                 nullptr, [](uc_engine*, std::uint64_t, unsigned, std::uint64_t, void*) {}, nullptr),
-            "map where nothing is");
+            "map unused addresses");
     at = end;
   }
 }

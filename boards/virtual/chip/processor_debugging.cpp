@@ -55,7 +55,7 @@ uc_hook Processor::watch(const WatchPoint& watch_point) {
   uc_hook hook = 0;
   const std::uint64_t first = watch_point.address, last = first + watch_point.bytes - 1;
   if (uc_hook_add(engine_, &hook, types, reinterpret_cast<void*>(watch_hook), this, first, last) != UC_ERR_OK)
-    throw ChipError("The processor (Unicorn) refuses to watch its memory.");
+    throw ChipError("The processor emulation (Unicorn) cannot watch memory.");
   // Code that was translated before this call does not call the hook.
   forget_code(flash_base, flash_bytes);
   forget_code(sram_base, sram_bytes);

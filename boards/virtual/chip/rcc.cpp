@@ -95,10 +95,9 @@ void Rcc::drift_crystal(std::int32_t ppm) {
 void Rcc::lose_crystal() {
   auto& control = words_[rcc_map.cr / 4];
   if (runs_from_crystal())
-    machine_.log.say(
-        rcc_map.cr.csson.in(control)
-            ? "The crystal has stopped: the clock security system goes over to HSI and raises the NMI."
-            : "The crystal has stopped: without the clock security system (RCC_CR.CSSON) the chip stands.");
+    machine_.log.say(rcc_map.cr.csson.in(control)
+                         ? "The crystal has stopped: the clock security system switches to HSI and raises the NMI."
+                         : "The crystal has stopped: without the clock security system (RCC_CR.CSSON) the core stops.");
   if (!rcc_map.cr.csson.in(control) || !rcc_map.cr.hseon.in(control)) {
     machine_.clock_is_lost = runs_from_crystal();
     return update_tree();
@@ -158,7 +157,7 @@ void Rcc::start_oscillators() {
   const Ticks now = machine_.timeline.now();
   Ticks next = never;
   if (is_on(hse) && !crystal_swings_)
-    machine_.log.say_once("RCC_CR: HSEON is set, but the crystal does not swing: HSERDY stays 0.");
+    machine_.log.say_once("RCC_CR: HSEON is set, but the crystal does not oscillate: HSERDY stays 0.");
   for (unsigned i = 0; i < oscillators; ++i) {
     if (!is_on(i))
       ready_at_[i] = never;

@@ -81,7 +81,7 @@ void Spi::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case spi.cr1:
       control1_ = value & writable(spi.cr1);
-      if (spi.cr1.crcen.in(value)) machine_.log.say_once(name() + ": its CRC is not modelled, it is never sent");
+      if (spi.cr1.crcen.in(value)) machine_.log.say_once(name() + ": CRC is not modeled and is never sent");
       start_frame();
       break;
     case spi.cr2: control2_ = value & writable(spi.cr2); break;
@@ -93,7 +93,7 @@ void Spi::write_word(std::uint32_t offset, std::uint32_t value) {
     case spi.crcpr: polynomial_ = value & writable(spi.crcpr); break;
     case spi.i2scfgr:
       i2s_ = value & writable(spi.i2scfgr);
-      if (spi.i2scfgr.i2smod.in(value)) machine_.log.say_once(name() + ": I2S is not modelled, no sample goes out");
+      if (spi.i2scfgr.i2smod.in(value)) machine_.log.say_once(name() + ": I2S is not modeled, and no samples are sent");
       break;
     default: return machine_.log.note(name(), offset, true, value);
   }

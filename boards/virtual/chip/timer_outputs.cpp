@@ -56,8 +56,7 @@ void Timer::configure_channel(unsigned i) {
       // If OCx is enabled, OCxN is the complement of OCx. If OCx is disabled, OCxN follows the reference.
       channel.complement_when_active = level(output == complement_inverted);
       channel.complement_when_inactive = level(output != complement_inverted);
-      if (output && tim.bdtr.dtg.in(bdtr_))
-        machine_.log.say_once("TIMx_BDTR.DTG: dead time is not modelled, taken as 0");
+      if (output && tim.bdtr.dtg.in(bdtr_)) machine_.log.say_once("TIMx_BDTR.DTG: dead time is not modeled; it is 0");
     } else if (has_complement && output && tim.bdtr.ossr.in(bdtr_)) {
       channel.complement_when_active = channel.complement_when_inactive = level(complement_inverted);
     }

@@ -11,7 +11,7 @@ std::string sentence(const Violation& violation) {
   const RuleInfo& rule = info(violation.rule);
   std::string text(rule.done);
   if (!violation.where.empty()) text += " (" + violation.where + ")";
-  text.append(": on silicon ").append(rule.consequence).append(". Instead: ").append(rule.remedy);
+  text.append(". On silicon, ").append(rule.consequence).append(". Remedy: ").append(rule.remedy);
   char code[32];
   std::snprintf(code, sizeof code, "code 0x%08X, ", static_cast<unsigned>(violation.code_address));
   return text.append(" [").append(code).append(rule.of_register).append("; ").append(rule.section).append("]");

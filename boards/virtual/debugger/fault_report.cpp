@@ -50,7 +50,7 @@ std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols,
   const auto& r = fault.registers.general;
   std::vector<std::string> lines;
   lines.push_back(
-      fmt::format("it began at {:.6f} s in {}: {}", seconds(fault.when), running(fault.registers.xpsr), fault.what));
+      fmt::format("first fault at {:.6f} s in {}: {}", seconds(fault.when), running(fault.registers.xpsr), fault.what));
   lines.push_back("  at " + place(r[CoreRegisters::pc], symbols));
   for (unsigned i = 0; i < 12; i += 4)
     lines.push_back(fmt::format("  R{:<2} {:08X}  R{:<2} {:08X}  R{:<2} {:08X}  R{:<2} {:08X}", i, r[i], i + 1,
@@ -59,7 +59,7 @@ std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols,
                               r[15], fault.registers.xpsr));
   const auto callers = guess_callers(
       fault.registers, [&chip](std::uint32_t address) { return chip.memory_word(address); }, 8);
-  if (!callers.empty()) lines.push_back("  called, as LR and the stack let guess, from");
+  if (!callers.empty()) lines.push_back("  probable callers, from LR and the stack:");
   for (const std::uint32_t caller : callers) lines.push_back("    " + place(caller, symbols));
   std::string command = fmt::format("  source lines: arm-none-eabi-addr2line -pfiaCe {} 0x{:X}", elf.string(), r[15]);
   for (const std::uint32_t caller : callers) command += fmt::format(" 0x{:X}", caller - 2);

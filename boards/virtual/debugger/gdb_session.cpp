@@ -149,7 +149,7 @@ std::string GdbSession::carry_out(const gdb::Monitor& asked) {
   if (asked.command == "time") return hexadecimal(fmt::format("{:.9f} s of board time\n", seconds(chip_.now())));
   return hexadecimal(
       std::string_view("monitor reset: reset the chip and stop at its first instruction\n"
-                       "monitor time: board time\n"));
+                       "monitor time: print board time\n"));
 }
 
 std::vector<std::uint8_t> GdbSession::all_registers() const {

@@ -18,8 +18,8 @@ char value_of(PinLevel level) { return level == PinLevel::high ? '1' : level == 
 Waveform::Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip)
     : chip_(chip), file_(path) {
   if (!file_)
-    throw std::runtime_error(
-        fmt::format("{} cannot be written; give --vcd a file in a folder that exists and is yours.", path.string()));
+    throw std::runtime_error(fmt::format(
+        "{} cannot be written. For --vcd, use a file in an existing folder that you may write.", path.string()));
   if (pins.empty())
     for (unsigned place = 0; place < places; ++place) pins.push_back({static_cast<char>('A' + place / 16), place % 16});
   file_ << "$comment Inkwell virtual board: simulation $end\n$timescale 1 ps $end\n$scope module chip $end\n";

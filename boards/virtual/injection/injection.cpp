@@ -18,7 +18,7 @@ double number(std::string_view text, std::string_view of_what) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw InvalidInjection(fmt::format("\"{}\" is no number; it stands for {}", text, of_what));
+    throw InvalidInjection(fmt::format("\"{}\" is not a number; a number is required for {}", text, of_what));
   return value;
 }
 
@@ -27,7 +27,7 @@ unsigned whole_number(const std::string& text, unsigned minimum, unsigned maximu
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < minimum || value > maximum)
     throw InvalidInjection(
-        fmt::format("\"{}\" is no {}; it must be a number from {} to {}", text, of_what, minimum, maximum));
+        fmt::format("\"{}\" is not a valid {}; use a number from {} to {}", text, of_what, minimum, maximum));
   return value;
 }
 
@@ -35,12 +35,14 @@ PinName wire(const std::string& text, const board::Facts& board) {
   for (const board::PinUse& use : board.pin_uses()) {
     if (use.name != text) continue;
     if (board.is_usb_data(use.pin))
-      throw InvalidInjection(fmt::format("the wire {} is not modelled by itself; usb_cut takes the cable out", text));
+      throw InvalidInjection(
+          fmt::format("the wire {} is not modeled separately; use usb_cut to unplug the cable", text));
     return {use.pin.port, use.pin.number};
   }
   if (const auto pin = PinName::find(text)) return *pin;
   throw InvalidInjection(fmt::format(
-      "\"{}\" is no wire; name a pin, such as PA0, or what it is used for, such as encoders[0].a or bridge_enable",
+      "\"{}\" is not a wire; use a pin, such as PA0, or a name of the board description, such as encoders[0].a or "
+      "bridge_enable",
       text));
 }
 
@@ -60,7 +62,7 @@ std::uint32_t address(const std::string& text) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, hexadecimal ? 16 : 10);
   if (error != std::errc() || end != digits.data() + digits.size())
-    throw InvalidInjection(fmt::format("\"{}\" is no address; write it as 0x20000100", text));
+    throw InvalidInjection(fmt::format("\"{}\" is not an address; use a number such as 0x20000100", text));
   return value;
 }
 
@@ -68,26 +70,26 @@ std::uint32_t address(const std::string& text) {
 unsigned one_of(std::span<const std::string_view> names, const std::string& text, std::string_view what) {
   const auto found = std::ranges::find(names, text);
   if (found == names.end())
-    throw InvalidInjection(fmt::format("\"{}\" is no {}; there are {}", text, what, fmt::join(names, ", ")));
+    throw InvalidInjection(
+        fmt::format("\"{}\" is not a valid {}; use one of these: {}", text, what, fmt::join(names, ", ")));
   return static_cast<unsigned>(found - names.begin());
 }
 
 void check_target(Injection& injection, const std::string& of, const board::Facts& board) {
   const auto& info = protocol::info(injection.fault);
   if (of.empty() && info.place != InjectionPlace::none && info.place != InjectionPlace::address)
-    throw InvalidInjection(fmt::format("{} must say what it is put into, {}", info.name, wanted_place(info.place)));
+    throw InvalidInjection(fmt::format("{} needs a position; add {}", info.name, wanted_place(info.place)));
   injection.of = of;
   const auto names = protocol::names_of_places(info.place);
   switch (info.place) {
     case InjectionPlace::none:
-      if (!of.empty())
-        throw InvalidInjection(fmt::format("{} is not put into anything; leave \"{}\" out", info.name, of));
+      if (!of.empty()) throw InvalidInjection(fmt::format("{} has no position; omit \"{}\"", info.name, of));
       return;
     case InjectionPlace::motor: injection.number = one_of(names, of, "motor"); return;
     case InjectionPlace::converter: injection.number = 1 + one_of(names, of, "converter"); return;
     case InjectionPlace::exception: injection.number = whole_number(of, 2, exception_numbers - 1, "exception"); return;
     case InjectionPlace::leg: {
-      const unsigned leg = one_of(names, of, "leg of a bridge");
+      const unsigned leg = one_of(names, of, "half bridge");
       injection.number = leg / 2;
       injection.leg = leg % 2;
       return;
@@ -99,9 +101,10 @@ void check_target(Injection& injection, const std::string& of, const board::Fact
     case InjectionPlace::wires: {
       const auto plus = of.find('+');
       if (plus == std::string::npos)
-        throw InvalidInjection(fmt::format("{} must name two wires, such as PA0+PA1", info.name));
+        throw InvalidInjection(fmt::format("{} needs two wires, such as PA0+PA1", info.name));
       injection.wires = {wire(of.substr(0, plus), board), wire(of.substr(plus + 1), board)};
-      if (injection.wires[0] == injection.wires[1]) throw InvalidInjection("a wire always touches itself; name two");
+      if (injection.wires[0] == injection.wires[1])
+        throw InvalidInjection("both wires are the same; use two different wires");
       injection.of = name_of(injection.wires[0], board) + "+" + name_of(injection.wires[1], board);
       return;
     }
@@ -125,19 +128,19 @@ Injection checked(const protocol::InjectionRequest& request, const board::Facts&
     std::vector<std::string_view> names;
     for (const auto& row : protocol::injection_table) names.push_back(row.name);
     throw InvalidInjection(
-        fmt::format("there is no fault \"{}\"; known are {}", request.fault, fmt::join(names, ", ")));
+        fmt::format("there is no fault \"{}\"; use one of these: {}", request.fault, fmt::join(names, ", ")));
   }
   const auto& info = protocol::info(*fault);
   Injection injection{.fault = *fault};
   check_target(injection, request.of, board);
   injection.amount = request.amount.value_or(info.otherwise);
   if (request.amount && !info.has_amount())
-    throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *request.amount));
+    throw InvalidInjection(fmt::format("{} has no amount; omit {}", info.name, *request.amount));
   if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
     throw InvalidInjection(fmt::format("{} {}{}{} is outside {} to {}", info.name, injection.amount,
                                        info.unit.empty() ? "" : " ", info.unit, info.minimum, info.maximum));
-  check_time(request.after_s, "the time until it comes");
-  if (request.for_s) check_time(*request.for_s, "how long it lasts");
+  check_time(request.after_s, "the delay");
+  if (request.for_s) check_time(*request.for_s, "the duration");
   injection.after_s = request.after_s;
   injection.for_s = request.for_s;
   return injection;
@@ -157,8 +160,8 @@ Injection parse_injection(std::string_view text, const board::Facts& board) {
   const auto at = rest.rfind('@'), plus = rest.rfind('+');
   const bool lasts = plus != std::string_view::npos && plus + 1 < rest.size() &&
                      (at == std::string_view::npos || plus > at) && is_digit_or_point(rest[plus + 1]);
-  if (lasts) parts.for_s = cut('+', "how long it lasts, in seconds");
-  if (const auto after_s = cut('@', "the time until it comes, in seconds")) parts.after_s = *after_s;
+  if (lasts) parts.for_s = cut('+', "the duration in seconds");
+  if (const auto after_s = cut('@', "the delay in seconds")) parts.after_s = *after_s;
   parts.amount = cut('=', "the amount");
   const auto colon = rest.find(':');
   parts.fault = std::string(rest.substr(0, colon));

@@ -48,7 +48,7 @@ std::uint32_t programmed_bytes(const Chip& chip) {
 /// add() has checked the address. This second check ensures that only a fault that has occurred is listed.
 void flip_bit(Chip& chip, const Injection& injection) {
   if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
-    throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} in which a bit could flip", *injection.address));
+    throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} for a bit flip", *injection.address));
 }
 
 }  // namespace
@@ -56,14 +56,14 @@ void flip_bit(Chip& chip, const Injection& injection) {
 unsigned Injector::add(const Injection& injection) {
   if (active_.size() + planned_.size() >= faults_maximum)
     throw InvalidInjection(
-        fmt::format("{} faults are put in or still to come, which is the limit; heal some first", faults_maximum));
+        fmt::format("the limit of {} active and planned faults is reached; heal some faults first", faults_maximum));
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
     const bool ram =
         is_within(*injection.address, sram_base, sram_bytes) || is_within(*injection.address, ccm_base, ccm_bytes);
     if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))
       throw InvalidInjection(
-          fmt::format("there is no {} at 0x{:08X}: flash is from 0x{:08X} on, RAM from 0x{:08X} and 0x{:08X} on",
+          fmt::format("there is no {} at 0x{:08X}: flash starts at 0x{:08X}, RAM at 0x{:08X} and 0x{:08X}",
                       flash ? "RAM"
                       : ram ? "flash"
                             : "memory",

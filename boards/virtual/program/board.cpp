@@ -21,7 +21,7 @@ std::string_view name_of(ResetCause cause) {
     case ResetCause::independent_watchdog: return "the independent watchdog";
     case ResetCause::window_watchdog: return "the window watchdog";
     case ResetCause::low_power: return "low-power management";
-    case ResetCause::brown_out: return "a supply below, or again above, its brown-out level";
+    case ResetCause::brown_out: return "a supply voltage that fell below or rose above the brown-out level";
   }
   return "an unknown cause";
 }

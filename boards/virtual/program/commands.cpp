@@ -82,9 +82,9 @@ json pause(const json&, Simulation& simulation) {
 }
 
 json run(const json& request, Simulation& simulation) {
-  if (simulation.is_running_for()) throw Refused("another run is under way; wait for its reply or pause it");
+  if (simulation.is_running_for()) throw Refused("another run is in progress; wait for its reply, or send pause");
   if (simulation.board().locked_up() && !simulation.options().seconds)
-    throw Refused("the processor is locked up; reset it first");
+    throw Refused("the processor is locked up; reset the board first");
   simulation.run_for(run_time_s(request));
   return {};
 }
@@ -95,8 +95,8 @@ json stand_by(const json&, Simulation& simulation) {
 }
 
 json resume(const json&, Simulation& simulation) {
-  if (simulation.is_running_for()) throw Refused("a run is under way; wait for its reply or pause it");
-  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
+  if (simulation.is_running_for()) throw Refused("a run is in progress; wait for its reply, or send pause");
+  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset the board first");
   simulation.resume();
   return {};
 }
@@ -209,8 +209,9 @@ json carry_out(Command command, const json& request, Simulation& simulation) {
 json carry_out_checked(const std::string& line, Simulation& simulation, bool is_within_frame) {
   const Request request = read_request(line);
   if (is_within_frame && !request.info->is_for_any_time)
-    throw Refused(fmt::format("board time waits for {}, which has stopped; let it go on or end it, then ask again",
-                              fmt::join(simulation.board().usb().late_hosts(), ", ")));
+    throw Refused(
+        fmt::format("board time waits for {}, which has stopped; continue or end this program, then repeat the command",
+                    fmt::join(simulation.board().usb().late_hosts(), ", ")));
   return carry_out(request.info->command, request.values, simulation);
 }
 

@@ -71,9 +71,9 @@ void ControlServer::accept(local::Descriptor socket) {
     return client.gone;
   });
   if (clients_.size() >= clients_maximum) {
-    std::string reason = "the control socket serves ";
+    std::string reason = "the control socket already serves ";
     reason += std::to_string(clients_maximum);
-    reason += " clients, which is its limit; close one of them";
+    reason += " clients, which is the limit; close one client first";
     refuse(socket.number(), reason);
     return;
   }
@@ -111,7 +111,7 @@ bool ControlServer::serve_lines(int socket, std::string& received) {
   received.erase(0, begin);
   if (!may_be_command(received))
     return refuse(socket, "a command is one JSON object in one line, such as {\"command\":\"status\"}");
-  if (received.size() > line_maximum) return refuse(socket, "the line is too long; a command ends with a newline");
+  if (received.size() > line_maximum) return refuse(socket, "the line is too long; end each command with a newline");
   return true;
 }
 
@@ -127,7 +127,7 @@ std::optional<nlohmann::json> ControlServer::ask(std::string line) {
   try {
     return reply.get();
   } catch (const std::future_error&) {
-    return nlohmann::json{{"ok", false}, {"error", "the virtual board ended before it could answer"}};
+    return nlohmann::json{{"ok", false}, {"error", "the virtual board exited before it replied"}};
   }
 }
 

@@ -23,8 +23,7 @@ FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) 
     throw std::runtime_error(fmt::format("--flash: {}", error.what()));
   } catch (const std::system_error& error) {
     throw std::runtime_error(
-        fmt::format("--flash: {} cannot be opened: {}. Give a file of your own, or one that does "
-                    "not exist yet.",
+        fmt::format("--flash: {} cannot be opened: {}. Use a file that you may write, or a new file name.",
                     path_.string(), error.code().message()));
   }
   if (const std::string warning = file_->warning(); !warning.empty()) log_line("--flash: " + warning);
@@ -32,8 +31,8 @@ FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) 
   const std::vector<std::byte> content = file_->content(flash.size());
   if (!protocol::may_be_flash(content))
     throw std::runtime_error(fmt::format(
-        "--flash: {} is no flash of an STM32F405: that is {} bytes and begins with a firmware's vectors, or erased. "
-        "It stays as it is; give another file, or one that is not there yet.",
+        "--flash: {} is not a flash image of an STM32F405, which has {} bytes and starts with a vector table or is "
+        "erased. The file is not changed. Use another file, or a new file name.",
         path_.string(), flash.size()));
   std::memcpy(flash.data(), content.data(), content.size());
 }
@@ -45,8 +44,7 @@ void FlashFile::save(std::span<const std::uint8_t> flash) {
     throw std::runtime_error(fmt::format("--flash: {}", error.what()));
   } catch (const std::system_error& error) {
     throw std::runtime_error(
-        fmt::format("--flash: {} cannot be written: {}. Check the free space and the rights of "
-                    "its folder.",
+        fmt::format("--flash: {} cannot be written: {}. Check the free space and the permissions of the folder.",
                     path_.string(), error.code().message()));
   }
 }

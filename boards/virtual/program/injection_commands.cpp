@@ -52,7 +52,7 @@ json inject(const json& request, Simulation& simulation) {
   try {
     const Injection injection = checked(injection_request(request), board.facts());
     if (injection.fault == protocol::InjectedFault::program_astray && board.locked_up())
-      throw Refused("the processor is locked up; reset it first");
+      throw Refused("the processor is locked up; reset the board first");
     const unsigned number = board.injector().add(injection);
     return {{"at_s", seconds(board.chip().now()) + injection.after_s}, {"number", number}};
   } catch (const InvalidInjection& error) {
@@ -63,7 +63,7 @@ json inject(const json& request, Simulation& simulation) {
 json heal(const json& request, Simulation& simulation) {
   Injector& injector = simulation.board().injector();
   if (!request.contains("fault")) {
-    if (request.contains("of")) throw Refused("\"of\" stands beside \"fault\"; leave both out to heal everything");
+    if (request.contains("of")) throw Refused("\"of\" requires \"fault\"; omit both to heal all faults");
     const std::size_t healed = injector.active().size();
     injector.heal_all();
     return {{"healed", healed}};
@@ -75,7 +75,8 @@ json heal(const json& request, Simulation& simulation) {
     const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted, simulation.board().facts()).of;
     const unsigned healed = injector.heal(fault.value(), of);
     if (healed == 0)
-      throw Refused(fmt::format("{}{}{} is not put in; status lists what is", wanted.fault, of.empty() ? "" : " ", of));
+      throw Refused(fmt::format("{}{}{} is not active or planned; status lists the injected faults", wanted.fault,
+                                of.empty() ? "" : " ", of));
     return {{"healed", healed}};
   } catch (const InvalidInjection& error) {
     throw Refused(error.what());

@@ -30,87 +30,82 @@ struct Given {
 };
 
 constexpr const char* description =
-    "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
-    "hand. Its USB device is exported by the USB/IP protocol; a control "
-    "socket moves the hand, presses buttons, runs\n"
-    "stops the time, and reports quantities that a real board cannot measure.\n"
-    "A PORT is a TCP port of 127.0.0.1, which every user of this computer can use (0: any free one), or unix:PATH, a\n"
-    "Unix socket of mode 0600. `unix:` alone is a socket in a new private folder, which is removed at the end.\n"
-    "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"
-    "Its log goes to stderr.";
+    "Runs an ELF file for the STM32F405 on a simulated board with chip, bridges, motors, sensors, arm and hand. The\n"
+    "USB device is exported through USB/IP. The control socket moves the hand, presses buttons, starts and stops\n"
+    "board time, and returns quantities that a real board cannot measure.\n"
+    "PORT is a TCP port of 127.0.0.1, which every user of this computer can use (0: any free port), or unix:PATH, a\n"
+    "Unix socket with mode 0600. `unix:` alone creates a socket in a new private folder, which is removed at exit.\n"
+    "When the board is ready, one line is printed: ready usbip=PORT control=PORT, with gdb=PORT and uartN=PORT if\n"
+    "these options are used. The log is printed on stderr.";
 
 void add_files_and_ports(CLI::App& app, Given& given) {
   app.add_option("--elf", given.options.elf,
-                 "firmware to run, as it would be flashed; may be left out with --flash, to run what is in that file")
+                 "Firmware image (ELF) to run. Not needed if the file of --flash contains a firmware")
       ->type_name("FILE");
   app.add_option("--board", given.board,
-                 "the board around the chip: " + board::names_of_boards() +
-                     ". Unless given, the one that the ELF is for; firmware\nof others: " +
-                     std::string(board::default_board.name))
+                 "Driver board to simulate: " + board::names_of_boards() +
+                     ". Default: the board for which the\nfirmware is built, or " +
+                     std::string(board::default_board.name) + " if the firmware does not name a board")
       ->type_name("NAME");
-  app.add_option("--arm", given.options.arm, "arm description; the Omni unless given")->type_name("FILE");
+  app.add_option("--arm", given.options.arm, "Arm description (TOML). Default: the Omni")->type_name("FILE");
   app.add_option("--flash", given.options.flash,
-                 "the chip's flash is kept in this file from run to run, which is made if it is not there; --elf "
-                 "replaces the\nsectors that it needs, and what the firmware has stored elsewhere stays")
+                 "File for the flash memory, created if missing. --elf replaces only the flash sectors that the image\n"
+                 "needs; other sectors keep their contents")
       ->type_name("FILE");
   app.add_option("--serial", given.serial_number,
-                 "serial number, up to 24 hexadecimal digits. Unless given, one that --seed makes; without that one\n"
-                 "for the file of --flash, else for the port of --usbip, else for this run")
+                 "Serial number, up to 24 hexadecimal digits. Default: derived from --seed if set, else from the file\n"
+                 "of --flash, else from the port of --usbip, else from the process")
       ->type_name("NUMBER");
-  app.add_option("--usbip", given.usbip, "where the USB/IP server listens")->type_name("PORT")->capture_default_str();
-  app.add_option("--control", given.control, "where the control socket listens")
-      ->type_name("PORT")
-      ->capture_default_str();
-  given.gdb_option =
-      app.add_option("--gdb", given.gdb,
-                     "where GDB may connect (target remote :PORT, or target remote PATH); --mode is exact")
-          ->type_name("PORT");
+  app.add_option("--usbip", given.usbip, "Address of the USB/IP server")->type_name("PORT")->capture_default_str();
+  app.add_option("--control", given.control, "Address of the control socket")->type_name("PORT")->capture_default_str();
+  given.gdb_option = app.add_option("--gdb", given.gdb,
+                                    "Address for GDB (target remote :PORT, or target remote PATH). Sets --mode exact")
+                         ->type_name("PORT");
 }
 
 void add_chip(CLI::App& app, Given& given) {
   given.mode_option = app.add_option("--mode", given.mode,
-                                     "exact: interrupts come at any instruction; fast: between blocks of instructions")
+                                     "exact: interrupts at any instruction; fast: interrupts only between instruction "
+                                     "blocks")
                           ->check(CLI::IsMember({"exact", "fast"}).description(""))
                           ->type_name("exact|fast")
                           ->capture_default_str();
   app.add_option("--pricing", given.pricing,
-                 "what instructions cost where the sources leave a choice (docs/cycles.md); deadlines are judged by\n"
-                 "the conservative figures")
+                 "Cycle costs of instructions where the sources allow two values (docs/cycles.md). Use conservative\n"
+                 "costs to check deadlines")
       ->check(CLI::IsMember({"likely", "conservative"}).description(""))
       ->type_name("likely|conservative")
       ->capture_default_str();
   app.add_option("--crystal", given.options.crystal_Hz,
-                 "frequency of the crystal at the pins OSC, 4 to 26 MHz; the board's unless given")
+                 "Frequency of the crystal at the OSC pins, 4 to 26 MHz. Default: the crystal of the board")
       ->check(CLI::Range(4'000'000, 26'000'000).description(""))
       ->type_name("HZ");
   app.add_option(
          "--crystal-ppm", given.options.crystal_ppm,
-         "it swings faster than that by so many parts in a million; negative: slower. USB bears 2500 (USB 2.0,\n"
-         "section 7.1.11), a crystal for it has 50")
+         "Deviation of the crystal from --crystal in parts per million, positive if fast. USB allows 2500 (USB 2.0,\n"
+         "section 7.1.11); typical crystals have 50")
       ->check(CLI::Range(-10'000, 10'000).description(""))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option(
-         "--lsi", given.options.low_speed_internal_Hz,
-         "frequency of the low-speed internal oscillator, which the watchdog runs from; each chip has its own,\n"
-         "from 17 to 47 kHz")
+  app.add_option("--lsi", given.options.low_speed_internal_Hz,
+                 "Frequency of the low-speed internal oscillator, which clocks the watchdog. It varies between chips,\n"
+                 "from 17 to 47 kHz")
       ->check(CLI::Range(17'000, 47'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
   app.add_flag(
       "--from-boot-loader", given.options.from_boot_loader,
-      "the boot loader in the chip starts the firmware, by its command Go, and leaves PLL, vector table and the clock\n"
-      "of CCM otherwise than a reset does");
-  app.add_option("--flash-times", given.flash_times, "how long the flash takes to erase and program, by the data sheet")
+      "Start the firmware with the Go command of the chip's boot loader. PLL, vector table and CCM clock then\n"
+      "differ from their reset state");
+  app.add_option("--flash-times", given.flash_times, "Erase and program times of the flash in the data sheet")
       ->check(CLI::IsMember({"typical", "maximum"}).description(""))
       ->type_name("typical|maximum")
       ->capture_default_str();
   app.add_flag(
       "--boot0", given.options.boot_loader,
-      "the button BOOT0 is held while the power comes on: the chip's boot loader runs, and waits on USB for a\n"
-      "new firmware");
+      "Simulate a pressed BOOT0 button at power-on: the chip's boot loader runs and waits on USB for new firmware");
   app.add_option("--brown-out", given.options.brown_out_level,
-                 "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
+                 "Brown-out level in the option bytes: 0 is off, as in a new chip; 3 is the level for this board")
       ->check(CLI::Range(0, 3).description(""))
       ->type_name("LEVEL")
       ->capture_default_str();
@@ -118,86 +113,82 @@ void add_chip(CLI::App& app, Given& given) {
 
 void add_time_and_seed(CLI::App& app, Given& given) {
   app.add_option("--host-clock-ppm", given.options.host_clock_ppm,
-                 "the USB host's clock is faster than board time by so many parts in a million: its start of frame\n"
-                 "comes at its own millisecond; negative: slower (USB 2.0, section 7.1.11, bears 500)")
+                 "Deviation of the USB host's clock from board time in parts per million, positive if fast. USB\n"
+                 "allows 500 (USB 2.0, section 7.1.11)")
       ->check(CLI::Range(-500.0, 500.0).description(""))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--real-time", given.options.real_time, "keep board time from running ahead of the clock on the wall");
+  app.add_flag("--real-time", given.options.real_time, "Run board time in real time");
   app.add_option("--clock", given.options.clock,
-                 "file that all boards with the same --clock share: none gets more than a millisecond ahead of another")
+                 "File of a common clock. The times of boards with the same file differ by at most 1 ms")
       ->type_name("FILE");
-  app.add_flag("--lock-step", given.options.lock_step,
-               "board time passes only while each program on USB waits for a report or a control transfer. A program\n"
-               "that asks for one report at a time then misses none and answers in time");
-  given.seed_option =
-      app.add_option("--seed", given.options.seed, "of all noise; the same seed and commands give the same run")
-          ->type_name("N")
-          ->capture_default_str();
-  given.seconds_option = app.add_option("--seconds", given.seconds, "end after this much board time")
+  app.add_flag(
+      "--lock-step", given.options.lock_step,
+      "Let board time pass only while each program on USB waits for a report or a control transfer. A program\n"
+      "that requests one report at a time then receives every report and answers in time");
+  given.seed_option = app.add_option("--seed", given.options.seed,
+                                     "Seed of all noise. The same seed and the same commands repeat a run")
+                          ->type_name("N")
+                          ->capture_default_str();
+  given.seconds_option = app.add_option("--seconds", given.seconds, "Board time in seconds after which the board exits")
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
 }
 
 void add_instruments(CLI::App& app, Given& given) {
   app.add_option("--uart", given.uarts,
-                 "where a UART leads, both ways: usart1=stdio is this terminal, "
-                 "usart1=PORT a TCP port or Unix socket,\n"
-                 "usart1=PATH a terminal of its own under that name; usart1 to usart3, uart4, uart5, usart6")
+                 "Connect a UART (usart1 to usart3, uart4, uart5, usart6) in both directions: usart1=stdio to this\n"
+                 "terminal, usart1=PORT to a TCP port or a Unix socket, usart1=PATH to a new pseudo-terminal at PATH")
       ->type_name("UART=PLACE")
       ->allow_extra_args(false);
   app.add_option("--vcd", given.options.waveform,
-                 "write levels of pins and the running exception to this file, for GTKWave")
+                 "File for pin levels and the running exception over time, for GTKWave")
       ->type_name("FILE");
-  app.add_option("--vcd-pins", given.pins, "only these pins, such as PA8,PC6 (default: all)")
+  app.add_option("--vcd-pins", given.pins, "Pins for --vcd, such as PA8,PC6. Default: all pins")
       ->delimiter(',')
       ->type_name("PINS");
   given.profile_option = app.add_option("--profile", given.profile,
-                                        "at the end, write the instructions of the longest interrupt and their cycles "
-                                        "to this file\n(tools/flame-graph draws it); --mode is exact")
+                                        "File for the instructions of the longest interrupt and their cycles, written "
+                                        "at exit for\ntools/flame-graph. Sets --mode exact")
                              ->type_name("FILE");
 }
 
 void add_faults(CLI::App& app, Given& given) {
   app.add_option(
          "--inject", given.injections,
-         "a fault that comes at a board time in seconds and lasts so long, as in encoder_lost_counts:2=0.05@1.5+0.2;\n"
-         "without @ from the start, without + for ever; below are all. May be given several times")
+         "Inject a fault (list below), such as encoder_lost_counts:2=0.05@1.5+0.2: at board time 1.5 s for 0.2 s.\n"
+         "Without @, the fault starts at time 0; without +, it lasts indefinitely. Repeat the option for more faults")
       ->type_name("FAULT")
       ->allow_extra_args(false);
   app.add_option("--inject-from", given.injection_script,
-                 "a file with one such fault a line; what follows a # is a comment")
+                 "File with one fault per line, as for --inject. Text after a # is a comment")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
 }
 
 void add_start_and_end(CLI::App& app, Given& given) {
-  app.add_flag("--paused", given.options.paused, "start with board time standing still until a client runs it");
+  app.add_flag("--paused", given.options.paused, "Stop board time at the start, until a client runs it");
   app.add_flag(
       "--strict", given.options.strict,
-      "end, with exit code 4, when the firmware first does what silicon would not bear; without it such things\n"
-      "are logged and listed at the end");
+      "Exit with code 4 when the firmware first breaks a rule of the chip. Without --strict, broken rules are\n"
+      "logged and listed at exit");
 }
 
 std::string footer() {
-  return "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
-         "locked up at the end of --seconds, 4 a broken rule (--strict); firmware "
-         "that ends by semihosting passes its own\n"
-         "exit code on.\n"
+  return "Exit codes: 0 normal exit, 1 the board cannot run (the reason is printed on stderr), 2 invalid options,\n"
+         "3 the processor was locked up at the end of --seconds, 4 the firmware broke a rule (--strict). If the\n"
+         "firmware exits through semihosting, its exit code is used.\n"
          "\n"
-         "Board time waits for the program that uses the device on USB when it owes the next request of a "
-         "stream, until\n"
-         "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
-         "With --real-time, or where several programs use it, it waits for 3 s of the clock on the wall and passes "
-         "on.\n"
+         "While a program streams from the USB device, board time waits for the next request of the program, until\n"
+         "the program sends the request or disconnects. A busy computer, or a debugger that stops the program,\n"
+         "therefore loses no data. With --real-time, or if several programs use the device, board time waits for at\n"
+         "most 3 s of real time.\n"
          "\n"
-         "Faults that can be put in, with what they are put into and the amount; its range, and what it is "
-         "unless given:\n" +
+         "Injected faults, with position and unit of the amount, and at the end of the line its range and default:\n" +
          explain_injections() +
          "\n"
-         "Control socket: one JSON object a line each way, such as "
-         "{\"command\":\"run\",\"for_s\":0.5}. The commands with\n"
-         "their keys; lengths in metres, angles in radians, times in seconds of board time:\n" +
+         "Control socket: one JSON object per line in both directions, such as {\"command\":\"run\",\"for_s\":0.5}.\n"
+         "Commands and their keys, with lengths in meters, angles in radians, and times in seconds of board time:\n" +
          explain_commands();
 }
 
@@ -219,9 +210,10 @@ bool take_board(Given& given) {
   if (name.empty()) return true;
   given.options.board = board::find_board(name);
   if (given.options.board != nullptr) return true;
-  log_line((given.board.empty() ? (runs_flash ? given.options.flash : given.options.elf).string() + " is for the board "
-                                : "--board: ") +
-           name + ", which is not known here; known are " + board::names_of_boards() + ".");
+  log_line((given.board.empty()
+                ? (runs_flash ? given.options.flash : given.options.elf).string() + " is for the unknown board "
+                : "--board: unknown board ") +
+           name + ". Known boards: " + board::names_of_boards() + ".");
   return false;
 }
 
@@ -261,13 +253,13 @@ bool take_serial_number(Given& given) {
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
     if (*given.mode_option && given.mode != "exact") {
-      log_line("--gdb and --profile look at every instruction; leave --mode fast out.");
+      log_line("--gdb and --profile stop at every instruction. Omit --mode fast.");
       return false;
     }
     given.mode = "exact";
   }
   if (given.options.elf.empty() && given.options.flash.empty()) {
-    log_line("there is nothing to run. Give a firmware with --elf, or a flash that holds one with --flash.");
+    log_line("no firmware to run. Set a firmware image with --elf, or a flash file with firmware with --flash.");
     return false;
   }
   if (!take_board(given) || !take_ports(given) || !take_serial_number(given)) return false;

@@ -19,15 +19,15 @@ constexpr double reach_m = 2.0;  // beyond the reach of any arm that a descripti
 
 const json& at(const json& request, const char* key, const char* what) {
   const auto found = request.find(key);
-  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing: {}", key, what));
+  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing; it must be {}", key, what));
   return *found;
 }
 
 double checked_number(const json& value, const char* key, double minimum, double maximum) {
-  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must hold numbers only", key));
+  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must contain only numbers", key));
   const double number = value.get<double>();
   if (!(number >= minimum && number <= maximum))
-    throw Refused(fmt::format("\"{}\" holds {}, which is outside {} to {}", key, number, minimum, maximum));
+    throw Refused(fmt::format("\"{}\": the value {} is outside {} to {}", key, number, minimum, maximum));
   return number;
 }
 
@@ -61,57 +61,54 @@ std::span<const CommandInfo> command_table() {
       {Command::status,
        "status",
        {},
-       "time, mode, resets, USB, whom board time waits for, faults in and to come, unmodelled registers",
+       "board time, mode, resets, USB, awaited programs, injected faults, accesses to unmodeled registers",
        true},
-      {Command::truth, "truth", {}, "every true quantity, the levels on the bridges' inputs included"},
-      {Command::pause, "pause", {}, "board time stands still"},
-      {Command::stand_by, "stand_by", {}, "it stands still, but passes while a USB control transfer is under way"},
-      {Command::run, "run", {"for_s"}, "it passes for a while; answered when that is over"},
-      {Command::resume, "resume", {}, "it passes freely"},
-      {Command::reset, "reset", {}, "the reset pin"},
+      {Command::truth, "truth", {}, "true physical quantities, and the levels at the bridge inputs"},
+      {Command::pause, "pause", {}, "stop board time"},
+      {Command::stand_by, "stand_by", {}, "stop board time, except during USB control transfers"},
+      {Command::run, "run", {"for_s"}, "run for this board time; the reply follows afterward"},
+      {Command::resume, "resume", {}, "run without a limit"},
+      {Command::reset, "reset", {}, "reset the board with the reset pin"},
       {Command::cut_power,
        "cut_power",
        {"at_flash_operation"},
-       "the power fails and is back at once: now, or in the middle of the so many-th word or sector that the flash is "
-       "told to program or erase"},
-      {Command::quit, "quit", {}, "the end of this program", true},
-      {Command::usb, "usb", {"connected"}, "plug or pull the cable, and with it VBUS"},
-      {Command::buttons, "buttons", {"pressed"}, "of the stylus: [true,false]"},
-      {Command::supply, "supply", {"voltage_V"}, "of the bridges"},
+       "interrupt the power now, or in the middle of the flash operation with this number; 1 is the next word or "
+       "sector that the firmware programs or erases"},
+      {Command::quit, "quit", {}, "exit the virtual board", true},
+      {Command::usb, "usb", {"connected"}, "plug in or unplug the cable, which supplies VBUS"},
+      {Command::buttons, "buttons", {"pressed"}, "press the stylus buttons, such as [true,false]"},
+      {Command::supply, "supply", {"voltage_V"}, "set the bridge supply voltage"},
       {Command::pin,
        "pin",
        {"pin", "drive"},
-       "level at a pin, such as PA5; drives it high, low or floating from outside first"},
-      {Command::glitch,
-       "glitch",
-       {"pin", "for_s"},
-       "a pin is the opposite of what drives it, as by a spike on its wire"},
+       "read the level at a pin, such as PA5; \"drive\" first drives the pin high, low or floating"},
+      {Command::glitch, "glitch", {"pin", "for_s"}, "invert the level that drives a pin, like a spike on its wire"},
       {Command::inject,
        "inject",
        {"fault", "of", "amount", "after_s", "for_s"},
-       "put a fault of the list above in, at once or later, for ever or a while"},
+       "inject a fault of the list above, immediately or later, indefinitely or for a time"},
       {Command::heal,
        "heal",
        {"fault", "of"},
-       "take it out again, all of its name without \"of\", all that are in without both"},
+       "heal a fault at one position; at all positions without \"of\"; all active faults without both keys"},
       {Command::hand,
        "hand",
        {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"},
-       "it pulls the probe, or lets go"},
+       "let the hand hold the stylus at a target, or release the stylus"},
       {Command::hand_path,
        "hand_path",
        {"points"},
-       "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]"},
-      {Command::gimbal, "gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll"},
-      {Command::dock, "dock", {"docked"}, "lay the stylus into the inkwell, or take it out"},
+       "move the hand with minimum jerk along [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]"},
+      {Command::gimbal, "gimbal", {"angles_rad"}, "turn the stylus to yaw, pitch, roll"},
+      {Command::dock, "dock", {"docked"}, "put the stylus into the inkwell, or remove the stylus"},
       {Command::meter,
        "meter",
        {"action"},
-       "start or read: peak force on the hand, energy given to it, how far it was taken; peak force of the motors"},
+       "start or read the meter: peak force, energy and travel of the hand, and peak force of the motors"},
       {Command::trace,
        "trace",
        {"action", "maximum"},
-       "start, stop or read the true quantities at every control period"},
+       "start, stop or read the trace of true quantities, with one row per control period"},
   };
   return table;
 }
@@ -139,11 +136,11 @@ Request read_request(std::string_view line) {
   if (found == table.end()) {
     std::vector<std::string_view> names;
     for (const CommandInfo& each : table) names.push_back(each.name);
-    throw Refused(fmt::format("there is no command {}; known are {}", name.dump(), fmt::join(names, ", ")));
+    throw Refused(fmt::format("there is no command {}; use one of these: {}", name.dump(), fmt::join(names, ", ")));
   }
   for (const auto& [key, value] : values.items())
     if (key != "command" && std::ranges::find(found->keys, key) == found->keys.end())
-      throw Refused(fmt::format("\"{}\" does not know the key \"{}\"; it knows {}", found->name, key,
+      throw Refused(fmt::format("the command \"{}\" has no key \"{}\"; its keys are: {}", found->name, key,
                                 found->keys.empty() ? "none" : fmt::format("{}", fmt::join(found->keys, ", "))));
   return {&*found, std::move(values)};
 }
@@ -203,7 +200,7 @@ std::vector<Waypoint> hand_path_request(const json& request) {
   if (!points.is_array() || points.empty()) throw Refused("\"points\" must be a list of at least one point");
   std::vector<Waypoint> path;
   for (const json& point : points) {
-    if (!point.is_object()) throw Refused("each of \"points\" must be {\"after_s\":time,\"target_m\":[x,y,z]}");
+    if (!point.is_object()) throw Refused("each entry of \"points\" must be {\"after_s\":time,\"target_m\":[x,y,z]}");
     const double earliest_s = path.empty() ? 0.0 : path.back().after_s;
     path.push_back({number(point, "after_s", earliest_s, 1e6), vector(point, "target_m", reach_m)});
   }
@@ -211,9 +208,9 @@ std::vector<Waypoint> hand_path_request(const json& request) {
 }
 
 std::array<bool, 2> pressed_buttons(const json& request) {
-  const json& pressed = at(request, "pressed", "a list of two, true or false");
+  const json& pressed = at(request, "pressed", "a list of two values, true or false");
   if (!pressed.is_array() || pressed.size() != 2 || !pressed[0].is_boolean() || !pressed[1].is_boolean())
-    throw Refused("\"pressed\" must be a list of two, true or false");
+    throw Refused("\"pressed\" must be a list of two values, true or false");
   return {pressed[0].get<bool>(), pressed[1].get<bool>()};
 }
 

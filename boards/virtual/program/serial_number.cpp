@@ -36,7 +36,7 @@ UniqueId unique_id_of(std::string_view serial_number) {
                          serial_number.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
   if (!is_number)
     throw std::invalid_argument("`" + std::string(serial_number) +
-                                "` is no serial number. Give up to 24 hexadecimal digits, for example 2A.");
+                                "` is not a serial number. Use up to 24 hexadecimal digits, for example 2A.");
   const std::string padded = std::string(digits_of_all - serial_number.size(), '0') + std::string(serial_number);
   UniqueId id{};
   for (std::size_t i = 0; i < id.size(); ++i) {

@@ -42,11 +42,11 @@ std::runtime_error failure(const std::filesystem::path& file, const std::string&
 
 SharedClock::SharedClock(const std::filesystem::path& file)
     : file_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)) {
-  if (file_ < 0) throw failure(file, std::string(std::strerror(errno)) + ". Name a file that you may write.");
+  if (file_ < 0) throw failure(file, std::string(std::strerror(errno)) + ". Use a file that you may write.");
   try {
     struct stat about {};
     if (::fstat(file_, &about) != 0 || (about.st_size != 0 && about.st_size != sizeof(Places)))
-      throw failure(file, "it is not a clock. Name a file that does not exist yet.");
+      throw failure(file, "the file is not a clock. Use a new file name.");
     if (::ftruncate(file_, sizeof(Places)) != 0) throw failure(file, std::strerror(errno));
     void* const memory = ::mmap(nullptr, sizeof(Places), PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     if (memory == MAP_FAILED) throw failure(file, std::strerror(errno));
@@ -54,7 +54,7 @@ SharedClock::SharedClock(const std::filesystem::path& file)
     set_lock(file_, joining, F_WRLCK, true);
     join();
     set_lock(file_, joining, F_UNLCK);
-    if (mine_ == boards_maximum) throw failure(file, "16 boards use it. End one of them, or name another file.");
+    if (mine_ == boards_maximum) throw failure(file, "16 boards use the clock. Exit one board, or use another file.");
   } catch (...) {
     if (places_ != nullptr) ::munmap(places_, sizeof(Places));
     ::close(file_);

@@ -61,7 +61,7 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
     list_violations();
     return exit_code_of_violation;
   }
-  end_run("the virtual board ends");
+  end_run("the virtual board exits");
   list_violations();
   if (firmware_exit_code_) return *firmware_exit_code_;
   return options_.seconds && board_.locked_up() ? exit_code_of_lock_up : 0;
@@ -100,7 +100,7 @@ void Simulation::serve_debugger() {
   const auto arrived = gdb_server_->take();
   if (arrived.connected) {
     gdb_.attach();
-    log_line(board_.chip().now(), "GDB has connected: board time stands still");
+    log_line(board_.chip().now(), "GDB has connected: board time is stopped");
   }
   gdb_server_->send(gdb_.receive(arrived.bytes));
   if (arrived.gone && gdb_.attached()) gdb_.detach();
@@ -141,8 +141,8 @@ void Simulation::advance() {
       return pause();
     case Stop::firmware_exit:
       firmware_exit_code_ = board_.chip().exit_code();
-      log_line(board_.chip().now(), fmt::format("the firmware ended with exit code {}", *firmware_exit_code_));
-      end_run("the firmware ended");
+      log_line(board_.chip().now(), fmt::format("the firmware exited with code {}", *firmware_exit_code_));
+      end_run("the firmware exited");
       return;
   }
   if (run_ && board_.chip().now() >= run_->end) {

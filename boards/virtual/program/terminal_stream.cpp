@@ -34,7 +34,7 @@ TerminalStream::TerminalStream(const std::filesystem::path& path, std::function<
   std::array<char, 64> name{};
   if (input_ < 0 || ::grantpt(input_) != 0 || ::unlockpt(input_) != 0 ||
       ::ptsname_r(input_, name.data(), name.size()) != 0)
-    throw std::runtime_error(fmt::format("no pseudo-terminal for --uart: {}.", std::strerror(errno)));
+    throw std::runtime_error(fmt::format("--uart: a pseudo-terminal cannot be created: {}.", std::strerror(errno)));
   // The terminal side stays open, so that writes succeed while no other program has opened the terminal.
   other_side_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios raw{};
@@ -46,8 +46,9 @@ TerminalStream::TerminalStream(const std::filesystem::path& path, std::function<
   if (error) {
     ::close(other_side_);
     ::close(input_);
-    throw std::runtime_error(fmt::format("{} cannot become a link to a terminal: {}; give --uart another path.",
-                                         path.string(), error.message()));
+    throw std::runtime_error(
+        fmt::format("{} cannot be created as a link to a terminal: {}. Use another path for --uart.", path.string(),
+                    error.message()));
   }
   start();
 }

@@ -43,7 +43,7 @@ json truth(const json&, Simulation& simulation) {
 json meter(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
   if (meter_action(request) == MeterAction::start) plant.start_meters();
-  if (!plant.hand_meter().runs()) throw Refused("the meter has not been started; {\"action\":\"start\"} does so");
+  if (!plant.hand_meter().runs()) throw Refused("the meter has not been started; send {\"action\":\"start\"} first");
   const HandMeter::Reading& reading = plant.hand_meter().reading();
   return {{"since_s", seconds(reading.since)},
           {"peak_force_N", reading.peak_force_N},

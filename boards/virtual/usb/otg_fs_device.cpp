@@ -195,7 +195,7 @@ void OtgFsDevice::write_global(std::uint32_t offset, std::uint32_t value) {
     case otg.gotgint: otg_interrupts_ &= ~(value & bits_of(otg.gotgint, Access::rc_w1)); break;
     case otg.gahbcfg: bus_configuration_ = value & writable(otg.gahbcfg); break;
     case otg.gusbcfg:
-      if (otg.gusbcfg.fhmod.in(value)) note("host mode is not modelled", offset, true, value);
+      if (otg.gusbcfg.fhmod.in(value)) note("host mode is not modeled", offset, true, value);
       write_usb_configuration(value);
       break;
     case otg.grstctl: write_reset_control(value); break;
@@ -249,7 +249,7 @@ void OtgFsDevice::write_device_configuration(std::uint32_t value) {
 
 void OtgFsDevice::write_device_control(std::uint32_t value) {
   if (otg.dctl.rwusig.in(value))  // the bus is suspended only while no program uses the device
-    note("remote wake-up is not modelled", otg_device_base + otg.dctl, true, value);
+    note("remote wake-up is not modeled", otg_device_base + otg.dctl, true, value);
   device_control_ = value & writable(otg.dctl);
   if (otg.dctl.cginak.in(value)) global_in_nak_ = false;
   if (otg.dctl.sginak.in(value)) global_in_nak_ = true;

@@ -117,7 +117,7 @@ void OtgFsDevice::check_in_transfer(unsigned number) {
   if (otg.diepctl.eptyp.of(endpoint.control) == otg_control && number != 0)
     rules_.violate(Rule::usb_endpoint_type, "IN " + std::to_string(number));
   if (otg.diepctl.eptyp.of(endpoint.control) == otg_isochronous && number != 0)
-    note("isochronous endpoints are not modelled", where, true, endpoint.control);
+    note("isochronous endpoints are not modeled", where, true, endpoint.control);
   if (!transmit_[transmit_fifo_of(number)].empty()) rules_.violate(Rule::usb_stale_words);
   if (transmit_depth(transmit_fifo_of(number)) * 4 < std::min<std::size_t>(endpoint.bytes_to_send, maximum))
     rules_.violate(Rule::usb_fifo_too_small);
@@ -299,7 +299,7 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
   if (otg.doepctl.eptyp.of(endpoint.control) == otg_control)
     rules_.violate(Rule::usb_endpoint_type, "OUT " + std::to_string(number));
   if (otg.doepctl.eptyp.of(endpoint.control) == otg_isochronous)
-    note("isochronous endpoints are not modelled", where, true, endpoint.control);
+    note("isochronous endpoints are not modeled", where, true, endpoint.control);
 }
 
 // Observed on silicon: the setup-done word of a SETUP packet is lost if NAK on endpoint 0 is cleared before the word is

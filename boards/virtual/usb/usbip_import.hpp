@@ -19,10 +19,10 @@ class UsbIpImport {
   /// Throws std::runtime_error if the sequence number is in use or the server's limit is exceeded.
   void add(const Urb& urb) {
     if (!lengths_.emplace(urb.sequence, urb.length).second)
-      throw std::runtime_error("it uses a sequence number again before the first one was answered");
+      throw std::runtime_error("it reuses the sequence number of an unanswered request");
     bytes_ += urb.length;
     if (lengths_.size() > transfers_maximum || bytes_ > bytes_maximum)
-      throw std::runtime_error("it submits more transfers at a time than the server holds");
+      throw std::runtime_error("it has more pending transfers than the server allows");
   }
   void forget(std::uint32_t sequence) {
     const auto found = lengths_.find(sequence);
@@ -33,7 +33,7 @@ class UsbIpImport {
   /// Throws std::runtime_error if more unlink requests are pending than transfers are allowed.
   void add_unlink() {
     if (++unlinks_ > transfers_maximum)
-      throw std::runtime_error("it takes back more transfers at a time than the server holds");
+      throw std::runtime_error("it has more pending unlink requests than the server allows");
   }
   void forget_unlink() { --unlinks_; }
 

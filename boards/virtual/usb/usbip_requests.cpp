@@ -72,7 +72,7 @@ std::optional<UsbIpRequests::Operation> UsbIpRequests::take_operation() {
     return ListDevices{};
   }
   if (header.operation != usbip::Operation::request_import)
-    throw std::runtime_error("it asks for an unknown operation");
+    throw std::runtime_error("it requests an unknown operation");
   if (rest().size() < sizeof(usbip::ImportRequest)) return std::nullopt;
   const auto request = usbip::read<usbip::ImportRequest>(rest());
   consumed_ += sizeof request;

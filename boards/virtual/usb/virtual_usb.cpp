@@ -84,13 +84,14 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
         serve();
       } else if (Clock::now() >= late_at && limited) {
         for (const auto& name : names(condition))
-          std::cerr << "USB/IP: " << name << " does not ask for more; board time no longer waits for it.\n";
+          std::cerr << "USB/IP: " << name
+                    << " sends no further requests; board time no longer waits for this program.\n";
         for (auto& [session, pace] : paces)
           if ((pace.*condition)()) pace.lose_patience();
       } else if (Clock::now() >= late_at && late.empty()) {
         late = names(condition);
         for (const auto& name : late)
-          std::cerr << "USB/IP: " << name << " has stopped; board time waits until it goes on or is gone.\n";
+          std::cerr << "USB/IP: " << name << " has stopped; board time waits until the program continues or exits.\n";
       }
     }
   }

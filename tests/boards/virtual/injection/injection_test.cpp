@@ -76,32 +76,32 @@ TEST_CASE("memory goes by its address, or by the seed") {
 }
 
 TEST_CASE("what is no fault is refused with a sentence that says what would be one") {
-  CHECK(refuses("encoder_stick:1", "there is no fault \"encoder_stick\"; known are wire_open, "));
+  CHECK(refuses("encoder_stick:1", "there is no fault \"encoder_stick\"; use one of these: wire_open, "));
   CHECK(refuses("", "there is no fault \"\""));
-  CHECK(refuses("encoder_stuck", "must say what it is put into, the motor: 1, 2 or 3"));
-  CHECK(refuses("encoder_stuck:4", "\"4\" is no motor; there are 1, 2, 3"));
-  CHECK(refuses("encoder_stuck:-1", "is no motor"));
-  CHECK(refuses("encoder_stuck:1x", "is no motor"));
+  CHECK(refuses("encoder_stuck", "encoder_stuck needs a position; add the motor: 1, 2 or 3"));
+  CHECK(refuses("encoder_stuck:4", "\"4\" is not a valid motor; use one of these: 1, 2, 3"));
+  CHECK(refuses("encoder_stuck:-1", "is not a valid motor"));
+  CHECK(refuses("encoder_stuck:1x", "is not a valid motor"));
   CHECK(refuses("encoder_stuck:1=3", "encoder_stuck has no amount"));
   CHECK(refuses("shunt_offset:1=11", "shunt_offset 11 A is outside -10 to 10"));
   CHECK(refuses("ram_bit=9", "ram_bit 9 is outside -1 to 7"));  // without a unit and without a space for it
-  CHECK(refuses("shunt_offset:1=much", "\"much\" is no number; it stands for the amount"));
-  CHECK(refuses("shunt_offset:1=nan", "is no number"));
-  CHECK(refuses("supply_cut:1", "supply_cut is not put into anything"));
-  CHECK(refuses("supply_cut@-1", "the time until it comes is -1 s"));
+  CHECK(refuses("shunt_offset:1=much", "\"much\" is not a number; a number is required for the amount"));
+  CHECK(refuses("shunt_offset:1=nan", "is not a number"));
+  CHECK(refuses("supply_cut:1", "supply_cut has no position; omit \"1\""));
+  CHECK(refuses("supply_cut@-1", "the delay is -1 s"));
   CHECK(refuses("supply_cut@2e6", "outside 0 to"));
-  CHECK(refuses("supply_cut+9e9", "how long it lasts"));
-  CHECK(refuses("leg_high:4A", "there are 1A, 1B, 2A, 2B, 3A, 3B"));
-  CHECK(refuses("leg_high:1C", "there are 1A"));
-  CHECK(refuses("wire_open:PZ1", "is no wire; name a pin"));
-  CHECK(refuses("wire_open:PA16", "is no wire"));
-  CHECK(refuses("wire_open:usb_plus", "usb_cut takes the cable out"));
-  CHECK(refuses("wires_shorted:PA0", "must name two wires"));
-  CHECK(refuses("wires_shorted:PA0+encoders[0].a", "name two"));
+  CHECK(refuses("supply_cut+9e9", "the duration is"));
+  CHECK(refuses("leg_high:4A", "use one of these: 1A, 1B, 2A, 2B, 3A, 3B"));
+  CHECK(refuses("leg_high:1C", "use one of these: 1A"));
+  CHECK(refuses("wire_open:PZ1", "is not a wire; use a pin"));
+  CHECK(refuses("wire_open:PA16", "is not a wire"));
+  CHECK(refuses("wire_open:usb_plus", "use usb_cut to unplug the cable"));
+  CHECK(refuses("wires_shorted:PA0", "needs two wires"));
+  CHECK(refuses("wires_shorted:PA0+encoders[0].a", "two different wires"));
   CHECK(refuses("exception_lost:98", "from 2 to 97"));
-  CHECK(refuses("adc_stopped:0", "is no converter"));
-  CHECK(refuses("ram_bit:here", "is no address; write it as 0x20000100"));
-  CHECK(refuses("ram_bit:0x100000000", "is no address"));
+  CHECK(refuses("adc_stopped:0", "is not a valid converter"));
+  CHECK(refuses("ram_bit:here", "is not an address; use a number such as 0x20000100"));
+  CHECK(refuses("ram_bit:0x100000000", "is not an address"));
   CHECK(refuses("ram_bit=8", "outside -1 to 7"));
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a script has one fault a line, and the line that is wrong is named") 
   CHECK(faults[1].fault == InjectedFault::motor_open);
   CHECK(parse_injections("", board::omni_driver).empty());
   CHECK_THROWS_WITH_AS(parse_injections("motor_open:1\n\nmotor_open:7\n", board::omni_driver),
-                       "line 3: \"7\" is no motor; there are 1, 2, 3", InvalidInjection);
+                       "line 3: \"7\" is not a valid motor; use one of these: 1, 2, 3", InvalidInjection);
 }
 
 TEST_CASE("the help has a line for each fault") {

@@ -26,8 +26,9 @@ TEST_CASE("a command is known by its name, with keys of its own") {
   CHECK(contains(refusal_of("[]"), "one JSON object in one line"));
   CHECK(contains(refusal_of("{\"command\""), "one JSON object in one line"));
   CHECK(contains(refusal_of("{}"), "\"command\" is missing"));
-  CHECK(contains(refusal_of(R"({"command": "jump"})"), "there is no command \"jump\"; known are status, "));
-  CHECK(contains(refusal_of(R"({"command": "usb", "on": 1})"), "does not know the key \"on\"; it knows connected"));
+  CHECK(contains(refusal_of(R"({"command": "jump"})"), "there is no command \"jump\"; use one of these: status, "));
+  CHECK(contains(refusal_of(R"({"command": "usb", "on": 1})"),
+                 "the command \"usb\" has no key \"on\"; its keys are: connected"));
 }
 
 TEST_CASE("every command is in the table once, and in the help") {
@@ -46,8 +47,8 @@ TEST_CASE("what is beyond its bounds is refused, and what is missing") {
   using nlohmann::json;
   CHECK(message_of<Refused>([] {
           run_time_s(json{{"for_s", -1}});
-        }) == "\"for_s\" holds -1, which is outside 0 to 1000000");
-  CHECK(message_of<Refused>([] { glitch_time_s(json::object()); }) == "\"for_s\" is missing: a number");
+        }) == "\"for_s\": the value -1 is outside 0 to 1000000");
+  CHECK(message_of<Refused>([] { glitch_time_s(json::object()); }) == "\"for_s\" is missing; it must be a number");
   CHECK_FALSE(flash_operation(json::object()));
   CHECK(flash_operation(json{{"at_flash_operation", 7}}) == 7);
   CHECK(contains(message_of<Refused>([] { flash_operation(json{{"at_flash_operation", 0}}); }), "outside 1 to"));

@@ -64,14 +64,14 @@ TEST_CASE("a board whose process was killed holds up no other, and its place is 
   CHECK(first.lets_pass());
   std::vector<std::unique_ptr<SharedClock>> others;
   for (std::size_t i = 1; i < SharedClock::boards_maximum; ++i) others.push_back(std::make_unique<SharedClock>(file));
-  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("16 boards use it"), std::runtime_error);
+  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("16 boards use the clock"), std::runtime_error);
 }
 
 TEST_CASE("a file that is not a clock is not changed") {
   const TemporaryDirectory directory;
   const auto file = directory / "notes";
   std::ofstream(file) << "mine";
-  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("it is not a clock"), std::runtime_error);
+  CHECK_THROWS_WITH_AS(SharedClock{file}, doctest::Contains("the file is not a clock"), std::runtime_error);
   std::string content;
   std::ifstream(file) >> content;
   CHECK(content == "mine");

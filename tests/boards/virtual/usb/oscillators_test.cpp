@@ -181,7 +181,7 @@ TEST_CASE("a crystal that does not start: light and console tell, no device, no 
   CHECK(changes <= 22);
   CHECK(bus.core.attachment() == 0);
   CHECK(bus.chip.clocks().hclk_Hz == 16'000'000);
-  CHECK(console.find("the crystal does not swing") != std::string::npos);
+  CHECK(console.find("the crystal does not oscillate") != std::string::npos);
   CHECK(console.find("\r\n") == console.size() - 2);
   constexpr double bits_of_a_character = 10, baud_Hz = 115'200;
   const double bits = virtual_board::seconds(last - first) * baud_Hz;
