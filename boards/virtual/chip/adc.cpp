@@ -48,7 +48,8 @@ unsigned Adc::regular_length() const { return adc.cr1.scan.in(cr1_) ? adc.sqr1.l
 unsigned Adc::injected_length() const { return adc.cr1.scan.in(cr1_) ? adc.jsqr.jl.of(jsqr_) + 1 : 1; }
 
 unsigned Adc::channel_of(Group group, unsigned rank) const {
-  // A short injected sequence uses the last fields: JSQ4 alone for one conversion (RM0090, ADC_JSQR).
+  // An injected sequence of fewer than four conversions uses the last fields of ADC_JSQR, for example only JSQ4
+  // (RM0090).
   if (group == Group::injected) return adc.jsqr.jsq.of(jsqr_, 3 - adc.jsqr.jl.of(jsqr_) + rank);
   return adc.sqr3.sq.of(sqr_[2 - rank / 6], rank % 6);
 }
@@ -102,7 +103,7 @@ void Adc::begin_conversion(Ticks now) {
   began_ = now;
   const Ticks sampled = now + duration(sampling_cycles(channel));
   const Ticks done = sampled + duration(resolution_bits());
-  // Without an interrupt or DMA the processor does not have to stop for the result.
+  // The processor stops for a result only if an interrupt or DMA uses the result.
   Ticks wake = never;
   if (group_ == Group::injected) {
     if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;

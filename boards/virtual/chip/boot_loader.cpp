@@ -51,7 +51,7 @@ constexpr std::uint16_t go[] = {
     0x6B41,          // ldr r1, [r0, #AHB2ENR]
     0xF041, 0x0180,  // orr r1, #OTGFSEN
     0x6341,          // str r1, [r0, #AHB2ENR]
-    0x6B41,          // ldr r1, [r0, #AHB2ENR]: gives the clock time to start
+    0x6B41,          // ldr r1, [r0, #AHB2ENR]: waits until the clock has started
     0xF640, 0x6300,  // movw r3, #PCGCCTL
     0xF2C5, 0x0300,  // movt r3, #PCGCCTL
     0x2101,          // movs r1, #STPPCLK
@@ -61,7 +61,7 @@ constexpr std::uint16_t go[] = {
     0x6C01,          // ldr r1, [r0, #APB1ENR]
     0xF041, 0x5180,  // orr r1, #PWREN
     0x6401,          // str r1, [r0, #APB1ENR]
-    0x6C01,          // ldr r1, [r0, #APB1ENR]: gives the clock time to start
+    0x6C01,          // ldr r1, [r0, #APB1ENR]: waits until the clock has started
     0x4B18,          // ldr r3, =PWR
     0x2100,          // movs r1, #0: VOS
     0x6019,          // str r1, [r3, #CR]

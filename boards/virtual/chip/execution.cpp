@@ -95,8 +95,8 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // The processor is stopped here, so the circuit already advances after half a period. This avoids a later stop of
-    // the processor.
+    // Because the processor is already stopped here, the circuit advances after only half a period, which avoids a
+    // later stop.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;
@@ -119,7 +119,8 @@ Stop Execution::run_slices(Ticks when) {
         continue;
       }
     }
-    // While the flash is busy, its vectors and instructions cannot be read. The end of the operation is a wake event.
+    // While the flash is busy, its vectors and instructions cannot be read. The end of the flash operation is a wake
+    // event.
     if (machine_.flash->busy() && Processor::is_in_flash(system_control_.vector_table())) {
       stand_until(when, never);
       continue;
@@ -409,7 +410,7 @@ void Execution::handle(Outcome outcome) {
                   at("no instructions may be at", address, program_counter));
       break;
   }
-  // Exception entry, return and sleep change which exception may run next.
+  // Exception entry, exception return and sleep may change the next exception to run.
   if (outcome == Outcome::slice_over || state_ != State::runs) return;
   if (machine_.debugging.steps || stopped_by_debugger_)
     exception_may_be_due_ = true;

@@ -78,7 +78,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void write_option_key(std::uint32_t key);
   void write_options(std::uint32_t value);
   void set_accelerator(std::uint32_t access);
-  /// Flash operation in progress, with the previous contents.
+  /// Flash operation in progress, with the flash contents before the operation.
   struct Operation {
     bool erases;
     std::uint32_t offset;

@@ -85,7 +85,8 @@ class Nvic final : public InterruptController {
   unsigned next(const Masks& masks) const;
   /// Most urgent pending and enabled exception, regardless of the execution priority, or exception_none.
   unsigned most_urgent() const;
-  /// Makes a pending exception active. A line that stays asserted becomes pending again after the return.
+  /// Makes a pending exception active. If the interrupt line stays asserted, the interrupt becomes pending again when
+  /// the handler returns.
   void enter(unsigned exception);
   void leave(unsigned exception);
 

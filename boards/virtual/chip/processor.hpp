@@ -170,8 +170,8 @@ class Processor final : public ClockUser, private EngineCalls {
   enum class Return : std::uint8_t {
     done,
     invalid,          ///< invalid return state
-    no_stack,         ///< the frame is not in RAM; the handler has still ended
-    protected_stack,  ///< the memory protection unit refuses the frame; the handler has still ended
+    no_stack,         ///< the frame is not in RAM; the handler is no longer active
+    protected_stack,  ///< the memory protection unit refuses the frame; the handler is no longer active
   };
   Return return_from_exception(std::uint32_t vector_table);
   /// Starts a handler that reuses the stack frame of the previous handler (tail-chaining). Returns false if the vector

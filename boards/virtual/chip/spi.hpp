@@ -1,5 +1,5 @@
 // SPI1 to SPI3 without a connected device (RM0090, "Serial peripheral interface"). A master sends frames with correct
-// timing and receives only 1 bits. A slave receives no clock. I2S and CRC are not modeled.
+// timing and receives only 1 bits. In slave mode, the controller receives no clock. I2S and CRC are not modeled.
 #pragma once
 
 #include <functional>

@@ -71,7 +71,7 @@ class Timeline {
     wake_moved_forward_ = false;
     return next_wake_;
   }
-  /// True if a part has set a `wake` time before the result of the last next_wake().
+  /// True if a part has set a `wake` time that is earlier than the result of the last next_wake().
   bool wake_moved_forward() const { return wake_moved_forward_; }
 
  private:

@@ -11,7 +11,7 @@ namespace inkwell::virtual_board {
 
 namespace {
 
-// Internal triggers: RM0090, tables "TIMx internal trigger connection".
+// Timers with their internal triggers (RM0090, tables "TIMx internal trigger connection").
 constexpr TimerTraits timer_traits[14] = {
     {.number = 1,
      .on_apb2 = true,

@@ -105,7 +105,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
   unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
   bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
-  /// True if edges of inputs clock the counter.
+  /// True if input edges clock the counter.
   bool counts_edges() const { return encoder_mode() || slave_mode() == external_clock || tim.smcr.ece.in(smcr_); }
   bool outputs_on() const { return !traits_.breaks || (tim.bdtr.moe.in(bdtr_) && !frozen_); }
   bool runs() const;

@@ -217,7 +217,7 @@ bool take_board(Given& given) {
   return false;
 }
 
-/// Prints a sentence on stderr and returns false on errors.
+/// On an error, prints a sentence on stderr and returns false.
 bool take_ports(Given& given) {
   const auto read = [](const char* option, const std::string& text, PortOption& port) {
     try {
@@ -232,7 +232,7 @@ bool take_ports(Given& given) {
          (!*given.gdb_option || read("--gdb", given.gdb, given.options.gdb.emplace()));
 }
 
-/// Prints a sentence on stderr and returns false on errors.
+/// On an error, prints a sentence on stderr and returns false.
 bool take_serial_number(Given& given) {
   Options& options = given.options;
   try {
@@ -249,7 +249,7 @@ bool take_serial_number(Given& given) {
   return true;
 }
 
-/// Converts the text to options. Prints a sentence on stderr and returns false on errors.
+/// Converts the text to options. On an error, prints a sentence on stderr and returns false.
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
     if (*given.mode_option && given.mode != "exact") {

@@ -149,7 +149,7 @@ void OtgFsDevice::cancel_commands() {
   core_reset_until_ = receive_flush_until_ = transmit_flush_until_ = 0;
 }
 
-// --- Stores that arrive too early --------------------------------------------------------------------------
+// --- Register writes that come too early --------------------------------------------------------------------------
 
 bool OtgFsDevice::store_may_come(std::uint32_t offset, std::uint32_t value) {
   const Ticks now = scheduler_.now();

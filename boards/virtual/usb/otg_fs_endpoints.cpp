@@ -25,7 +25,7 @@ constexpr std::uint32_t stored_out_bits(unsigned endpoint) {
   return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
 }
 
-// The size and packet count fields of endpoint 0 are narrower.
+// The size and packet count fields of endpoint 0 are narrower than those of other endpoints.
 constexpr std::uint32_t transfer_bytes(std::uint32_t size, unsigned endpoint) {
   return otg.dieptsiz.xfrsiz.of(size) & (endpoint == 0 ? 0x7F : otg.dieptsiz.xfrsiz.maximum());
 }
@@ -278,8 +278,8 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
   }
 }
 
-// The manual requires EPENA and CNAK together. Existing drivers, for example in ChibiOS, start an OUT transfer with
-// CNAK alone, and silicon then accepts packets.
+// The manual requires firmware to set EPENA and CNAK together. Existing drivers, for example in ChibiOS, start an OUT
+// transfer with CNAK alone, and silicon then accepts packets.
 bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
   const OutEndpoint& endpoint = out_[number];
   const bool clears_nak =

@@ -9,8 +9,8 @@
 //                     with M11 = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b
 //   potential energy  g (S2 sin a + S3 sin b)
 //
-// J2, J3, H, S2 and S3 combine the masses of the links and the probe. I is the inertia of the turret. The rotors turn
-// with the joints through their gears. The parallelogram rods are included in links 2 and 3.
+// J2, J3, H, S2 and S3 combine the masses of the links and the probe. I is the inertia of the turret. The motor rotors
+// turn with the joints through the gears. The parallelogram rods are included in links 2 and 3.
 #pragma once
 
 #include <Eigen/Core>

@@ -57,7 +57,7 @@ struct BlockPrice {
   std::vector<Read> reads;
 };
 
-/// Function that reads a word of memory without side effects; may be empty.
+/// Function that reads a word of memory without side effects. An empty function is allowed.
 using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 
 /// Returns the price of the block with the instructions `code` (whole half-words) at `address`. `word` reads the

@@ -61,7 +61,8 @@ struct Instruction {
 /// True if an instruction with this first half-word has a second half-word.
 constexpr bool is_wide(std::uint16_t first) { return first >= 0xE800; }
 
-/// Decodes the instruction at `address`. Narrow instructions ignore `second`; invalid instructions count as plain.
+/// Decodes the instruction at `address`. For narrow instructions, `second` is ignored. Invalid instructions have the
+/// kind `plain`.
 Instruction decode(std::uint16_t first, std::uint16_t second, std::uint32_t address);
 
 }  // namespace inkwell::virtual_board

@@ -13,7 +13,7 @@
 //     host submits a request, unlinks a request or disconnects. A program that a debugger has stopped therefore loses
 //     no data. After `patience`, control socket commands are executed during this wait.
 //   - A host with single requests may have read all data that it needs, and a host that waits for a control transfer
-//     may pause its other requests. The wait for these hosts is limited to `patience` of wall-clock time.
+//     may pause its other requests. Board time waits for both kinds of host at most `patience` of wall-clock time.
 //   - If the board runs in real time, or if several programs use the device, every wait is limited to `patience`. A
 //     hung program must not delay the other programs or the board, which then switches the force off.
 //   - Board time does not wait at an untracked endpoint, after an unlinked or failed request, or after an expired

@@ -158,7 +158,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   const ChipState& chip_;
   TriggerLines& triggers_;
 
-  // Registers, whose names are those of RM0090 written out.
+  // Registers. The members have the names of RM0090, written out in words.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
   std::uint32_t bus_configuration_ = 0;                        // GAHBCFG
   std::uint32_t usb_configuration_ = 0;                        // GUSBCFG
