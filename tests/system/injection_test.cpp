@@ -101,7 +101,7 @@ TEST_CASE("faults on the command line and in a script; a wrong one ends the prog
         0);
   const auto wrong = run_board({"--inject", "motor_open:4"});
   CHECK(wrong.exit_code == 2);
-  CHECK(wrong.err.find("--inject: \"4\" is no motor; there are 1, 2, 3") != std::string::npos);
+  CHECK(wrong.err.find("--inject: \"4\" is not a valid motor; use one of these: 1, 2, 3") != std::string::npos);
   std::ofstream(script) << "\nmotor_shut:1\n";
   const auto wrong_line = run_board({"--inject-from", script});
   CHECK(wrong_line.exit_code == 2);
