@@ -1,4 +1,5 @@
-// Server for the control socket. It passes JSON lines from several clients to the simulation thread, one by one.
+// Server for the control socket. The server passes JSON lines from several clients to the simulation thread, one by
+// one.
 #pragma once
 
 #include <chrono>

@@ -23,7 +23,7 @@ namespace inkwell::virtual_board {
 
 class HostController {
  public:
-  /// Callbacks to the user of the controller, on the simulation thread.
+  /// Callbacks to the client that uses the controller. The callbacks run on the simulation thread.
   class Client {
    public:
     virtual ~Client() = default;

@@ -27,7 +27,7 @@ class PortObserver {
 
 class RootPort final : private HostController::Client {
  public:
-  /// Callbacks to the user of the device on this port.
+  /// Callbacks to the client that uses the device.
   class Client : public PortObserver {
    public:
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
