@@ -1,4 +1,4 @@
-// Duration of the board's force law on a PC, next to published durations of CHAI3D on such a machine.
+// Duration of the board's force law on a PC, for comparison with published durations of CHAI3D.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -47,7 +47,7 @@ void walls(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(walls_force_N(path.next()));
 }
 
-/// Eight planes that bevel the box, and a ball in its middle, all with friction.
+/// Eight planes that bevel the edges of the box, and a sphere in its center. All shapes have friction.
 control::Shapes nine_shapes() {
   const control::Surface surface{.stiffness_N_per_m = 800.0f,
                                  .m_per_N = 1.0f / 800.0f,

@@ -37,8 +37,7 @@ class PressedBoard {
     device_ = device::Device::open(*endpoint);
   }
 
-  /// Largest duration of each stage, the total first, while the probe is pressed into three walls and comes out
-  /// again.
+  /// Largest duration of each stage, the total first, while the probe is pressed into three walls and moves out again.
   std::array<float, stage_count> press() {
     run(0.5);  // the encoders are referenced
     std::vector<Signal> signals;

@@ -1,4 +1,5 @@
-// usb-trial: the flashed firmware against a USB host, for any duration. The tests do the same for seconds.
+// usb-trial: runs the flashed firmware with a USB host for any duration. The tests run the firmware for a few seconds
+// only.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>

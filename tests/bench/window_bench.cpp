@@ -1,4 +1,4 @@
-// The window on software OpenGL with the virtual board: its frames during motion and its processor load at rest.
+// Measures the window on software OpenGL with the virtual board: frames during motion, and processor load at rest.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -37,7 +37,7 @@ double share_of_a_core(int process) {
   return (processor_time_s(process) - before_s) / std::chrono::duration<double>(measured_for).count();
 }
 
-/// The hand pushes the sphere into the right wall and along it, repeatedly.
+/// The hand repeatedly pushes the sphere into the right wall and along this wall.
 void push_for(device::ControlClient& control, double time_s) {
   const device::Vector3 start_m{0.0, 0.0, -0.03};
   control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
@@ -66,7 +66,7 @@ void measure(const std::string& layout, const std::string& width, const std::str
 
 }  // namespace
 
-/// Measures the layouts that are named in the arguments; without arguments all layouts.
+/// Measures the layouts that are named in the arguments; the default is all layouts.
 int main(int argument_count, char** arguments) {
   const std::vector<std::string> wanted(arguments + 1, arguments + argument_count);
   const auto is_wanted = [&wanted](const std::string& layout) {

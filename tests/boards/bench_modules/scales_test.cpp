@@ -1,4 +1,5 @@
-// Checks the board's scales against separate numbers from the parts and wires in its README.md.
+// Checks the board's scale factors against values that are derived separately from the components and wiring in
+// README.md.
 #include <bench_modules/facts.hpp>
 
 #include <doctest/doctest.h>

@@ -19,7 +19,7 @@ LQFP64 = {
     **{f"PC{n}": place for n, place in enumerate((8, 9, 10, 11, 24, 25, 37, 38, 39, 40, 51, 52, 53, 2, 3, 4))},
 }
 
-# STM32World/hardware, mcustm32f405, connectors J2 and J3: the pins in pairs, in the order of the connectors.
+# Pins of connectors J2 and J3 in pairs (STM32World/hardware, mcustm32f405).
 HEADERS = {
     "J2": "- - - - PC1 PC0 PC3 PC2 PA1 PA0 PA3 PA2 PA5 PA4 PA7 PA6 PC5 PC4 PB1 PB0 - PB2 PB11 PB10 PB13 PB12 PB15 PB14 PC7 "
           "PC6 PC9 PC8",

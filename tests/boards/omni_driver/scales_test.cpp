@@ -1,5 +1,6 @@
-// Checks the board's scales against separate numbers from the parts and wires in README.md. Firmware and simulation
-// both use the board's facts, so comparing them with each other would not reveal a wrong fact.
+// Checks the board's scale factors against values that are derived separately from the components and wiring in
+// README.md. Firmware and simulation use the same board facts, so a comparison between firmware and simulation would
+// not reveal a wrong fact.
 #include <omni_driver/facts.hpp>
 
 #include <numbers>
@@ -83,7 +84,8 @@ TEST_CASE("encoder filter: 0.38 us, and each arm's fastest edges hold an input t
     for (unsigned motor = 0; motor < 3; ++motor) {
       CAPTURE(arm.name);
       CAPTURE(motor);
-      // No motor exceeds its no-load speed at the highest supply voltage. An input keeps its level for two counts.
+      // No motor exceeds its no-load speed at the highest supply voltage. Each encoder input changes its level every
+      // two counts.
       const double fastest_rad_per_s = static_cast<double>(board::supply_maximum_V / torque_constants[motor]);
       const double counts_per_s =
           fastest_rad_per_s / (2.0 * std::numbers::pi) * static_cast<double>(counts_per_turn[motor]);

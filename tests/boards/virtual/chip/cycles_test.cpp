@@ -1,4 +1,4 @@
-// Cycle counts that follow from the manuals, on the running chip and in both modes.
+// Cycle counts of the running chip in both modes, compared with the manuals.
 #include <doctest/doctest.h>
 
 #include "chip_fixture.hpp"
@@ -66,8 +66,8 @@ TEST_SUITE("virtual chip: cycles") {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);
       const double no_wait = test.result(10), off = test.result(11), prefetch = test.result(12), all = test.result(13);
-      // Four 32-bit instructions per line take 4 cycles. A line that waits takes 5 more; after a prefetch a line takes
-      // 6.
+      // Four 32-bit instructions per flash line take 4 cycles without wait states, 9 cycles with wait states and 6
+      // cycles with prefetch.
       CHECK(no_wait == doctest::Approx(3 * 1024).epsilon(0.01));
       CHECK(off / no_wait == doctest::Approx(9.0 / 4).epsilon(0.02));
       CHECK(prefetch / no_wait == doctest::Approx(6.0 / 4).epsilon(0.02));
@@ -82,7 +82,7 @@ TEST_SUITE("virtual chip: cycles") {
     const Measured likely(Mode::fast), conservative(Mode::fast, Pricing::conservative);
     for (unsigned i = 1; i < 24; ++i) {
       CAPTURE(i);
-      // For a single loop, unspecified cache behavior can have either effect.
+      // In a single loop, the unspecified cache behavior can increase or reduce the cycle count.
       CHECK(conservative.result(i) >= 0.99 * likely.result(i));
     }
   }

@@ -88,7 +88,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("modes 1 and 2 count the edges of one input alone") {
-    // Forward from low and low: the edges are on B4, B5, B4, B5.
+    // In the forward direction, starting with both inputs low, the edges are on B4, B5, B4, B5.
     struct Row {
       std::uint32_t mode;
       int of_first_edge, of_four;
@@ -133,7 +133,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("what no sample sees does not count, and what one sees does, without a filter too") {
-    // Both inputs are sampled once per clock; the counter misses faster edges.
+    // Both inputs are sampled once per timer clock; the counter misses faster edges.
     Encoder slow, fast;
     slow.turn(2000, timer_clock);
     CHECK(slow.count() == 2000);
@@ -147,7 +147,8 @@ TEST_SUITE("virtual chip: encoder inputs") {
       Ticks sampling;  ///< in timer clocks
       unsigned samples;
     };
-    // RM0090, TIMx_CCMR1: codes 1 to 3 sample with the timer clock, the other codes with tDTS, which CKD prolongs.
+    // Filter codes 1 to 3 sample with the timer clock. The other codes sample with tDTS, which CKD prolongs (RM0090,
+    // TIMx_CCMR1).
     for (const Row row : {Row{0, 0, 1, 1}, {0, 2, 4, 1},   {1, 0, 1, 2},   {2, 0, 1, 4},   {3, 0, 1, 8},
                           {3, 2, 1, 8},    {4, 0, 2, 6},   {5, 0, 2, 8},   {6, 0, 4, 6},   {7, 0, 4, 8},
                           {7, 1, 8, 8},    {8, 0, 8, 6},   {9, 0, 8, 8},   {10, 0, 16, 5}, {11, 0, 16, 6},
@@ -163,7 +164,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
         CAPTURE(phase);
         CHECK(encoder.passes(whole, sampling, phase));
         if (row.samples > 1) CHECK_FALSE(encoder.passes(whole - sampling, sampling, phase));
-        // Between these lengths the result depends on the sampling phase.
+        // A pulse of intermediate length passes only at some sampling phases.
         CHECK(encoder.passes(whole - sampling + 2, sampling, phase) == (phase <= 0));
       }
       CHECK(encoder.count() == 0);  // each pulse was counted in both directions or not at all
@@ -174,7 +175,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
     Encoder encoder;
     constexpr unsigned code = 7, samples = 8, sampling = 4;
     encoder.write(ccmr1, 0x0101 | code << 4 | code << 12);
-    // Each input keeps its level for two counts.
+    // Each input changes its level every two counts.
     constexpr Ticks filter = samples * sampling * timer_clock;
     encoder.turn(500, filter / 2);
     encoder.turn(-300, filter / 2);

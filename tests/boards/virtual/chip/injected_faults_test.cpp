@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned converters_interrupt = 16 + 18;
 
-/// Returns the address of the first half word of the flash with this content, or 0.
+/// Returns the address of the first flash half word with this content, or 0.
 std::uint32_t find_in_flash(const Chip& chip, std::uint16_t content) {
   for (std::uint32_t address = 0x0800'0000; address < 0x0801'0000; address += 2) {
     const std::uint32_t word = chip.memory_word(address & ~3u);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t passes = 0, refused = 0x82, refused_instruction = 0x01, unaligned = 1u << 24,
                         no_answer = 0x8200, as_hard_fault = 1u << 30;
 
-/// The indices are those in the comments of the test firmware.
+/// The comments of the test firmware contain the same indices.
 void check_results(const ChipUnderTest& test, unsigned first, const std::vector<std::uint32_t>& expected) {
   for (unsigned i = 0; i < expected.size(); ++i) {
     const unsigned number = first + i;
@@ -29,10 +29,11 @@ TEST_SUITE("virtual chip: memory protection") {
       ChipUnderTest test("protection", mode);
       const Stop stop = test.chip.run_until(ticks(0.01));
       REQUIRE(test.result(0) == finished);
-      // A read-only page; a region above it without its third eighth; 32 bytes in another page, from both sides.
+      // The areas are a read-only page, a region above this page with a disabled third eighth, and 32 bytes in another
+      // page.
       check_results(test, 1,
                     {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});
-      // A 32-bit instruction that extends into 32 non-executable bytes, and an instruction that starts there.
+      // A 32-bit instruction extends into 32 non-executable bytes, and another instruction starts in these bytes.
       check_results(test, 12,
                     {passes, passes, refused_instruction, 0x3E, refused_instruction, 0x40, passes, refused_instruction,
                      0x40, refused_instruction});

@@ -24,8 +24,8 @@ TEST_SUITE("virtual chip: peripherals") {
     REQUIRE(first.size() > 60);
     REQUIRE(second.size() > 60);
 
-    // PWM mode 1: high within 400 cycles of the counter's bottom, otherwise low. The last edges have the new duty of
-    // 250.
+    // In PWM mode 1 the output is high within 400 cycles of the counter's bottom, and low at other times. The last
+    // edges have the new duty of 250.
     std::vector<Ticks> high_times;
     for (std::size_t i = 2; i + 1 < first.size(); ++i) {
       CHECK(first[i].level != first[i - 1].level);
@@ -33,7 +33,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
     CHECK(high_times.front() == 800 * cycle);
     CHECK(high_times.back() == 500 * cycle);
-    // The new duty becomes active at the bottom, in the middle of one pulse.
+    // The new duty becomes active at the bottom of the counter, in the middle of one pulse.
     unsigned mixed = 0;
     for (const Ticks t : high_times) {
       CHECK((t == 800 * cycle || t == 500 * cycle || t == 650 * cycle));
@@ -63,7 +63,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(1) - before == 168'000'000 / 10 / 6000);
     for (unsigned n = 0; n < 4; ++n) {
       CHECK(test.result(4 + 2 * n) == 0);  // counting up
-      // After the bottom: exception entry, first flash lines, APB access.
+      // The handler reads the counter after exception entry, the first flash lines and an APB access.
       CHECK(test.result(5 + 2 * n) < 100);
     }
   }
@@ -83,7 +83,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(2) == 1);
 
     test.circuit.edges.clear();
-    // The break comes in the middle of a pulse, so that an active output is switched off.
+    // The break occurs in the middle of a pulse, so that an active output is switched off.
     while (test.circuit.edges_of('A', 8).empty() || test.circuit.edges_of('A', 8).back().level != PinLevel::high)
       test.run_for(1e-6);
     const Ticks when = test.chip.now();
@@ -141,8 +141,8 @@ TEST_SUITE("virtual chip: peripherals") {
     for (unsigned i = 0; i < 4; ++i) CHECK(test.result(8 + i) == (channel_13 | channel_14 << 16));
     const std::uint32_t before = test.result(6);
     test.run_for(0.01);
-    // 96 cycles of 21 MHz per conversion, 8 conversions per round. Each injected group costs its own time and a
-    // restarted 84-cycle sampling.
+    // A conversion lasts 96 cycles at 21 MHz, and a round has 8 conversions. Each injected group adds its duration and
+    // a repeated sampling of 84 cycles.
     const double undisturbed = 0.01 * 21e6 / (96 * 8);
     CHECK(test.result(6) - before < undisturbed);
     CHECK(test.result(6) - before > 0.7 * undisturbed);
@@ -162,7 +162,7 @@ TEST_SUITE("virtual chip: peripherals") {
   TEST_CASE("a reading holds some of the channel before until its source has charged the sampling capacitor") {
     constexpr double switch_ohm = 6000, sampling_F = 4e-12, adc_Hz = 21e6;
     const auto counts = [](double volts) { return volts / 3.3 * 4096; };
-    // C3 and C4 are sampled alternately for 84 cycles, and C0 between them for 3 cycles.
+    // C3 and C4 are sampled alternately for 84 cycles. C0 is sampled between C3 and C4 for 3 cycles.
     const auto read = [&](AnalogSource source) {
       ChipUnderTest test("converters");
       test.circuit.voltages = {{{'C', 0}, 1.0}, {{'C', 3}, 1.0}, {{'C', 4}, 3.0}};
@@ -221,7 +221,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(sent == "chip\n");
     constexpr Ticks frame = 10 * 365 * 4 * cycle;  // ten bits of 365 cycles of PCLK1
     CHECK(times[2] - times[1] == frame);
-    // The crystal and the PLL start in 0.6 ms. The text follows immediately, and time continues after it.
+    // The crystal and the PLL start in 0.6 ms, and the firmware then sends its text immediately.
     CHECK(times[0] < ticks(0.66e-3) + frame);
     CHECK(test.circuit.edges_of('C', 10).back().level == PinLevel::high);
     CHECK(test.result(2) == 1u << 5);
@@ -278,8 +278,8 @@ TEST_SUITE("virtual chip: peripherals") {
       for (unsigned i = 0; i < 6; ++i) CHECK(test.result(1 + i) == (one_volt << 16 | one_volt));
       for (unsigned i = 0; i < 3; ++i) CHECK(test.result(9 + i) == (one_volt << 16 | one_volt));
       CHECK(test.result(7) == 0);
-      // At 4 MHz the conversions are five cycles apart, the length of three samples. In the second run the conversions
-      // are 17 cycles apart, the sampling time of 15 cycles plus two.
+      // At 4 MHz the conversions of the first run are five cycles apart. In the second run the conversions are 17
+      // cycles apart: 15 cycles of sampling plus two cycles.
       const auto& samples = test.circuit.samples;
       constexpr Ticks cycle = ticks_per_s / 4'000'000;
       REQUIRE(samples.size() > 18);

@@ -126,7 +126,7 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(100) == 7);
       CHECK(record(11, 0) == refused_code);
       CHECK(test.result(101) == 8);
-      // Inside an IT block: the third of four instructions faults, then the block continues normally.
+      // The third of four instructions in an IT block faults, and the block then continues normally.
       CHECK(record(12, 0) == no_answer);
       CHECK(record(12, 2) == 0);
       CHECK(record(12, 3) != 0);
@@ -204,8 +204,8 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(1) == 0);
       CHECK(test.result(2) == 7 + 1 + 16);
       CHECK(test.result(3) == 7 + 1 + 32);
-      // A push of twelve registers replaces an addition. In fast mode the counter advances by the cycles of a whole
-      // block.
+      // In the second function, a push of twelve registers replaces the addition. In fast mode the cycle counter
+      // advances by whole blocks.
       if (mode == Mode::exact) CHECK(test.result(5) == test.result(4) + 12);
       CHECK(test.result(5) > test.result(4));
       CHECK(test.log.empty());
@@ -235,7 +235,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.result(1) == (1u << 29 | 1u << 26));  // IWDGRSTF and PINRSTF
     REQUIRE(resets.size() == 1);
     CHECK(resets[0].first == ResetCause::independent_watchdog);
-    // 500 counts of 4 cycles at 32 kHz, after a few instructions.
+    // The watchdog expires after 500 counts of 4 cycles at 32 kHz and a few instructions.
     CHECK(seconds(resets[0].second) == doctest::Approx(0.0625).scale(0).epsilon(0.01));
     CHECK(test.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)] == 1);
   }

@@ -21,7 +21,8 @@ constexpr std::uint32_t cen = 1 << 0, ug = 1 << 0, cc1if = 1 << 1, cc1e = 1 << 0
 constexpr std::uint32_t etp = 1 << 15, ece = 1 << 14, external_clock_mode_1 = 7, gated = 5, behind_etr = 7 << 4;
 constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware keeps the reset clock
 
-/// TIM3 with its first channel on B4 and its external trigger on D2, both initially low; no mode selected.
+/// TIM3 with the first channel on B4 and the external trigger on D2. Both pins are initially low, and no mode is
+/// selected.
 struct Inputs {
   Inputs() : test("encoder", Mode::fast) {
     test.chip.input_pins().drive('B', 4, PinLevel::low);

@@ -1,4 +1,4 @@
-// A test firmware violates one rule at a time, and the virtual chip reports it.
+// A test firmware violates one rule at a time, and the virtual chip reports the violation.
 #include <doctest/doctest.h>
 
 #include <virtual_usb/otg_fs_device.hpp>
@@ -52,7 +52,7 @@ constexpr Case cases[] = {
     {35, Rule::reference_hurried},
 };
 
-/// The firmware with one violation, and the USB core with a host that resets the bus when a device appears.
+/// The firmware with one violation, and the USB core with a host that resets the bus when a device connects.
 struct Planted {
   explicit Planted(unsigned fault, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
     test.breaks_rules = fault != 0;

@@ -15,7 +15,7 @@ struct Debugger {
     session.attach();
     CHECK(session.receive(gdb_packet("QStartNoAckMode")) == "+" + gdb_packet("OK"));
   }
-  /// Returns the payload of the answer; empty if there is none.
+  /// Returns the payload of the answer, or an empty string.
   std::string ask(const std::string& packet) { return payload(session.receive(gdb_packet(packet))); }
   static std::string payload(const std::string& wire) {
     GdbPackets packets;

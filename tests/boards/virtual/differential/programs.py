@@ -58,7 +58,7 @@ class Program:
             return f"{self.general()}, rrx"
         return self.general() + (f", {kind} #{self.random.randrange(1, 32)}" if kind else "")
 
-    # Each of these returns one instruction, which `c` makes conditional.
+    # Each of these functions returns one instruction, which `c` makes conditional.
     def arithmetic(self, c, flags):
         r = self.random
         s = self.one_of(["", "s"]) if flags else ""
@@ -143,7 +143,7 @@ class Program:
             return self.access(c)
         return self.float_one(c)
 
-    # Each of these returns a group of lines.
+    # Each of these functions returns a group of lines.
     def if_then(self):
         condition = self.one_of(CONDITIONS)
         pattern = [True] + [self.random.random() < 0.5 for _ in range(self.random.randrange(4))]

@@ -31,7 +31,7 @@ struct Rig {
     chip.clear_counters();
     run(0.001);
   }
-  /// Runs like the virtual board.
+  /// Runs the chip in the same way as the virtual board.
   void run(double time_s) {
     const Ticks end = chip.now() + ticks(time_s);
     while (chip.now() < end) {
@@ -349,7 +349,7 @@ TEST_CASE("supplies") {
   rig.run(0.0005);
   CHECK(rig.instructions_in(0.0005) > 0);
 
-  // Changing the amount of an active fault does not remove the fault in between: a low supply remains low.
+  // A change of the amount of an active fault does not interrupt the fault: a low supply remains low.
   const auto brown_outs = [&] { return rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)]; };
   const auto before = brown_outs();
   for (const char* fault : {"logic_sag=2", "logic_sag=1.9"}) {

@@ -84,7 +84,7 @@ TEST_CASE("gravity is the gradient of the potential energy") {
 }
 
 TEST_CASE("gravity pulls down, along each workspace's own axis") {
-  // The weight of the probe alone, displaced by hand: dV = m g dh.
+  // Only the probe has mass, so the potential energy changes by dV = m g dh.
   for (auto light : test::all_arms()) {
     const int up = light.parameters[protocol::Parameter::frame] == 0.0f ? 2 : 1;
     light.simulation.link_2_mass_kg = light.simulation.link_3_mass_kg = 0.0;

@@ -100,7 +100,7 @@ TEST_CASE("a steady hand brings the arm to rest, at any stiffness it may have") 
     const Vector3 rest = arm.joints_rad();
     run(arm, 1.0, no_torque, hand);
     CHECK((arm.joints_rad() - rest).norm() < 1e-9);
-    // Within the force of friction and gravity against the spring, about 1.3 N.
+    // The remaining force of the spring is at most the force of friction and gravity, about 1.3 N.
     CHECK((position_m(arm) - target).norm() < 1.3 / stiffness + 1e-4);
   }
 }

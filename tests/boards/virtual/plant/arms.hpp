@@ -23,7 +23,7 @@ inline std::vector<arms::Description> all_arms() {
 inline arms::Description omni() { return arms::read(arms_directory() / "omni.toml"); }
 inline arms::Description paper() { return arms::read(arms_directory() / "paper.toml"); }
 
-/// Gear ratio times torque constant of motor 0, 1 or 2; both are counted as positive.
+/// Absolute gear ratio times absolute torque constant of motor 0, 1 or 2.
 inline double torque_Nm_per_A(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
   return static_cast<double>(p[of_axis(protocol::Parameter::gear_ratio_1, motor)]) *

@@ -78,8 +78,8 @@ TEST_CASE("an arm that is let go falls onto its stops and rests") {
 }
 
 TEST_CASE("a wall made by the motors is stable against a stiff hand and keeps still") {
-  // A proportional-derivative force in the workspace at 20 kHz, converted to duty cycles without a current loop. The
-  // device is simple, but the complete plant is between duty cycle and position.
+  // The controller is a proportional-derivative force in the workspace at 20 kHz, converted to duty cycles without a
+  // current loop. The complete plant is simulated between duty cycle and position.
   const auto arm = test::omni();
   DrivenPlant driven(arm);
   driven.enable(true);

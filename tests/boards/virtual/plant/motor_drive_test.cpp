@@ -111,8 +111,8 @@ TEST_CASE("the supply gives the power that the motor takes") {
   auto motor = drive();
   Ticks now = 0;
   const double mean_A = switch_bridge(motor, 0.5, 1000, now).mean_A;
-  // One more period with single edges, whose charges have not been read. At duty cycle 0.5 the supply drives the motor
-  // half of the time.
+  // Runs one more period with single edges; the charges of this period have not been read. At duty cycle 0.5 the supply
+  // drives the motor half of the time.
   const Ticks period = virtual_board::ticks_per_s / board::pwm_Hz;
   motor.set_leg(0, Leg::high, now + period / 8);
   motor.set_leg(1, Leg::high, now + 3 * period / 8);
@@ -136,7 +136,7 @@ TEST_CASE("a floating bridge kills the current through its diodes and leaves it 
     motor.take_charges();
     motor.set_leg(0, Leg::floating, ticks(100e-6));
     motor.set_leg(1, Leg::floating, ticks(100e-6));
-    // Against the supply and two diodes: L i' = -(V + 2 Vd) - R i.
+    // The current decays against the supply and two diodes: L i' = -(V + 2 Vd) - R i.
     const double final_A = (bus_V + 1.6) / resistance_ohm;
     const double to_zero_s = inductance_H / resistance_ohm * std::log((std::abs(start_A) + final_A) / final_A);
     motor.advance(ticks(100e-6 + 0.9 * to_zero_s));

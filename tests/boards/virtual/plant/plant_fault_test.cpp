@@ -133,8 +133,8 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     DrivenPlant driven(arm);
     driven.plant.set_motor_fault(2, fault);
     driven.enable(true);
-    // Full supply voltage in one direction for a time without significant motion: the resistance determines the
-    // current.
+    // Full supply voltage is applied in one direction, too briefly for significant motion. The resistance determines
+    // the current.
     driven.plant.output_changed(board::omni_driver.bridges[2].leg_a.pin.port,
                                 board::omni_driver.bridges[2].leg_a.pin.number, PinLevel::high, 0);
     driven.idle(0.0012);
@@ -191,7 +191,7 @@ TEST_CASE("a fused leg conducts though the bridge is disabled: a motor that is t
     driven.idle(0.001);
     const double back_emf_V = test::torque_Nm_per_A(arm, 0) * 20.0;
     CHECK(back_emf_V > 2.0);
-    // From ground through the diode of one leg and back through the other leg: possible in one direction only.
+    // Current flows from ground through the diode of one leg and back through the other leg, in one direction only.
     if (speed_rad_s > 0.0)
       CHECK(std::abs(current_A(driven, 0)) > 0.7 * (back_emf_V - 0.8) / test::circuit_ohm(arm));
     else

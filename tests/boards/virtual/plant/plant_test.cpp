@@ -176,7 +176,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at == PinLevel::high ? PinLevel::low : PinLevel::high);
     driven.now += 10;
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);
-    // The last rising edge restarts the hold time, at this level change or before it.
+    // The last rising edge, at or before this level change, restarts the hold time.
     const Ticks off = (stopped_at == PinLevel::high ? driven.now : newest) + hold;
     driven.now += 10;
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);  // unchanged level, no rising edge
@@ -197,7 +197,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.set_enable(false);
     driven.set_enable(true);
     CHECK_FALSE(is_on_at(driven.now));
-    // A start inside the control interrupt, with the heartbeat high, behaves in the same way.
+    // The bridges can also be enabled while the heartbeat is high, as inside the control interrupt.
     driven.set_enable(false);
     CHECK_FALSE(is_on_at(driven.now));
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::high);
@@ -261,7 +261,7 @@ TEST_CASE("the supply's reading follows through its divider's 0.9 ms") {
   driven.idle(0.0025);  // the bus itself needs a third of a millisecond
   const double bus_V = driven.plant.truth(driven.now).supply_V;
   CHECK(bus_V == doctest::Approx(24.0).epsilon(0.005));
-  // A rise with exp(-t / 0.33 ms), measured through a filter of 0.909 ms.
+  // The supply rises with exp(-t / 0.33 ms) and is measured through a filter of 0.909 ms.
   CHECK(driven.read_V(board::omni_driver.supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
 }
 

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server and its received bytes.
+/// A server and the bytes that it has received.
 class Receiver {
  public:
   explicit Receiver(FirstBytes welcome)

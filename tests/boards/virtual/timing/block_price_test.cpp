@@ -1,4 +1,4 @@
-// Cycle counts that follow from the rules in the core's manuals, with one short program each.
+// Checks the cycle counts of short programs against the rules in the core's manuals.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -105,7 +105,7 @@ TEST_CASE("a divide costs by the bits of its quotient, between 2 and 12 cycles")
 }
 
 TEST_CASE("a block tells which lines of flash it runs through, and when") {
-  // Nine 16-bit instructions from 0x...E: one in the first line, eight in the second.
+  // Nine 16-bit instructions start at 0x...E: one is in the first line, eight are in the second line.
   const auto block = price_of({add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0}, start + 14);
   REQUIRE(block.requests.size() == 2);
   CHECK(block.requests[0].address == start);

@@ -8,7 +8,8 @@ namespace {
 constexpr Costs likely{Pricing::likely}, conservative{Pricing::conservative};
 constexpr std::uint32_t flash_bytes = 64 * 1024, line = FlashAccelerator::line_bytes;
 
-/// Reads `lines` lines with `cycles_a_line` each, `rounds` times. Returns the wait cycles of the last round.
+/// Reads `lines` flash lines `rounds` times, with `cycles_a_line` cycles per line. Returns the wait cycles of the last
+/// round.
 unsigned waits_of_loop(FlashAccelerator& flash, unsigned lines, unsigned cycles_a_line, unsigned rounds) {
   std::uint64_t now = 1000;
   unsigned waited = 0;

@@ -39,7 +39,7 @@ TEST_CASE("the conservative pricing always just misses an edge") {
 }
 
 TEST_CASE("frequencies of a crystal that is off keep their ratio") {
-  // 168 MHz and 95 ppm: 168'015'960 Hz. After rounding down, four quarters can exceed the whole.
+  // 168 MHz plus 95 ppm is 168'015'960 Hz. After rounding, four times the APB1 clock can exceed HCLK.
   for (const std::uint32_t hclk_Hz : {168'015'960u, 168'015'961u, 168'015'963u, 167'984'037u}) {
     CAPTURE(hclk_Hz);
     auto bus = bus_at(hclk_Hz);

@@ -25,7 +25,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
-    // The driver reads the register when it replaces a waiting pose, and reads it again to change it.
+    // When the driver replaces a waiting pose, it reads the register twice. The second read belongs to a modification.
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
@@ -49,7 +49,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
 
 TEST_CASE("a pose that the host takes while a newer one of the same frame replaces it does not come twice") {
   // Without requests of the host, the driver replaces a report twice per frame: with the spare report and with the
-  // newest.
+  // newest report.
   for (const int replacement : {1, 2}) {
     CAPTURE(replacement);
     FirmwareOnBus bus(flashed_image());
@@ -97,7 +97,7 @@ Setup descriptor_request(std::uint8_t type) {
   return {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{type}, {}, {}, std::byte{64}, {}};
 }
 
-/// The firmware, and a host that sends one SETUP and a token, and a second SETUP at a chosen time.
+/// The firmware, and a host that sends a SETUP, a token and, at a chosen time, a second SETUP.
 struct Race {
   Race() : bus(flashed_image()) { bus.connect(); }
 
@@ -109,7 +109,7 @@ struct Race {
   void interfere() {
     came = true;
     bus.cable.setup(own_address, 0, descriptor_request(configuration_descriptor));
-    // Before the next token, which follows the SETUP by at least 4 us.
+    // This check runs before the next token, which follows the SETUP by at least 4 us.
     auto& scheduler = bus.chip.connections().scheduler;
     scheduler.at(scheduler.now() + ticks(1e-6), [this] {
       if (read || fills) return;  // a register read would disturb the words of a packet

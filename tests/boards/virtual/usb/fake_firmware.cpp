@@ -298,7 +298,7 @@ void FakeFirmware::send_report(std::span<const std::byte> report) {
   write_packet(1, report);
 }
 
-// Long transfers; the FIFO is refilled when it is half empty.
+// Sends long transfers. The FIFO is refilled when it is half empty.
 void FakeFirmware::fill_stream() {
   if (!stream_running_) return;
   if ((read(diepctl(2)) & epena) == 0) {

@@ -56,7 +56,7 @@ class FakeFirmware {
   void stop_everything();
   void stop_in(unsigned endpoint);
   void flush_transmit(unsigned fifo);
-  /// Advances time while it waits.
+  /// Advances time until the bits are clear.
   void wait_until_clear(std::uint32_t offset, std::uint32_t bits);
   void receive_word();
   void handle_setup();

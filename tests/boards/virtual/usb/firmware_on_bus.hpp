@@ -119,9 +119,9 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   };
   Answer control(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
                  std::uint16_t length, std::vector<std::byte> data = {});
-  /// Keeps a request for the next pose pending from now on.
+  /// From now on, a request of the host for the next pose is always pending.
   void keep_asking_for_poses();
-  /// The host also keeps a request for the next controller report pending.
+  /// From now on, a request of the host for the next controller report is always pending.
   void keep_asking_the_controller();
   /// Selects signals for the scope and reads the scope continuously.
   void stream_scope(std::span<const protocol::Signal> signals);
@@ -131,7 +131,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
     send_report(std::as_bytes(std::span(&report, 1)));
   }
   void stop_asking_for_poses() { asks_for_poses_ = false; }
-  /// Rules of the chip that the firmware has violated, as sentences.
+  /// Descriptions of the chip rules that the firmware has violated.
   std::vector<std::string> violations() const;
 
   std::function<void(const protocol::PoseReport&)> on_pose;

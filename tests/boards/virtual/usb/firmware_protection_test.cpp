@@ -46,7 +46,7 @@ protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   return report.crash;
 }
 
-/// The control interrupt runs by this time. A later self-test would fail without motors, and its fault would be stored.
+/// After this time the control interrupt runs. The later self-test would fail without motors and store its fault.
 constexpr double before_self_test_s = 0.05;
 
 constexpr unsigned control_interrupt = 16 + 18;
@@ -55,8 +55,8 @@ void run_into_control_interrupt(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != control_interrupt) bus.run_for(1e-6);
 }
 
-/// Stops directly after a control interrupt. The main loop masks interrupts before it sleeps, which would change the
-/// type of the fault.
+/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps, which would change
+/// the type of the fault.
 void run_into_main_loop(FirmwareOnBus& bus) {
   run_into_control_interrupt(bus);
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);

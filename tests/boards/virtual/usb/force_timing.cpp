@@ -16,8 +16,8 @@ namespace {
 
 using protocol::Signal;
 
-/// The force rises linearly between these values during the measurement, so that its value identifies the time of its
-/// pose.
+/// The force rises linearly between these values during the measurement, so that each force value identifies the time
+/// of the pose.
 constexpr float first_N = -3.0f, last_N = 3.0f;
 
 constexpr std::uint32_t claim_number = 7;

@@ -14,18 +14,17 @@ struct HostileOutcome {
   std::uint64_t answers = 0;        ///< to a SETUP that followed another SETUP
   std::uint64_t wrong_answers = 0;  ///< answers to the earlier SETUP
   std::uint64_t missing_answers = 0;
-  /// The earlier SETUP was refused in the same moment in which the later one arrived. Firmware can set STALL on
-  /// endpoint 0 but cannot clear it (RM0090, OTG_FS_DIEPCTL0), so these few cycles are unavoidable. The next SETUP is
-  /// answered.
+  /// The earlier SETUP was refused at the same time as the later SETUP arrived. Firmware can set STALL on endpoint 0
+  /// but cannot clear it (RM0090, OTG_FS_DIEPCTL0), so this case is unavoidable. The next SETUP is answered.
   std::uint64_t stalled_answers = 0;
   std::vector<std::string> failures;  ///< batches after which the device did not work, and violated rules of the chip
 };
 
-/// Number of consecutive cases on one board. Each case depends only on the previous cases of its row.
+/// Number of consecutive cases on one board. Each case depends only on the previous cases on this board.
 inline constexpr std::uint64_t hostile_cases_in_a_row = 10'000;
 
-/// Runs the cases of the sequence of `seed` from `from` on, up to the case before `end`, after the preceding cases of
-/// their row. Stops at the first failure.
+/// Runs the cases from `from` to `end` (exclusive) of the sequence that `seed` generates. The preceding cases on the
+/// same board run first. Stops at the first failure.
 HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t from, std::uint64_t end,
                           std::uint64_t seed);
 

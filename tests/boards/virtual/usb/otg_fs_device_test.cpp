@@ -1,4 +1,4 @@
-// The core's registers according to RM0090, and its reports of drivers that violate the manual.
+// The registers of the USB core according to RM0090, and the core's reports about drivers that violate RM0090.
 #include <doctest/doctest.h>
 
 #include <array>

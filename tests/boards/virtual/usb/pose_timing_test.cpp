@@ -93,7 +93,7 @@ TEST_CASE("a pose that the host left is replaced by a newer one") {
   bus.keep_asking_for_poses();
   bus.run_for(0.0015);
   REQUIRE(pose.has_value());
-  // Frames have passed, and the report belongs to the last frame.
+  // The pose belongs to the most recent bus frame.
   CHECK(pose->sequence - first.sequence == (taken_at - first_at + ticks(0.0005)) / ticks(0.001));
   CHECK(pose->time_periods - first.time_periods ==
         doctest::Approx((pose->sequence - first.sequence) * 20.0).epsilon(0.005));

@@ -22,7 +22,7 @@ protocol::CommandReport clear_fault(std::uint8_t token) {
   return report;
 }
 
-/// The firmware, and a host that reads poses and controller reports and records both.
+/// The firmware, and a host that reads and records poses and controller reports.
 struct Host {
   Host() : bus(flashed_image()) {
     bus.connect();
@@ -57,7 +57,7 @@ struct Host {
 TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
   Host host;
   std::uint8_t token = 0;
-  // The number of packets before a configuration differs between the rounds, so that both values of a data toggle
+  // The number of packets before a configuration differs between rounds. Therefore both values of the data toggle
   // precede a configuration.
   for (int round = 0; round < 4; ++round) {
     CAPTURE(round);

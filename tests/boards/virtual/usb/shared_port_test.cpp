@@ -32,7 +32,7 @@ struct Program : UsbIpClient {
   }
 };
 
-/// Returns after the board has received all requests sent before.
+/// Returns after the board has received all earlier requests.
 void settle(LiveBoard& board) {
   board.call([&] { board.usb.settle(); });
 }
@@ -61,7 +61,7 @@ TEST_CASE("each report reaches every program that asks, and the first alone rese
       program->ask_for_report(static_cast<std::uint32_t>(11 + i));
     }
   }
-  // A program without a request has missed the reports and receives the next one.
+  // A program without a pending request misses earlier reports and receives the next report.
   late.ask_for_report(10);
   send_report(board, 60);
   CHECK(late.read_report() == 60);

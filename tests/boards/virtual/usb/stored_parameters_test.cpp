@@ -168,8 +168,8 @@ namespace {
 constexpr int tears = 4;
 constexpr std::size_t store_offset = 0x8000, sector_bytes = 0x4000;
 
-/// The store in a chip's flash as memory of the firmware's log. This class prepares contents that would take the board
-/// hours.
+/// The flash of a chip as the memory of the firmware's log. This class prepares store contents that would take the
+/// board hours.
 class StoreSectors final : public link::FlashMemory {
  public:
   explicit StoreSectors(Chip& chip) : words_(reinterpret_cast<std::uint32_t*>(chip.flash().data() + store_offset)) {}
@@ -200,7 +200,7 @@ void put(const StoreImage& image, Chip& chip) {
 
 constexpr std::size_t entry_words = 2 * protocol::parameter_count;
 
-/// Stores one set of all parameters with this stiffness, like this firmware.
+/// Stores a complete parameter set with this stiffness in the format of this firmware.
 void store_set(link::FlashLog& log, float stiffness, std::uint16_t schema = protocol::store_schema) {
   std::vector<std::uint32_t> entries;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
@@ -217,7 +217,7 @@ void store_set(link::FlashLog& log, float stiffness, std::uint16_t schema = prot
 
 constexpr float stored_stiffness = 500.0f;
 
-/// Stores sets until exactly this number of complete records still fits.
+/// Stores sets until there is space for exactly this number of complete records.
 void fill(Chip& chip, std::size_t (*left)(std::size_t room_of_blank)) {
   StoreSectors sectors(chip);
   link::FlashLog log;

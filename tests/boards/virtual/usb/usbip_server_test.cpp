@@ -1,4 +1,4 @@
-// The device as programs on this computer see it: USB/IP over a loopback socket.
+// The device over USB/IP on a loopback socket, as programs on this computer use it.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>

@@ -47,7 +47,7 @@ namespace adc {
 inline constexpr std::uint32_t adc1 = 0x40012000, adc2 = 0x40012100, adc3 = 0x40012200, ccr = 0x40012304;
 inline constexpr std::uint32_t sr = 0x00, cr1 = 0x04, cr2 = 0x08, smpr1 = 0x0C, sqr1 = 0x2C, sqr2 = 0x30, sqr3 = 0x34,
                                jsqr = 0x38, jdr1 = 0x3C, dr = 0x4C;
-/// Sets up stream 0 of DMA2 to copy `items` of the common data register to `to`. `size`: 1 halfword, 2 word.
+/// Sets up stream 0 of DMA2 to copy `items` values of the common data register to `to`. `size`: 1 halfword, 2 word.
 void collect_common_data(std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to);
 std::uint32_t items_left();
 /// Waits for the last item, with a time limit.
