@@ -27,9 +27,9 @@ const Registered campaign_result{
           bytes_of(campaign::text_of({.number = 7, .fault = "motor_open:2", .off_after_s = 1e-3}))};
     }};
 
-/// The recording is read from memory, because a file would take most of the time.
+/// The recording is read from memory, because file accesses would take most of the time.
 const Registered recording_csv{"recording_csv", [](Input input) {
-                                 // A joined force law is never freed, so only the first ones are joined.
+                                 // A joined force law is never freed, so only the first force laws are joined.
                                  static std::size_t laws = 0;
                                  constexpr std::size_t laws_maximum = 1000;
                                  std::string text = text_of(input);
@@ -58,7 +58,7 @@ const Registered signal_names{"signal_names", [](Input input) {
                                 refuse_or_take<device::Error>([&] { recording::parse_quantities(text_of(input)); });
                               }};
 
-/// A report, followed by as many rows as the input has bytes for.
+/// A report, followed by all rows that fit into the input.
 const Registered black_box{"black_box",
                            [](Input input) {
                              protocol::BlackBoxReport report;

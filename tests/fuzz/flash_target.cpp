@@ -35,7 +35,7 @@ void write_record(test::PlainFlash& flash, Input input) {
   }
 }
 
-/// With any flash content, the board starts with a valid parameter set, stores it and starts with it again.
+/// With any flash content, the board starts with a valid parameter set, stores this set and starts with it again.
 void start(Input input) {
   if (input.empty()) return;
   test::PlainFlash flash(sector_words);

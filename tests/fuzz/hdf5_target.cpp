@@ -17,7 +17,7 @@ namespace {
 
 using recording::Handle;
 
-/// Chooses options from the input bytes. After the last byte it returns 0, the option of a valid recording.
+/// Chooses options from the input bytes. After the last input byte the result is 0, the option of a valid recording.
 class Choices {
  public:
   explicit Choices(Input left) : left_(left) {}
@@ -89,7 +89,7 @@ Handle chosen_space(Choices& choices, Rank wanted) {
   }
 }
 
-/// Values of any content for this space, if their number is small.
+/// Returns arbitrary values for this space, or nothing if the space is too large.
 std::string values_of(hid_t type, hid_t space) {
   constexpr std::uint64_t bytes_maximum = 65'536;
   const auto count = static_cast<std::uint64_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));

@@ -5,7 +5,7 @@
 namespace inkwell::fuzz {
 namespace {
 
-/// Each byte is one step of the host; its upper bits choose how much of the following input the step uses.
+/// Each byte is one step of the host. The upper bits of the byte choose how much of the following input the step uses.
 void host(Input input) {
   test::DeviceBench bench;
   const auto take = [&](std::size_t most) {
@@ -25,7 +25,8 @@ void host(Input input) {
         bench.port.in(0);
         bench.device.poll();
         break;
-      // Usually less than one bus frame (20 control periods), because control periods take most of the time.
+      // The time is usually less than one bus frame (20 control periods), because control periods take most of the run
+      // time.
       case 4: bench.run(argument < 12 ? argument + 1 : 20 * (argument - 11)); break;
       case 5: bench.port.frames_run = argument % 2 == 0; break;
       case 6:

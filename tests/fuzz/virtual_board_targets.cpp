@@ -34,7 +34,7 @@ void check_pin(const PinName& pin) {
   if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
 }
 
-/// Reads all values of a request that are parsed before it reaches the board.
+/// Reads all values that the server parses before it passes a request to the board.
 void read_values(Command command, const json& values) {
   switch (command) {
     case Command::run: run_time_s(values); break;
@@ -296,7 +296,7 @@ std::vector<Bytes> gdb_examples() {
   return all;
 }
 
-/// With a first byte of 0, the input is one packet without its frame. Otherwise it is the byte stream in pieces of
+/// With a first byte of 0, the input is one packet without its frame. Otherwise the input is a byte stream in pieces of
 /// this length.
 const Registered gdb_requests{
     "gdb_requests",

@@ -1,4 +1,4 @@
-// What the controller makes of a force law: when it is felt, when it begins anew, and what a number that is none does.
+// A force law in the controller: when it acts, when it restarts, and the effect of a force that is not a number.
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -19,7 +19,7 @@ using protocol::ForceMode;
 using protocol::Signal;
 using protocol::State;
 
-/// Up with 0.5 N, at once and with the largest force far away.
+/// An upward force of 0.5 N, without a ramp and far below the force limit.
 Settings settings_with_law() {
   protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
   set[protocol::Parameter::force_ramp_s] = 0.0f;
@@ -116,12 +116,12 @@ TEST_CASE("a force that is infinite or no number is not felt, and the fault is t
     LawRig rig;
     rig.run(10);
     rig.settings.force_law[dividend] = dividend_N;
-    // The largest number is one, but its square is none, and so it has no direction that could be kept.
+    // The largest float is finite, but its square is infinite, so the direction of the force is undefined.
     rig.settings.force_law[divisor] = dividend_N > 1.0f ? 1.0f : 0.0f;
     rig.run(1);
     CHECK(rig.controller.state() == State::fault);
     CHECK(rig.controller.fault() == Fault::force_law);
-    CHECK(rig.force_z_N() <= 0.5f);  // what it was, or on its way to nothing
+    CHECK(rig.force_z_N() <= 0.5f);  // the previous force, or a decreasing force
     CHECK_FALSE(rig.controller.force_is_on());
     rig.run(1);
     CHECK(rig.force_z_N() == 0.0f);

@@ -41,7 +41,8 @@ class InstructionCounter {
   float instructions_per_tick_;
 };
 
-/// Stage clock of the controller in SysTick ticks. Its cost is that of the board's clock, which also reads a counter.
+/// Stage clock of the controller in SysTick ticks. The stage clock costs as much as the board's clock, which also reads
+/// a counter.
 struct StageClock {
   const InstructionCounter& counter;
   std::uint32_t begin = counter.ticks();

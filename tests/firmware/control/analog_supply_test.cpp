@@ -1,4 +1,4 @@
-// Detection of a wrong VDDA, for chips with a valid factory calibration of the reference and for chips without one.
+// Detection of a wrong VDDA, for chips with and without a valid factory calibration of the reference.
 #include <doctest/doctest.h>
 
 #include <algorithm>

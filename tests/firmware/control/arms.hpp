@@ -33,7 +33,7 @@ inline protocol::ParameterSet parameters_of(std::string_view name) {
   return {};
 }
 
-/// A parallelogram in the Omni's frame.
+/// A parallelogram arm in the Omni's frame.
 inline protocol::ParameterSet omni_parameters() { return parameters_of("omni"); }
 /// The serial Denavit-Hartenberg arm of the paper's Table 1.
 inline protocol::ParameterSet paper_parameters() { return parameters_of("paper"); }

@@ -10,7 +10,7 @@ using inkwell::control::BridgeWire;
 using inkwell::control::look_at;
 using inkwell::control::touches;
 
-/// Returns the number of checks of constant pins until detection; 0 is never.
+/// Returns the number of checks of constant pins until detection; 0 means never.
 int looks(const BridgePins& pins) {
   BridgeWire wire;
   for (int look = 1; look < 1'000; ++look) {

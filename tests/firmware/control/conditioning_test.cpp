@@ -67,7 +67,7 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK(filter.closed == 5);
   show(0, 3);
   CHECK(filter.closed == 5);
-  // A switch that reverts in the same moment in which its change was accepted is also followed.
+  // The filter also follows a switch that reverts in the period in which its change is accepted.
   for (std::uint32_t later = 0; later < 6; ++later) {
     CAPTURE(later);
     SwitchFilter other;
@@ -76,7 +76,7 @@ TEST_CASE("switches count after 5 ms without change") {
     for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) debounce(other, 0, i % SwitchFilter::count);
     CHECK(other.closed == 0);
   }
-  // The other switches have no influence.
+  // The other switches do not affect the filter of this switch.
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 5 : 4, 1);
   CHECK((filter.closed & 4) == 4);
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 1 : 0, 1);
@@ -89,7 +89,7 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   for (int i = 0; i < 5'000; ++i) CHECK_FALSE(update_reference(reference, counts, false));
   CHECK_FALSE(reference.valid);
 
-  // No reference while the arm moves with a closed switch.
+  // No reference is recorded while the arm moves with a closed switch.
   for (int i = 0; i < 3'000; ++i) {
     if (i % 1'000 == 0) counts[1] += i == 1'000 ? -2 : 2;
     CHECK_FALSE(update_reference(reference, counts, true));
@@ -105,13 +105,13 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   CHECK(reference.counts[0] == 100);
   CHECK(reference.counts[1] == -18);
 
-  // Removed, moved and inserted again: a new reference.
+  // A stylus that is removed, moved and inserted again causes a new reference.
   update_reference(reference, counts, false);
   counts[0] = 104;
   for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
   CHECK(reference.counts[0] == 104);
 
-  // After forget() with the stylus in the inkwell, the reference is recorded again after the same time.
+  // After forget() with the stylus in the inkwell, a new reference is recorded after the usual time.
   forget(reference, false);
   CHECK_FALSE(reference.valid);
   for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)

@@ -1,4 +1,4 @@
-// The allowed change of a motor current per control period, and its immediate detection.
+// The allowed change of a motor current per control period, and the immediate detection of a larger change.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct HeldArm {
     return periods;
   }
 
-  /// Adjusts the wall stiffness until the reading of this motor is `current_A`.
+  /// Adjusts the wall stiffness until the current reading of this motor is `current_A`.
   void press(std::size_t motor, float current_A) {
     for (int i = 0; i < 10; ++i) {
       REQUIRE(run(3'000) == 3'000);

@@ -1,5 +1,5 @@
 // Kinematics and virtual work compared with an independent double-precision reference of rotation matrices. The paper's
-// arm uses Denavit-Hartenberg transforms, the Omni the transforms published by the Ubitrack project.
+// arm uses Denavit-Hartenberg transforms. The Omni uses the transforms published by the Ubitrack project.
 #include <doctest/doctest.h>
 
 #include <algorithm>

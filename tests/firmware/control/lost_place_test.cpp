@@ -1,5 +1,5 @@
-// Detection of wrong encoder counts. The reference is then void whatever fault is reported. Only an inkwell switch that
-// was open and closes again restores the reference.
+// Detection of wrong encoder counts. Wrong counts void the reference, whichever fault is reported. The reference is
+// restored only after the inkwell switch has opened and closed again.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -67,7 +67,7 @@ TEST_CASE("a motor at rest without current may have the bearable voltage, and wh
 TEST_CASE("what a bridge takes at least is missed in a voltage that is too small for a current with one sign") {
   constexpr BridgeLoss loss{0.4f, 0.5f};
   for (const float sign : {1.0f, -1.0f}) {
-    // 2 V for the resistance, which may be too high by 28 %.
+    // The resistance accounts for 2 V, and its value may be 28 % too high.
     for (const float bridge_V : {0.4f, 0.5f})
       CHECK(looks(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
     const float least_V = 2.0f + 0.4f - MotorWatch::bearable_V - 0.56f;
@@ -76,7 +76,7 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
     const float most_V = 2.0f + 0.5f + MotorWatch::bearable_V + 0.86f;
     CHECK(looks(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(looks(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
-    // Brushes also cause a voltage drop, but not reliably: the tolerance is not larger than the dead-time loss.
+    // The lower bound assumes at most the dead-time loss, because the voltage drop of brushes is not reliable.
     CHECK(looks(0, sign * (2.0f + 0.5f - MotorWatch::bearable_V - 0.56f + 0.02f), sign * 1.0f, 0.0f, {0.9f, 0.5f}) ==
           never);
     // A small current may change sign in each PWM period, and the dead time then has no net effect.
@@ -111,7 +111,7 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
     CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorWatch::bearable_V));
     CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorWatch::bearable_V));
     CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorWatch::bearable_V));
-    // Correction with the heating at the continuous current: 39 % more.
+    // The heating at the continuous current increases the resistance by 39 %.
     const auto warmer = Resistance::of(2.5f, 1.0f, 2.0f);
     CHECK(warmer.value_ohm == doctest::Approx(1.39 * 2.5));
     CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorWatch::bearable_V));
@@ -122,7 +122,7 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
 }
 
 TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
-  // 4 V beyond the tolerance, with one check every three periods.
+  // The voltage is 4 V beyond the tolerance, and one check runs every three periods.
   const float voltage_V = 4.0f + MotorWatch::bearable_V;
   const float look_Vs = 4.0f * 3.0f * protocol::servo_period_s;
   CHECK(looks(0, voltage_V, 0.0f, 0.0f) == static_cast<int>(MotorWatch::bearable_flux_Vs / look_Vs) + 1);
@@ -173,8 +173,8 @@ TEST_CASE("the model of each arm: its resistances, and the torque constants with
           doctest::Approx(std::max(set[link_2_m], set[link_3_m]) * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
-/// An arm pressed into three walls so hard that each motor needs a different voltage. The reading of motor `lying` does
-/// not change.
+/// An arm that is pressed into three walls with a force at which each motor needs a different voltage. The reading of
+/// motor `lying` does not change.
 struct PressedArm {
   protocol::ParameterSet parameters = [] {
     using enum protocol::Parameter;
@@ -238,7 +238,7 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     tests::run(arm.controller, arm.samples, arm.settings,
                control::SwitchFilter::settle_periods + control::InkwellReference::still_periods + 10);
     CHECK(arm.controller.state() == protocol::State::ready);
-    // The sum was cleared: with a healthy motor the force remains on.
+    // The deviation sum was cleared, so the force remains on with a healthy motor.
     arm.controller.carry_out(tests::command(protocol::Command::enable_force));
     arm.run(1);
     CHECK(arm.run(4'000) == 4'000);

@@ -11,7 +11,7 @@ using protocol::Signal;
 
 constexpr std::uint32_t periods_before_wrap = 500;
 
-/// Returns a plane in contact with the probe whose life ends 20 ms after the wrap.
+/// Returns a plane that touches the probe and expires 20 ms after the wrap.
 control::Shapes plane_over_the_wrap(const control::Vector3& probe_m) {
   control::Shapes shapes;
   shapes.planes[0] = {.normal = {0.0f, 0.0f, 1.0f}, .offset_m = probe_m.z + 0.002f};

@@ -135,7 +135,7 @@ TEST_CASE("a program that takes the walls' place, and gives it back, is felt wit
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);
-  // The program stops sending: after the expiry of its force, the walls act again.
+  // The program stops sending. After its force has expired, the walls act again.
   CHECK(arm.largest_step_N(100) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   CHECK(arm.controller.force_sources() == bit(ForceSource::walls));
@@ -333,7 +333,7 @@ TEST_CASE("a program moves nothing while the force is off, and is ramped in with
   CHECK(controller.signals()[Signal::force_x_N] == 0.0f);
   controller.carry_out(tests::command(protocol::Command::enable_force));
   tests::run(controller, tests::samples_at_rest(), settings, 21);
-  // 20 of the 5000 periods of the ramp.
+  // 20 of the 5000 periods of the ramp have passed.
   CHECK(controller.signals()[Signal::force_x_N] == doctest::Approx(2.0f * 20 / 5000).scale(0).epsilon(2e-4));
 }
 
@@ -347,7 +347,7 @@ TEST_CASE("what is left of a jump is forgotten when the force goes off") {
   arm.run(2);
   arm.controller.carry_out(tests::command(protocol::Command::enable_force));
   arm.run(21);
-  // 20 of the 5000 periods of the ramp, of the wall's 1 N and the floor's 2 N.
+  // 20 of the 5000 periods of the ramp have passed, for the wall's 1 N and the floor's 2 N.
   CHECK(arm.force_N().z == doctest::Approx(3.0f * 20 / 5000).scale(0).epsilon(2e-4));
 }
 

@@ -34,7 +34,7 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
   const auto told = told_V(pulses, scale);
   REQUIRE(told.size() == SelfTestPulses::round_periods);
   CHECK(told.size() < 300);
-  // 0.7 A if the limit and the voltage allow it.
+  // The amplitude is 0.7 A if the limit and the voltage allow this current.
   const Triple high_V{1.4f + dead_V, 2.0f + dead_V, 7.5f + dead_V};
   const Triple low_V{0.56f + dead_V, 0.8f + dead_V, 3.0f + dead_V};
   for (std::size_t period = 0; period < told.size(); ++period) {

@@ -44,7 +44,7 @@ struct FastArm : TurningArm {
       fastest_m_per_s = std::max(fastest_m_per_s, speed_m_per_s);
       const float along_N = speed_m_per_s > 0.01f ? dot(force, velocity_m_per_s) / speed_m_per_s : 0.0f;
       const float part = speed_m_per_s / speed_limit_m_per_s;
-      // The force takes 1 ms to change, so the range in between is not evaluated.
+      // The force takes 1 ms to change, so speeds between 78 % and 92 % of the limit are not evaluated.
       if (part > 0.92f) at_fast_N = std::max(at_fast_N, std::fabs(along_N));
       if (part < 0.78f) at_slow_N = std::max(at_slow_N, std::fabs(along_N));
       return along(velocity_m_per_s, force_N);

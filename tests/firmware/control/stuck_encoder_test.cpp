@@ -1,4 +1,4 @@
-// Detection of a stuck encoder, and motions that must not be detected as one.
+// Detection of a stuck encoder, and motions that must not be reported as a stuck encoder.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -64,7 +64,7 @@ TEST_CASE("pressed, let go and pressed again: two changes are borne, whichever w
 }
 
 TEST_CASE("what changed before it came to stand does not count") {
-  // From 0 to 5.8 A, with a step of two counts in the middle.
+  // The current rises from 0 to 5.8 A, and the encoder moves by two counts in the middle of the rise.
   const auto stepping = [](float time_s) { return time_s < 0.45f ? 100 : 102; };
   CHECK(told(standing, rising(0.0f, 5.8f)));
   CHECK_FALSE(told(stepping, rising(0.0f, 5.8f)));
@@ -73,7 +73,7 @@ TEST_CASE("what changed before it came to stand does not count") {
 }
 
 TEST_CASE("what changed up to the look in which a joint breaks loose does not count for where it stands next") {
-  // The joint moves somewhere within the current rise. Two more current changes follow while the joint is stationary.
+  // The joint moves once during the current rise. The joint is stationary during two further current changes.
   const auto current_A = [](int look) {
     if (look >= 3'500) return look < 5'000 ? 0.0f : 0.8f;
     return 0.8f * std::clamp(static_cast<float>(look - 2'000) / 400.0f, 0.0f, 1.0f);

@@ -1,4 +1,4 @@
-// Detection of supply ripple, and its distinction from steps, loads and a braked arm.
+// Detection of supply ripple, and the distinction of ripple from steps, loads and a braked arm.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ TEST_CASE("a step, a sag, a spike and a supply that is cut are no ripple") {
               return time_s < 0.5f || time_s > 0.5f + length_s ? nominal_V : other_V;
             }) == never);
   }
-  // Power-on during the check.
+  // The supply is switched on during the check.
   CHECK(periods_until_ripple([](float time_s) { return time_s < 0.5f ? 0.0f : nominal_V; }) == never);
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("looks that are skipped, and a count of periods that wraps, change not
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0xFFFF'FF00u) == sound);
   CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0, 5) == doctest::Approx(sound).epsilon(0.02));
   CHECK(periods_until_ripple(swing(5.0f, 20.0f), 0xFFFF'0000u, 5) == never);
-  // The mean follows with a time constant; the remaining deviation would exceed the bound for longer.
+  // The mean follows the supply with a time constant of `within_periods`.
   for (const std::uint32_t every : {1u, 7u}) {
     SupplyRipple ripple = watch;
     ripples(ripple, counts_of(12.0f), 0);

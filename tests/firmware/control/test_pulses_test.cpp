@@ -56,7 +56,7 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   }
 }
 
-/// Force of a hand that balances the torque of one motor and none of the other motors: J' F = torque, by Cramer's rule.
+/// Hand force that balances the torque of one motor only: J' F = torque, by Cramer's rule.
 double held_N(const control::Jacobian& jacobian, std::size_t motor, double torque_Nm) {
   const auto column = [&](std::size_t i) {
     const control::Vector3& v = jacobian.column[i % 3];

@@ -166,7 +166,7 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   settings.limits.over_current_A[1] = lowered_A;
   run_with_host(controller, samples, settings, 1);
   CHECK(controller.force_is_on());
-  // A current that falls by 15 mA per period.
+  // The current falls by 15 mA per period.
   for (float left_A = current_A; left_A > lowered_A; left_A -= 0.015f) {
     samples.current_A[1] = left_A;
     run_with_host(controller, samples, settings, 1);
@@ -175,7 +175,7 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   samples.current_A[1] = lowered_A - 0.01f;
   run_with_host(controller, samples, settings, 300);
   CHECK(controller.force_is_on());
-  // A raised limit applies before the current can have followed.
+  // A raised limit applies before the current can follow.
   settings.limits.over_current_A[1] = current_A + 0.01f;
   run_with_host(controller, samples, settings, 3);
   samples.current_A[1] = current_A;

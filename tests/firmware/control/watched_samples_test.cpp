@@ -77,8 +77,8 @@ TEST_CASE("a supply that dips or rises for a control period, but not far, is bor
   }
 }
 
-/// Returns the fault of a ready controller after a move to these angles. The third angle is that of the elbow, from
-/// link 2 to link 3.
+/// Returns the fault of a ready controller after a move to these angles. The third angle is the elbow angle from link 2
+/// to link 3.
 Fault fault_at(const Settings& settings, const control::Triple& at_stops_rad) {
   control::Triple joint_rad = at_stops_rad;
   if (settings.arm.transmission == control::Transmission::parallelogram) joint_rad[2] += joint_rad[1];

@@ -12,7 +12,7 @@ namespace {
 using namespace inkwell;
 using namespace inkwell::force_laws;
 
-/// A law with the defaults of its rows, stepped from period to period.
+/// Runs a law with the default values of its parameters, one step per control period.
 template <class Law>
 struct Stepped {
   typename Law::Parameters parameters{};
@@ -25,7 +25,7 @@ struct Stepped {
     probe.wall = {800.0f, 2.0f};
   }
   Vector3 step() { return Law::force_N(probe, parameters, state, signals); }
-  /// Moves the probe in a straight line and gives the last force.
+  /// Moves the probe in a straight line and returns the last force.
   Vector3 move(const Vector3& to_m, int periods) {
     const Vector3 way_m = to_m - probe.position_m;
     const Vector3 begin_m = probe.position_m;
@@ -87,12 +87,12 @@ TEST_CASE("a dial counts its notches there and back, and pulls to the middle of 
   const Vector3 begin_m{law.parameters.x_m + radius_m, law.parameters.y_m, 0.0f};
   law.probe.position_m = begin_m;
   CHECK(law.step() == Vector3{});
-  // A quarter of a notch further the force is largest and points back.
+  // After a quarter of a notch, the force is largest and points back.
   const Vector3 quarter_m = begin_m + Vector3{0.0f, 0.25f * law.parameters.notch_m, 0.0f};
   CHECK(law.move(quarter_m, 200).y == doctest::Approx(-law.parameters.force_N).epsilon(0.01));
   law.move(begin_m + Vector3{0.0f, 0.8f * law.parameters.notch_m, 0.0f}, 400);
   CHECK(law.signals.passed_notches == 1.0f);
-  // Not back at once: the notch is kept a little.
+  // Because of hysteresis, the notch count does not decrease yet.
   law.move(begin_m + Vector3{0.0f, 0.45f * law.parameters.notch_m, 0.0f}, 400);
   CHECK(law.signals.passed_notches == 1.0f);
   law.move(begin_m, 400);
@@ -112,7 +112,7 @@ TEST_CASE("generated C code keeps its state: the mass swings, comes to rest at t
     law.step();
     fastest_m_per_s = std::fmax(fastest_m_per_s, law.signals.speed_m_per_s);
   }
-  // v = x sqrt(k / m), a little less for the damping.
+  // The peak speed is x sqrt(k / m), slightly reduced by the damping.
   CHECK(fastest_m_per_s == doctest::Approx(0.005 * std::sqrt(200.0 / 0.2)).epsilon(0.15));
   CHECK(law.signals.speed_m_per_s < 1e-3f);
   law.state = {};

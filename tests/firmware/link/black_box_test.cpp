@@ -185,7 +185,7 @@ TEST_CASE("a late main loop misses rows but neither the fault's period nor anybo
     CHECK(board.box->report().fault_periods == 1007);
     CHECK(board.periods() == around_fault);
   }
-  // So late that the interrupt overwrote samples.
+  // The main loop is so late that the interrupt has overwritten samples.
   Board board;
   for (int i = 0; i < 20; ++i) {
     board.pass(51, State::active);
@@ -332,7 +332,7 @@ TEST_CASE("memory after power-up is never taken for a black box") {
     if (i % 3 != 2) {
       fill(board.memory);
     } else {
-      // Everything after the hash of the tables, as if random memory contained a matching hash.
+      // Fills the memory after the hash of the tables, as if random memory contained a matching hash.
       fill(board.memory.notes.cause);
       fill(board.memory.ring);
       fill(board.memory.line);
@@ -374,7 +374,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
       const std::size_t before = board.box->report().rows_before;
       REQUIRE(before <= rows_before);
       CHECK(board.box->report().fault_periods == (is_kept ? 1007 : periods.empty() ? 0 : 1000));
-      // The remaining rows are consecutive up to the fault, and from the fault on.
+      // The remaining rows are consecutive on both sides of the fault.
       REQUIRE(periods.size() - before <= expected.size() - rows_before);
       for (std::size_t i = 0; i < periods.size(); ++i)
         CHECK(periods[i] == expected[i < before ? rows_before - before + i : rows_before + i - before]);
@@ -385,7 +385,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
 TEST_CASE("rows of an image with other tables are not shown by this one") {
   Board board;
   meet_fault(board);
-  // The same memory with the layout for another number of rows.
+  // The same memory is read with the layout for another number of rows.
   auto& other = reinterpret_cast<link::BlackBoxMemory<rows_before - 1, rows_from_fault + 1>&>(board.memory);
   link::BlackBox box(*board.samples, other);
   box.start(Fault::none, {});

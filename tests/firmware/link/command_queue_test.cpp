@@ -97,7 +97,7 @@ TEST_CASE("commands come out in order, one a period, and their tokens with them"
   CommandQueue queue;
   CHECK(queue.take() == nullptr);
   CHECK_FALSE(queue.take_sign_of_life());
-  // Several times around the ring.
+  // The commands wrap around the ring several times.
   std::uint8_t next = 0;
   for (int round = 0; round < 10; ++round) {
     for (int i = 0; i < 3; ++i) CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(next + i))));

@@ -18,8 +18,8 @@ constexpr std::uint32_t erased = 0xFFFF'FFFF;
 
 struct PowerCut {};
 
-/// Flash memory like that of the chip. Programming only clears bits, and a power loss leaves the interrupted word or
-/// sector partly written.
+/// Flash memory with the behavior of the chip's flash. Programming only clears bits, and a power loss leaves the
+/// interrupted word or sector partly written.
 class FakeFlash final : public FlashMemory {
  public:
   FakeFlash() {
@@ -108,7 +108,7 @@ std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
 
 struct Begin {
   std::string name;
-  /// Creates the content, and returns the number of its stored set, or 0.
+  /// Creates flash content, and returns the number of the stored set, or 0.
   std::function<std::uint32_t(FakeFlash&)> make;
 };
 

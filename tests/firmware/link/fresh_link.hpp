@@ -1,5 +1,5 @@
 // One Link object for all tests, constructed again for each test, because its scope frames fill half of the chip's
-// memory. For the same reason its black box has fewer rows than on the board.
+// memory. The black box of the Link object has fewer rows than on the board, for the same reason.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ inline void interrupt(link::Link& link, const protocol::SignalValues& signals, s
   interrupt(link, signals, {.state = protocol::State::ready, .periods = period});
 }
 
-/// Records one period and packs it for the scope.
+/// Records the sample of one period and packs the sample for the scope.
 inline void record(link::Link& link, const protocol::SignalValues& signals, std::uint32_t period) {
   interrupt(link, signals, period);
   link.scope.pack();

@@ -21,7 +21,7 @@ struct PushedBoard : test::SelfTestBoard {
     run_while(State::testing);
   }
 
-  /// Runs a self-test during which the arm moves. The motors cannot be measured then.
+  /// Runs a self-test during which the arm moves. The motors cannot be measured while the arm moves.
   void test_while_it_moves() {
     controller.carry_out(tests::command(Command::self_test));
     run(1);
@@ -111,7 +111,7 @@ TEST_CASE("a motor that its current has warmed since the test gets the voltage f
   PushedBoard board;
   board.test_after_start();
   board.make_active();
-  // Only the current heats the model, so the test shortens its time constants.
+  // Only the current heats the motor model, so the test shortens the model's time constants.
   board.settings.heat.housing_per_update = board.settings.heat.winding_per_update = 0.05f;
   board.push(20'000);
   const float heat = board.controller.motor_heat()[board.strongest];

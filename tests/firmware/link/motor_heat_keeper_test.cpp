@@ -55,7 +55,7 @@ MotorHeatKeeper fresh() {
   return keeper;
 }
 
-/// Two records have been written, the second one to the second slot.
+/// Two records have been written, the second record to the second slot.
 Memory memory_with(const Warmth& first, const Warmth& second) {
   MotorHeatKeeper keeper = fresh();
   keeper.leave(first);
@@ -116,7 +116,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
     keeper.leave(warmer);
     check_is(keeper.start(false), warmer);
   }
-  // An interrupted write of another heat, at each of its words.
+  // The write of another heat is interrupted at each of its words.
   Memory other = memory_with(warm, warmer);
   for (std::size_t end = 1; end < check; ++end) {
     Memory cut = other;

@@ -19,8 +19,8 @@ namespace {
 
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 
-/// Sends an invalid transaction. Checks the reported reason, parameter and value, that no parameter has changed, and
-/// that the interrupt receives no new settings.
+/// Sends an invalid transaction. Checks the reported reason, parameter and value. Checks that no parameter has changed
+/// and that the interrupt receives no new settings.
 void check_refused(ParameterStore& store, std::span<const std::byte> report, Refusal reason, std::uint16_t id = 0,
                    float value = 0.0f, bool force_is_on = false) {
   const protocol::ParameterSet before = store.values();
@@ -127,7 +127,7 @@ TEST_CASE("each refusal tells its reason and leaves everything as it was") {
   const std::uint16_t stiffness = id_of(Parameter::wall_stiffness_N_per_m);
   const float infinity = std::numeric_limits<float>::infinity();
   const float not_a_number = std::numeric_limits<float>::quiet_NaN();
-  // A valid entry before the invalid one must not take effect either.
+  // A valid entry before the invalid entry must have no effect.
   const protocol::ParameterEntry good = entry(Parameter::wall_damping_Ns_per_m, 5.0f);
 
   SUBCASE("wrong version") {

@@ -258,7 +258,7 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   scope.select(second, 3);
   const std::uint32_t start = period;
   for (int i = 0; i < 800; ++i) test::record(fresh, signals_at(period), period), ++period;
-  // The frame that was being sent is still complete, and its token identifies its selection.
+  // The frame that was being sent is still complete, and the token of the frame identifies the signal selection.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
     ScopeFrameHeader header;

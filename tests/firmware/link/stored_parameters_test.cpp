@@ -31,7 +31,7 @@ constexpr Parameter force_limit = Parameter::force_limit_N, link_length = Parame
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 float default_of(Parameter parameter) { return link::image_defaults()[parameter]; }
 
-/// The firmware from start-up on.
+/// A firmware that has started with the contents of `flash`.
 struct Board {
   link::ParameterStore parameters;
   link::StoredParameters stored;
@@ -80,7 +80,7 @@ FlashLog log_of(PlainFlash& flash) {
   return log;
 }
 
-/// Writes a record of any firmware.
+/// Writes a record that any firmware version could have written.
 void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
   std::vector<std::uint32_t> payload;
   for (const auto& [id, value] : entries) {
@@ -239,7 +239,7 @@ TEST_CASE("stored parameters: what stands there already is not written again") {
   CHECK(board.store() == StoreResult::done);
   CHECK(flash.words_programmed == more);
   CHECK(board.report().commands == 3);
-  // A firmware replaces the record of another firmware.
+  // A newer firmware replaces the record of the previous firmware.
   Board newer(flash, {1, 2, 4});
   CHECK(newer.held(force_limit) == 1.5f);
   CHECK(newer.store() == StoreResult::done);
@@ -495,7 +495,7 @@ TEST_CASE("stored parameters: a bit that changes in any word of what is written,
   board.set(force_limit, 1.2345f);
   REQUIRE(board.store() == StoreResult::done);
   CHECK(board.stored.is_intact());
-  // The members are private. The value of the force limit is unique, so the test finds the members by it.
+  // The members are private. The value of the force limit is unique, so the test finds the members by this value.
   auto* const bytes = reinterpret_cast<std::byte*>(&board.stored);
   unsigned places = 0;
   for (std::size_t at = 0; at < sizeof board.stored; at += sizeof(float)) {

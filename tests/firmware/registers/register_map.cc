@@ -1,5 +1,4 @@
-// The firmware's register map for the compiler to write down as debug information, which it does for what is
-// instantiated, and under the names that a class gives.
+// Instantiates all register maps of the firmware, so that the debug information contains them under their class names.
 #include <registers/peripherals.hpp>
 
 namespace inkwell::registers {

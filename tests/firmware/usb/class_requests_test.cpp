@@ -1,4 +1,4 @@
-// Requests of HID, of the firmware update class, and for the device's reports.
+// HID requests, firmware update requests, and requests for the device's reports.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -193,7 +193,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
   const float value = report.entries[row].value;
   CHECK(value == 321.0f);
 
-  // A refusal is not a stall. The transaction report shows it.
+  // A refusal is not a stall. The transaction report shows the refusal.
   const test::Transaction bad{{9999, 0, 1.0f}};
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, 20), bad.bytes()) == done_result);
   result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
@@ -425,7 +425,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
     }
   // The id in the data differs from the id in the request.
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, sizeof good), bytes_of(good)) == stall_result);
-  // Too short and too long.
+  // Reports that are too short or too long are refused.
   for (const std::size_t size : {1u, 44u}) CHECK(bench.set_report(2, good, size) == stall_result);
   const std::array<std::byte, 46> longer{std::byte{2}};
   CHECK(bench.set_report(2, longer) == stall_result);

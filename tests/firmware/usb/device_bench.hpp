@@ -128,7 +128,7 @@ struct DeviceBench {
     return report;
   }
 
-  /// Simulates control interrupts. They carry out commands and record samples, but the signals are test values.
+  /// Simulates control interrupts, which carry out commands and record samples. The signals are test values.
   void run(std::uint32_t count, protocol::State state = protocol::State::ready,
            protocol::Fault fault = protocol::Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {

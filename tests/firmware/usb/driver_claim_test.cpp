@@ -1,4 +1,4 @@
-// Arbitration of the driver by the USB device.
+// The USB device decides which program is the driver.
 #include <doctest/doctest.h>
 
 #include "device_bench.hpp"

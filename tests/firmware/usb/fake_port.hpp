@@ -1,4 +1,4 @@
-// A software port with a host that sends and receives single packets, valid or invalid.
+// A software port with a host that sends and receives single valid or invalid packets.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ struct InPacket {
   Bytes data{};
 };
 
-/// Behaves as usb::Port documents. The test fails if the device violates the documented rules.
+/// Behaves as documented in usb::Port. The test fails if the device violates the documented rules.
 class FakePort final : public usb::Port {
  public:
   // ---- device side ----
@@ -120,7 +120,7 @@ class FakePort final : public usb::Port {
     frame_.number = frame_.count % 2048;
   }
   bool frames_run = true;
-  /// The host polls this endpoint once, directly before the device cancels its transfer.
+  /// The host polls this endpoint once, directly before the device cancels the transfer.
   std::optional<std::uint8_t> asked_in_cancel;
 
   void reset() {
@@ -133,7 +133,7 @@ class FakePort final : public usb::Port {
   void suspend() { push(usb::Event::Kind::suspend); }
   void resume() { push(usb::Event::Kind::resume); }
 
-  /// Sends a SETUP packet. It is never refused, and it ends a stall of endpoint 0.
+  /// Sends a SETUP packet, which is never refused and which ends a stall of endpoint 0.
   void setup(std::span<const std::byte> packet) {
     at(0x00).stalled = at(0x80).stalled = false;
     at(0x00).armed = false;

@@ -36,7 +36,8 @@ struct FullQueue : test::DeviceBench {
     return handshake;
   }
 
-  /// The interrupt removes commands again. All commands arrive in order, and the endpoint accepts the next command.
+  /// The interrupt resumes the removal of commands. All commands arrive in order, and the endpoint accepts the next
+  /// command.
   void check_nothing_was_lost() {
     CHECK(offer(Command::clear_fault) == Handshake::nak);
     run(1);

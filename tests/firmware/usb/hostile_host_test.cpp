@@ -21,7 +21,7 @@ namespace {
 
 void check_alive(DeviceBench& bench) { CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18); }
 
-/// A SET_REPORT of all parameters has 13 packets. It is the longest transfer that endpoint 0 uses completely.
+/// A SET_REPORT of all parameters has 13 packets and is the longest transfer that endpoint 0 uses completely.
 constexpr usb::SetupPacket set_parameters = {0x21, 9, 0x0311, 0, sizeof(protocol::ParametersReport)};
 
 std::uint32_t transactions(DeviceBench& bench) {
@@ -100,13 +100,13 @@ TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
     check_alive(bench);
   }
   CHECK(transactions(bench) == 0);
-  // In the status stage of a write, before and after the host read it.
+  // The next SETUP arrives in the status stage of a write, before and after the host reads the status.
   bench.setup(request(0x00, 9, 1, 0, 0));
   check_alive(bench);
   bench.setup(request(0x00, 9, 1, 0, 0));
   bench.port.in(0);
   check_alive(bench);  // the next SETUP arrives before the device has processed the end of the status stage
-  // In the status stage of a read.
+  // The next SETUP arrives in the status stage of a read.
   bench.setup(request(0x80, 6, 0x0100, 0, 18));
   bench.port.in(0);
   check_alive(bench);
@@ -179,7 +179,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
   for (const std::size_t size : {std::size_t{64}, std::size_t{65}, std::size_t{127}, std::size_t{128}, std::size_t{129},
                                  sizeof(protocol::ParametersReport)}) {
     CAPTURE(size);
-    // The number of entries must fit the length, because a shorter report is refused.
+    // The number of entries must match the length, because a shorter report is refused.
     test::Transaction transaction{};
     auto& report = transaction.report();
     report.count = static_cast<std::uint16_t>((size - protocol::parameters_report_size(0)) / sizeof(*report.entries));

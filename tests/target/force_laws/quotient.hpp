@@ -1,4 +1,4 @@
-// A force law that divides by a parameter, to test a division by zero. Its signals show some of its inputs.
+// A force law that divides by a parameter, to test a division by zero. The signals of the law show some of its inputs.
 #pragma once
 
 #include <control/force_law.hpp>
