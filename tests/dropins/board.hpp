@@ -10,7 +10,7 @@
 
 namespace inkwell::tests {
 
-/// Stylus position at which the hand of these tests rests; all coordinates differ.
+/// Rest position of the stylus in the hand of these tests; all coordinates differ.
 inline constexpr device::Vector3 held_point_m{0.02, 0.01, -0.03};
 inline constexpr double hand_N_per_m = 300;
 

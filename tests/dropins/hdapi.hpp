@@ -1,4 +1,4 @@
-// The declarations of a program's HDAPI header that the tests use, written from the published reference.
+// HDAPI declarations that the tests use, written from the published reference.
 #pragma once
 
 extern "C" {

@@ -123,7 +123,7 @@ TEST_CASE("a thread that is cancelled while it waits for the scheduler ends ther
   hdStartScheduler();
   int ticks = 0;
   CHECK(until([&] { return ++ticks == 20; }));
-  // While the scheduler is stopped, the scheduling thread calls its callbacks. The thread may be canceled in them.
+  // While the scheduler is stopped, the scheduling thread calls its callbacks and may be canceled in a callback.
   hdStopScheduler();
   CHECK(CancelledThread([] {
           hdScheduleSynchronous(

@@ -1,4 +1,4 @@
-// libHD.so, linked by a program, with a virtual board: devices, frames and the frames' values.
+// libHD.so, linked by a program, with a virtual board: devices, frames and values.
 #include <doctest/doctest.h>
 
 #include <array>

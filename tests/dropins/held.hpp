@@ -13,7 +13,7 @@
 
 namespace inkwell::tests {
 
-/// The newest error; checks that no second error is queued.
+/// Returns the newest error, and checks that no second error is queued.
 inline HDerror only_error() {
   const auto error = hdGetError();
   CHECK(hdGetError().errorCode == HD_SUCCESS);
@@ -24,7 +24,8 @@ inline bool says(HDerror code, const std::string& words) {
   return std::string(hdGetErrorString(code)).find(words) != std::string::npos;
 }
 
-/// Runs `condition` in the servo thread in each tick until it is true; false if it is not true after `ticks` ticks.
+/// Evaluates `condition` in each tick of the servo thread until the condition is true. Returns false after `ticks`
+/// ticks.
 inline bool until(std::function<bool()> condition, int ticks = 20'000) {
   struct State {
     std::function<bool()> condition;

@@ -13,7 +13,7 @@
 namespace inkwell::tests {
 namespace {
 
-/// Much longer than the test.
+/// Waiting time that is much longer than the test.
 constexpr double long_s = 1000;
 
 TEST_CASE("a thread that is cancelled in a call that waits ends there, and the arm goes on") {
@@ -56,7 +56,7 @@ TEST_CASE("a thread that is cancelled in a call that waits ends there, and the a
         }).ends_when_cancelled());
   board.control.resume();
 
-  // A call that frees memory runs to its end.
+  // A call that frees memory is completed before the cancellation.
   inkwell_arm* second = nullptr;
   REQUIRE(inkwell_open(board.address.c_str(), &second) == INKWELL_OK);
   std::atomic<int> closed = -1;

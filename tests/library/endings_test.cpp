@@ -1,5 +1,5 @@
-// Every command of every interface, immediately followed by every kind of program exit: a command that has returned
-// was executed.
+// Every command of every interface, followed immediately by every kind of program exit. A command that has returned
+// must have been executed.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -54,7 +54,7 @@ std::vector<Interface> interfaces() {
   return all;
 }
 
-/// A board with the stylus outside the inkwell, and a watching arm.
+/// A board with the stylus outside the inkwell, and a second arm object that observes the board.
 struct Watched : Board {
   VirtualArm watcher{address};
   std::optional<VirtualArm> driver;  ///< the arm whose force is stopped
@@ -66,7 +66,7 @@ struct Watched : Board {
     watcher.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
   }
 
-  /// The next pose, also after a cable was plugged in again.
+  /// Returns the next pose, even after a cable was connected again.
   inkwell_pose newest() {
     inkwell_pose pose;
     for (int i = 0; i < 6'000; ++i) {
@@ -83,7 +83,7 @@ struct Watched : Board {
     while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  /// Repeats a call of the watcher while poses are missing: after a cable was unplugged, or on a busy computer.
+  /// Repeats a call of the watcher while poses are missing, after a cable was unplugged or on a busy computer.
   template <class Call>
   void require(Call call) {
     auto result = INKWELL_DISCONNECTED;

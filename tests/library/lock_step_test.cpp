@@ -1,4 +1,4 @@
-// A program and its virtual board in lock step: no pose is missed, no force is late, and a seed repeats the same run.
+// A program and its virtual board in lock step: no pose is missed, no force is late, and the same seed repeats the run.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Samples {
   bool operator==(const Samples&) const = default;
 };
 
-/// One recording of these signals.
+/// Returns one recording of these signals.
 Samples record(inkwell_arm* arm, const std::vector<const char*>& signals, std::size_t rows) {
   Samples samples{std::vector<float>(rows * signals.size()), std::vector<std::uint32_t>(rows)};
   REQUIRE(inkwell_select_signals(arm, signals.data(), signals.size()) == INKWELL_OK);
@@ -67,7 +67,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   arm.make_active();
   SUBCASE("100 recordings during a servo") {
     constexpr int recordings = 100;
-    // The commands that select signals replace two force reports; the effect ends after 2 ms.
+    // The commands that select signals replace two force reports; the effect disappears after 2 ms.
     constexpr std::size_t displaced = 60, rows = 100;
     constexpr double N_per_s = 0.5;
     inkwell_pose begin;
@@ -127,7 +127,7 @@ TEST_CASE("a slow servo misses no pose of a virtual board; a slow loop misses no
   inkwell_pose pose, before;
   for (int i = 0; i < 40; ++i) {
     REQUIRE(inkwell_wait_for_pose(arm.arm, 10.0, &pose) == INKWELL_OK);
-    // From the second force on, the program counts as a loop.
+    // From its second force on, a program counts as a loop that the virtual board waits for.
     if (i > 1 && !board) CHECK(pose.sequence == before.sequence + 1);
     before = pose;
     std::this_thread::sleep_for(slow);

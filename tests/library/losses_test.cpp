@@ -51,7 +51,7 @@ struct Driven : Board {
     inkwell_pose pose;
     return inkwell_get_pose(arm, &pose);
   }
-  /// Poses, forces and the servo have stopped, and each call reports the cause.
+  /// Checks that poses, forces and the servo have stopped, and that each call reports the cause.
   void check_lost(const std::string& cause) {
     REQUIRE(eventually([&] { return pose_result() == INKWELL_DISCONNECTED; }));
     CHECK_MESSAGE(says(cause), std::string(inkwell_error_text()));
@@ -112,7 +112,7 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
   board.drive();
 }
 
-/// A board whose program exits and starts again on the same port.
+/// A virtual board that exits and starts again on the same port.
 struct Program {
   std::string port = "0";
   std::optional<RunningProgram> board;

@@ -17,7 +17,7 @@
 
 namespace inkwell::tests {
 
-/// Reports that a QueuedTransport has exchanged. They outlive the transport, which its device owns.
+/// Reports that a QueuedTransport has exchanged. The reports remain after the device has destroyed the transport.
 struct QueuedReports {
   std::mutex mutex;
   std::condition_variable changed;

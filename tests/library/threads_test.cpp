@@ -1,4 +1,4 @@
-// Several threads on one arm, a servo that blocks, and closing an arm while they run.
+// Several threads on one arm, a servo that blocks, and closing an arm while threads use the arm.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Lock step: the start of a turn of virtual boards, and the conditions that it waits for.
+// Lock step: the start of a turn of virtual boards, and the conditions for this start.
 #include <doctest/doctest.h>
 
 #include <atomic>

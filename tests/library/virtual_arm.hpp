@@ -11,7 +11,7 @@
 
 namespace inkwell::tests {
 
-/// Stylus position at which the hand of these tests rests: the middle of the box.
+/// Rest position of the stylus in the hand of these tests: the middle of the box.
 inline constexpr double free_point_m[3]{0.0, 0.0, -0.03};
 
 inline bool says(const std::string& words) {
@@ -35,7 +35,7 @@ struct VirtualArm {
   VirtualArm(const VirtualArm&) = delete;
   VirtualArm& operator=(const VirtualArm&) = delete;
 
-  /// Reads poses until one fulfills the condition, for at most `limit_s` of board time.
+  /// Reads poses until a pose satisfies the condition, for at most `limit_s` of board time.
   template <class Condition>
   inkwell_pose wait_until(Condition condition, double limit_s = 5.0) {
     inkwell_pose pose;

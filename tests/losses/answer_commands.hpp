@@ -1,4 +1,4 @@
-// The loop of the programs of losses_test.py that are written in C++.
+// Command loop of the C++ programs for losses_test.py.
 #pragma once
 
 #include <exception>

@@ -118,7 +118,7 @@ push_until(arm, 0, @(pose) ! pose.limited_by_current);
 table = inkwell_parameters();
 inkwell_parameters(arm, 'current_limit_1_A', table(strcmp({table.name}, 'current_limit_1_A')).default_value);
 
-% With a seed, time advances only while a function waits: a loop misses no pose, and each run is the same.
+% With a seed, time advances only while a function waits, so a loop receives every pose and each run is the same.
 function samples = run_with_seed(seed)
   arm = inkwell_open('virtual', seed);
   inkwell_force(arm, [0 0 0]);  % claims the arm

@@ -145,7 +145,7 @@ class Driving(unittest.TestCase):
             thread.start()
         for thread in threads:
             thread.join()
-        # On a busy computer all forces may be set before the first one is sent.
+        # On a busy computer all forces may be set before the first force is sent.
         wait_until(self.arm, lambda _: self.arm.information.force_reports > before.force_reports)
         wait_until(self.arm, lambda pose: not pose.feels_program)
         after = self.arm.information

@@ -107,7 +107,7 @@ class Examples(unittest.TestCase):
         with running(name, board.address):
             board.let_pass(0.5)  # while the force rises
             damping_Ns_per_m = []
-            # On a busy computer the program may be too slow during one stroke, but not during all of them.
+            # On a busy computer the program may be too slow during one stroke, but not during all strokes.
             while not damping_Ns_per_m or abs(damping_Ns_per_m[-1] - 4) > 1:
                 self.assertLess(len(damping_Ns_per_m), 10, damping_Ns_per_m)
                 force_N, velocity_m_s = stroke()
@@ -141,7 +141,7 @@ class Examples(unittest.TestCase):
     def test_recording(self):
         with VirtualBoard(BUILD) as board, tempfile.TemporaryDirectory() as folder:
             board.take_to(beside(0.0))
-            # Back and forth, 20 mm per half second.
+            # The hand moves back and forth, 20 mm per half second.
             board.call("hand_path", points=[{"after_s": 0.5 * i, "target_m": beside(0.02 * (i % 2))}
                                             for i in range(1, 200)])
             file = pathlib.Path(folder, "movement.npz")

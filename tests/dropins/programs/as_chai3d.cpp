@@ -1,6 +1,6 @@
-// Searches for a device and uses it in the same order of calls as CHAI3D 3: both libraries by dlopen(), with every
-// symbol. It also makes one deliberate error. Prints one line per result; an argument sets a force to the right in
-// newtons.
+// Searches for a device and uses it with the calls of CHAI3D 3 in the same order. Loads both libraries with dlopen()
+// and resolves every symbol. Makes one deliberate error. Prints one line per result. An argument sets a force to the
+// right in newtons.
 #include <dlfcn.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Returns from main() while its callback is scheduled, or exits in the callback. The callback uses a global object
-// whose derived part is destroyed 200 ms before its base.
+// Returns from main() while a callback is scheduled, or exits in the callback. The callback uses a global object whose
+// derived part is destroyed 200 ms before its base.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 using namespace std::chrono_literals;
 
-// These types have external linkage, so that the compiler cannot replace the virtual call by a direct call.
+// The external linkage of these types prevents the compiler from replacing the virtual call by a direct call.
 struct Effect {
   virtual ~Effect() { std::this_thread::sleep_for(200ms); }
   virtual void act() = 0;

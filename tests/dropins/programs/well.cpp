@@ -1,4 +1,4 @@
-// A typical HDAPI program: a spring of 100 N/m to the middle of the box, in HDAPI's millimeters.
+// A typical HDAPI program: a spring of 100 N/m to the middle of the box. HDAPI uses millimeters.
 #include <cstdio>
 
 #include "../hdapi.hpp"

@@ -29,7 +29,7 @@ struct Ended {
   std::string complaint;
 };
 
-/// Runs the program in this process, where the USB is fake.
+/// Runs the program in this process, with a fake USB.
 Ended run_here(std::vector<std::string> words) {
   const TemporaryDirectory directory;
   const std::string file = directory.file("stderr");

@@ -1,4 +1,5 @@
-// The samples that belong to a recording of a given length, and the number of missing samples at its end.
+// The samples that belong to a recording of a given length, and the number of missing samples at the end of the
+// recording.
 #include <doctest/doctest.h>
 
 #include <command_line/recorded_span.hpp>

@@ -1,4 +1,4 @@
-// Text of a firmware crash. Symbol names need an ELF; tests/system/black_box_test.cpp tests them.
+// Text of a firmware crash. Symbol names need an ELF, so tests/system/black_box_test.cpp tests the names.
 #include <doctest/doctest.h>
 
 #include <crash/crash_text.hpp>

@@ -1,4 +1,4 @@
-// Reading the black box from a device, also while other programs read it or while it changes.
+// Reading the black box from a device, also during reads by other programs and during changes of the black box.
 #include <doctest/doctest.h>
 
 #include <cstring>

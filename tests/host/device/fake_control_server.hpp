@@ -23,7 +23,7 @@ class FakeControlServer {
 
   std::uint16_t port() const { return server_.port(); }
   std::vector<nlohmann::json> requests();
-  /// Closes the connection, as a board that was stopped would.
+  /// Closes the connection, like a stopped board.
   void hang_up() { server_.hang_up(); }
 
  private:

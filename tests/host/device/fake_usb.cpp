@@ -50,7 +50,7 @@ void count(int things) {
   if (current != nullptr) current->open_things += things;
 }
 
-/// Copies as many bytes as fit and returns their number.
+/// Copies the bytes that fit, and returns the number of copied bytes.
 int give(const Bytes& bytes, unsigned char* data, std::size_t room) {
   const std::size_t length = std::min(bytes.size(), room);
   std::copy_n(bytes.begin(), length, reinterpret_cast<std::byte*>(data));  // memcpy does not accept a null pointer
@@ -69,8 +69,8 @@ int fail(int reason) {
 
 enum class ReportKind : std::uint8_t { output = 0x90, feature = 0xB0 };
 
-/// Lengths of the reports of one kind by their id, as the firmware's report descriptor declares them (HID 1.11, section
-/// 6.2.2).
+/// Returns the lengths of all reports of this kind by report id, from the firmware's report descriptor (HID 1.11,
+/// section 6.2.2).
 std::map<std::uint8_t, std::size_t> declared_lengths(ReportKind kind) {
   constexpr std::uint8_t report_id = 0x84, report_count = 0x94, kind_bits = 0xFC;
   const auto descriptor = inkwell::usb::hid_report_descriptor(inkwell::protocol::usb::hid_interface);
@@ -95,7 +95,7 @@ std::size_t longest(const std::map<std::uint8_t, std::size_t>& lengths) {
   return std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; })->second;
 }
 
-/// The report as the bus carries it. Windows' hidapi pads an output report to the length of the longest output
+/// Returns the report as sent on the bus. On Windows, hidapi pads an output report to the length of the longest output
 /// report. A feature report has the length that is declared for its id.
 Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind) {
   Bytes report = to_bytes(data, length);

@@ -1,5 +1,5 @@
 // Fake USB devices for tests. This file's .cpp defines the functions of hidapi and libusb that the device library
-// calls. The linker prefers these functions to those of the libraries, so no test accesses a real USB.
+// calls. The linker prefers these functions to the functions of the libraries, so no test accesses a real USB.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace inkwell::tests {
 
 using Bytes = std::vector<std::byte>;
 
-/// A device as both libraries see it. FakeUsb guards the members that the test accesses while transfers run.
+/// A device as hidapi and libusb present it. FakeUsb guards the members that the test accesses while transfers run.
 struct FakeUsbDevice {
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
@@ -60,18 +60,18 @@ struct FakeUsbDevice {
 /// Sets the answers that a session needs when it opens an arm.
 void answer_as_inkwell(FakeUsbDevice& arm);
 
-/// Name of the environment variable that chooses the operating system of a FakeUsb: "windows", or Linux without it.
+/// Name of the environment variable that chooses the operating system of a FakeUsb: "windows", or Linux if unset.
 inline constexpr char fake_usb_system[] = "INKWELL_FAKE_USB_SYSTEM";
 
-/// The fake USB of one test; it is empty again after the test. As Windows it pads written reports to their declared
-/// length and requires a buffer for the largest feature report. It also allows one libusb handle and leaves errno at
-/// 0.
+/// The fake USB of one test. The devices exist until the end of the test. The Windows variant pads written reports to
+/// their declared length and requires a buffer for the largest feature report. The Windows variant also allows one
+/// libusb handle and leaves errno at 0.
 class FakeUsb {
  public:
   FakeUsb();
   ~FakeUsb();
 
-  /// Adds an arm with this interface and endpoint for the scope; its HID interface has the other number.
+  /// Adds an arm with this interface and endpoint for the scope; the HID interface has the other interface number.
   FakeUsbDevice& add_arm(std::string serial_number, std::uint8_t scope_interface = 1,
                          std::uint8_t scope_endpoint = 0x82);
 

@@ -42,8 +42,7 @@ Bytes bytes(std::initializer_list<int> values) {
 constexpr std::uint32_t bus_number = 1, device_number = 2;
 constexpr std::uint8_t hid_interface = 0, hid_out_endpoint = 1, scope_endpoint = 2;
 
-/// Configuration descriptor with a HID interface with two interrupt endpoints and a vendor interface with one bulk
-/// endpoint.
+/// Configuration descriptor of a HID interface (two interrupt endpoints) and a vendor interface (one bulk endpoint).
 Bytes default_configuration() {
   return bytes({9, 2,    57,   0, 2,  1,    0,    0x80, 50,                       //
                 9, 4,    0,    0, 2,  3,    0,    0,    0,                        //

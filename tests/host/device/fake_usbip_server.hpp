@@ -39,7 +39,7 @@ class FakeUsbipServer {
   std::uint16_t port() const { return server_.port(); }
   device::Endpoint endpoint() const;
 
-  // Set these before a client connects.
+  // Set these members before a client connects.
   std::string path;  ///< path of the device on the server
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
@@ -61,13 +61,13 @@ class FakeUsbipServer {
   std::function<protocol::StoreResult(protocol::Command)> judge_store = [](protocol::Command) {
     return protocol::StoreResult::done;
   };
-  /// Store and erase commands are not counted.
+  /// If true, the server ignores store and erase commands.
   bool ignores_store = false;
   /// Decides the result of a transaction from its entries.
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
     return protocol::Refusal::accepted;
   };
-  /// An accepted transaction is answered with a stall.
+  /// If true, an accepted transaction is answered with a stall.
   bool stalls_accepted = false;
   std::function<void(protocol::ReportId, std::size_t length)> on_get = [](auto, auto) {};
   std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
@@ -77,9 +77,9 @@ class FakeUsbipServer {
   std::atomic<int> transactions_to_break_at = 0;
   /// Called before the server closes the connection at a transaction.
   std::function<void()> on_break = [] {};
-  /// Another program has the scope: its transfers fail immediately with this status.
+  /// The scope belongs to another program: scope transfers fail immediately with this status.
   std::atomic<bool> scope_is_taken = false;
-  /// Control requests are received but not answered, as by a board whose time does not advance.
+  /// Control requests are received but not answered, as if board time did not advance.
   std::atomic<bool> holds_requests = false;
   /// Output reports are received; only answer_output() answers them.
   std::atomic<bool> holds_outputs = false;
@@ -97,12 +97,12 @@ class FakeUsbipServer {
   void answer_output();
   /// Sends bytes that do not answer any request.
   void send_unasked(std::span<const std::byte> bytes);
-  /// Closes the connection, as a board that was stopped would.
+  /// Closes the connection, like a stopped board.
   void hang_up() { server_.hang_up(); }
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
-  /// The received shape reports in their received lengths.
+  /// The shape reports, with the lengths at which they were received.
   std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
   /// Number of transfers that the client has canceled.

@@ -21,7 +21,7 @@ class LocalServer {
 
   const local::SocketAddress& address() const { return listener_.address(); }
   std::uint16_t port() const { return address().port; }
-  /// Closes the connection, as a board that was stopped would.
+  /// Closes the connection, like a stopped board.
   void hang_up();
 
  private:

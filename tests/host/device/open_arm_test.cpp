@@ -22,7 +22,7 @@ namespace {
 
 const std::filesystem::path paper_arm = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards/arms/paper.toml";
 
-/// A virtual board whose ports belong to these servers.
+/// A virtual board that prints the ports of these servers.
 class StandIn {
  public:
   StandIn(std::uint16_t usbip_port, std::uint16_t control_port) {

@@ -11,7 +11,7 @@ using protocol::Signal;
 
 namespace {
 
-/// Builds frames as the firmware would, byte by byte.
+/// Builds frames byte by byte in the format of the firmware.
 struct FrameBuilder {
   protocol::ScopeFrameHeader header{};
   std::vector<std::byte> payload;

@@ -1,5 +1,5 @@
-// While a real arm's force is on, a systemd-inhibit process keeps the computer from sleeping. The test replaces that
-// program.
+// While a real arm's force is on, a systemd-inhibit process keeps the computer from sleeping. The test replaces
+// systemd-inhibit.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A systemd-inhibit that logs its process id and arguments, then runs its command.
+/// A systemd-inhibit that logs the process id and the arguments, and then runs the given command.
 class FakeInhibit {
  public:
   explicit FakeInhibit(const std::string& is = "exec \"$@\"") : path_before_(std::getenv("PATH")) {
@@ -73,7 +73,7 @@ class FakeInhibit {
   std::string path_before_;
 };
 
-/// False for a process that has exited, also before a wait for it.
+/// Returns false for a process that has exited, including a zombie.
 bool is_running(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string line;

@@ -1,4 +1,4 @@
-// The interfaces and endpoints of the device are those of its descriptors; the companion assumes none.
+// The interfaces and endpoints that the companion uses are read from the descriptors of the device.
 #include <doctest/doctest.h>
 
 #include <array>

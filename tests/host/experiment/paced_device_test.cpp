@@ -15,8 +15,8 @@ using protocol::Command;
 
 namespace {
 
-/// A device that executes commands `latency` poses after it receives them. Two poses are 10 ms apart, so the host has
-/// to send a heartbeat each time.
+/// A device that executes each command `latency` poses after its arrival. Two poses are 10 ms apart, so the host has to
+/// send a heartbeat for each pose.
 class SlowTransport final : public device::Transport {
  public:
   SlowTransport(int latency, std::deque<protocol::CommandReport>& received) : latency_(latency), received_(received) {}
@@ -64,7 +64,7 @@ TEST_CASE("a sign of life that overtakes a command's answer does not hide it") {
   device::Device device(std::make_unique<SlowTransport>(4, received));
   PacedDevice paced(device, nullptr);
   std::size_t enabled = 0;
-  // More commands than tokens, so that the tokens wrap.
+  // The number of commands exceeds the number of tokens, so that the tokens wrap.
   for (int i = 0; i < 300; ++i) paced.command(Command::enable_force);
   for (const auto& report : received) enabled += report.command == Command::enable_force;
   CHECK(enabled == 300);

@@ -79,8 +79,8 @@ std::string begin_of_flash(const protocol::ImageIdentity& identity) {
   return bytes;
 }
 
-/// An `openocd` script that comes first on PATH. It supplies the first bytes of the flash, or logs its arguments, its
-/// folder and the files there.
+/// An `openocd` script that comes first on PATH. The script supplies the first bytes of the flash, or logs its
+/// arguments, its folder and the files in the folder.
 class FakeOpenocd {
  public:
   explicit FakeOpenocd(const std::string& end, const std::string& flash = std::string(identity_end, '\xFF')) {

@@ -1,4 +1,4 @@
-// The order of the steps of an update, against a loader that records them.
+// The order of the update steps, tested with a loader that records the steps.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using Bytes = std::vector<std::byte>;
 
 constexpr std::uint32_t options_address = 0x1FFF'C000;
 
-/// The parts of ST's loader that an update uses: flash at one address, option bytes at another.
+/// The functions of ST's loader that an update uses: flash at one address, and option bytes at another address.
 class FakeLoader final : public device::ControlChannel {
  public:
   FakeLoader() { options[1] = std::byte{0xAA}; }

@@ -77,7 +77,7 @@ class FakeArm final : public guides::DevicePort {
   const guides::Observation& now() const { return now_; }
   bool current_flows() const { return std::abs(current_A_) > 0.01; }
 
-  /// Lets one millisecond pass, then steps the guide.
+  /// Advances time by one millisecond and the guide by one step.
   void pass_millisecond(guides::Guide& guide) {
     if (now_.connected) {
       ++now_.pose->sequence;
@@ -96,7 +96,7 @@ class FakeArm final : public guides::DevicePort {
     }
     guide.advance(now_, *this);
   }
-  /// Runs until the guide is over or asks; confirms every question if `agrees` is set.
+  /// Runs until the guide has finished or asks a question. Confirms every question if `agrees` is set.
   void run(guides::Guide& guide, bool agrees, int limit_ms = 10'000) {
     for (int ms = 0; ms < limit_ms && !guide.is_over(); ++ms) {
       if (guide.phase() == guides::Phase::asks) {
@@ -131,7 +131,7 @@ class FakeArm final : public guides::DevicePort {
                  integral_V_;
     }
     if (left_ == 0) integral_V_ = 0;
-    // The new voltage acts one period later.
+    // The new voltage becomes active one period later.
     const double decay = std::exp(-period_s * winding.resistance_ohm / winding.inductance_H);
     const double final_A = acting_V_ / winding.resistance_ohm;
     current_A_ = final_A + (current_A_ - final_A) * decay;

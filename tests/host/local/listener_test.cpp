@@ -48,7 +48,7 @@ void leave_behind(const fs::path& path) {
   REQUIRE(fs::is_socket(path));
 }
 
-/// Restores the environment variable at the end.
+/// Restores the environment variable in the destructor.
 class Environment {
  public:
   Environment(const char* name, const std::string& value) : name_(name) {

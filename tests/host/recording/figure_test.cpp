@@ -119,7 +119,7 @@ TEST_CASE("samples that are far apart are drawn at their own times") {
   recording.columns[0][0] = recording.columns[0][1] = 0.0f;
   const TemporaryDirectory directory;
   draw_figure(recording, {}, directory / "a.png");
-  // The line rises within the first twentieth of the time and is level after that.
+  // The line rises within the first twentieth of the time and is level afterward.
   CHECK(line_at(read_png(directory.file("a.png")), 0, blue));
 }
 

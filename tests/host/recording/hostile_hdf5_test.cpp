@@ -1,4 +1,4 @@
-// HDF5 files that differ from a recording: each is refused with a message.
+// Each HDF5 file that differs from a recording is refused with a message.
 #include <doctest/doctest.h>
 
 #include <hdf5.h>
@@ -90,7 +90,7 @@ void put_dataset(hid_t file, const char* path, hid_t type, hid_t space, hid_t pr
   H5Dclose(dataset);
 }
 
-/// A file with a valid recording that the test changes.
+/// A file that contains a valid recording until the test changes the file.
 struct Spoilt {
   TemporaryDirectory directory;
   fs::path file = directory / "a.h5";

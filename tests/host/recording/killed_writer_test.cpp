@@ -21,7 +21,7 @@ std::function<void()> before_each_write;
 
 }  // namespace
 
-/// Replaces the C library's function, which HDF5 would call.
+/// Replaces pwrite() of the C library, which HDF5 calls.
 extern "C" ssize_t pwrite(int descriptor, const void* bytes, std::size_t count, off_t offset) {
   if (before_each_write) before_each_write();
   return syscall(SYS_pwrite64, descriptor, bytes, count, offset);
@@ -72,7 +72,7 @@ void write_recording(const std::filesystem::path& file, const std::function<void
 TEST_CASE("an HDF5 recording can be opened by every program, whichever write its own was killed at") {
   const tests::TemporaryDirectory directory;
   const auto file = directory / "a.h5";
-  // A killed program leaves the file in the state before the write that it did not reach.
+  // A kill before a write leaves the file in the state before this write.
   int copies = 0;
   const auto copy_of = [&](int number) { return directory / (std::to_string(number) + ".h5"); };
   write_recording(file, [&] { before_each_write = [&] { std::filesystem::copy_file(file, copy_of(copies++)); }; });
@@ -81,7 +81,7 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
   std::size_t most = 0, unreadable = 0;
   for (int i = 0; i < copies; ++i) {
     CAPTURE(i);
-    // As h5py, Octave and MATLAB open a file, with default properties.
+    // Opens the file with default properties, as h5py, Octave and MATLAB do.
     const hid_t opened = H5Fopen(copy_of(i).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     REQUIRE(opened >= 0);
     H5Fclose(opened);
@@ -101,7 +101,7 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
     most = std::max(most, recording.size());
   }
   CHECK(most > samples_of_a_flush * (flushes - 1));
-  // While HDF5 splits a full node of 64 chunks, the column is unreadable. This happens once per column here.
+  // While HDF5 splits a full node of 64 chunks, the column is unreadable. In this test a node is split once per column.
   const std::size_t columns = 2 + about().signals.size();
   CHECK(unreadable <= columns);
 }

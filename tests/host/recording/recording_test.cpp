@@ -73,7 +73,7 @@ Recording simulated() {
   return recording;
 }
 
-/// Replaces a column by 32-bit numbers, as earlier versions wrote it.
+/// Replaces a column by 32-bit numbers, as in files of earlier versions.
 void write_as_32_bits(const fs::path& file, const char* column, const std::vector<std::uint32_t>& values) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   REQUIRE(opened >= 0);

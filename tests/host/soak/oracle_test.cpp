@@ -10,7 +10,7 @@ using protocol::State;
 
 namespace {
 
-/// A board that is checked every 5 ms and sends one pose in between.
+/// A board that is checked every 5 ms and sends one pose between two checks.
 struct Watched {
   Oracle oracle;
   double now_s = 1.0;

@@ -1,4 +1,4 @@
-// No parts overlap in any window size, and the height is shared proportionally.
+// Panes do not overlap in any window size, and they share the height proportionally.
 #include <doctest/doctest.h>
 
 #include <array>

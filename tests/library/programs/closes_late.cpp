@@ -1,5 +1,5 @@
 // Closes its arm in the destructor of a global object, after the thread-local objects of the main thread were
-// destroyed. Before that it requests all data that the library stores.
+// destroyed. Requests all data that the library stores before it closes the arm.
 #include <cstdio>
 
 #include <inkwell/inkwell.h>

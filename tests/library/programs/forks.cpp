@@ -1,4 +1,4 @@
-// Forks while the library's threads run: many times in its main thread, then in its servo. A child calls every function
+// Forks while the library's threads run: many times in the main thread, then in the servo. A child calls every function
 // on its parent's arm, closes it, opens another arm, and exits with all destructors. Prints each deviation, then the
 // state of the parent.
 #include <sys/wait.h>
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// A global object, as programs use it: its destructor closes the arm in each process.
+/// A global object whose destructor closes the arm in each process, as in programs of users.
 struct LateArm {
   inkwell_arm* arm = nullptr;
   ~LateArm() { inkwell_close(arm); }

@@ -12,7 +12,7 @@ namespace {
 constexpr Parameter stiffness = Parameter::wall_stiffness_N_per_m;
 constexpr Parameter damping = Parameter::wall_damping_Ns_per_m;
 
-/// A device that returns with the default values and had these values before.
+/// A device that had the values `held_before` before a reconnection and has the default values afterward.
 window::DeviceView returned(std::initializer_list<device::ParameterChange> held_before) {
   window::DeviceView view;
   view.status.connection = device::Connection::connected;

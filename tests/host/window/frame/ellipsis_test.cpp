@@ -1,4 +1,4 @@
-// Labels that do not fit end with an ellipsis, and windows open in the size of their text.
+// Labels that are too long are shortened with an ellipsis, and windows open in the size of their text.
 #include <doctest/doctest.h>
 
 #include <frame/ellipsis.hpp>

@@ -1,4 +1,5 @@
-// The thread that injects faults into a virtual board, against a control socket whose answers the test sets.
+// The thread that injects faults into a virtual board, tested with a control socket. The test sets the answers of the
+// socket.
 #include <panes/board_faults.hpp>
 
 #include <doctest/doctest.h>
@@ -24,7 +25,7 @@ constexpr auto nothing_in =
     R"({"ok": true, "board_time_s": 1.5, "control_period": {"number": 7, "board_time_s": 1.4}, "injected": [], )"
     R"("still_to_come": []})";
 
-/// Reads news until an item of this kind arrives.
+/// Reads messages of the thread until a message of this kind arrives.
 template <class Kind>
 Kind wait_for(BoardFaults& faults) {
   std::optional<Kind> come;

@@ -26,7 +26,7 @@ PutInFault to_come(unsigned number, double at_s) {
   return fault;
 }
 
-/// An answer at this board time of a firmware that started at 1 s.
+/// Answer of a board at this board time. The firmware started at `run_began_s`.
 Injections answer(double board_time_s, std::vector<PutInFault> faults, double run_began_s = 1.0,
                   double period_s = 50e-6) {
   const double since_s = board_time_s - run_began_s;

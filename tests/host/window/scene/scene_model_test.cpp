@@ -62,7 +62,7 @@ TEST_CASE("a wall pushes back when the sphere is in it and the force is on") {
   auto parameters = protocol::default_parameters();
   const SceneModel before = window::build_scene(middle_pose(protocol::State::active), parameters);
   REQUIRE_FALSE(before.in_contact);
-  // Move the upper x wall inward until the sphere is 3 mm inside it.
+  // Moves the upper x wall inward until the sphere is 3 mm inside the wall.
   parameters[Parameter::box_maximum_x_m] = before.probe_m.x + parameters[Parameter::sphere_radius_m] - 0.003f;
 
   const SceneModel active = window::build_scene(middle_pose(protocol::State::active), parameters);

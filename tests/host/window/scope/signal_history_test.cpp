@@ -1,4 +1,4 @@
-// The scope's history: the extremes of any range equal the extremes of its samples, also after overwriting.
+// The scope's history: the extremes of any range equal the extremes of the range's samples, also after overwriting.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,7 +39,7 @@ TEST_CASE("the extremes of random stretches are those of their samples") {
   SignalSeries series(4096);
   std::mt19937 random(7);
   std::normal_distribution<float> noise(0.0f, 1.0f);
-  // More than twice the capacity, so that every level was overwritten.
+  // The samples exceed twice the capacity, so that every level is overwritten.
   for (int i = 0; i < 10'000; ++i) series.append(i % 997 == 0 ? std::nanf("") : noise(random));
   CHECK(series.begin() == 10'000 - 4096);
   std::uniform_int_distribution<std::uint64_t> place(5000, 10'100);

@@ -1,4 +1,4 @@
-// The trigger finds each crossing once, waits until its picture is complete, and stores a single event.
+// The trigger finds each crossing once, waits until the picture of the crossing is complete, and stores a single event.
 #include <doctest/doctest.h>
 
 #include <scope/trigger.hpp>
