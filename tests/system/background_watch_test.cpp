@@ -392,7 +392,7 @@ TEST_CASE("a hand that shakes the arm, and one that knocks on the hardest walls,
   rig.control.hand_path({{0.1, beside(0.0, 0.0, -0.10)}, {0.2, free_point_m}, {0.3, beside(0.0, 0.0, -0.10)}});
   rig.use(0.4);
   rig.check("knocked on a wall");
-  // Held loosely at the edge of the walls, where vibrations are most likely.
+  // The hand holds the probe loosely at the edge of the walls, where vibrations are most likely.
   rig.set({{Parameter::box_minimum_z_m, -0.0301f}});
   for (const double stiffness_N_per_m : {50.0, 200.0}) {
     rig.control.hand({true, free_point_m, stiffness_N_per_m, 0.5});

@@ -106,7 +106,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   rig.run(0.3);
   const auto box = rig.device->black_box();
   CHECK(box.fault == Fault::processor_fault);
-  // A BusFault. A BusFault becomes a HardFault where the main loop masks interrupts before it sleeps.
+  // The fault is a BusFault, or a HardFault if the main loop has masked interrupts before it sleeps.
   CHECK((box.crash.exception == 5 || box.crash.exception == 3));
   CHECK(box.crash.program_counter == nothing_there);
   CHECK(box.crash.configurable_fault_status == 1u << 8);
@@ -210,7 +210,7 @@ TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   BoardRig rig;
   press_into_wall(rig);
   const std::uint32_t loop = endless_loop_address();
-  // The main loop works directly after the control interrupt. Later it may sleep, and then it holds the interrupts.
+  // The main loop runs directly after the control interrupt. Later it may sleep with masked interrupts.
   const board::Pin heartbeat = board::find_board("omni_driver")->bridge_heartbeat;
   const std::string pin = std::string(1, 'P') + heartbeat.port + std::to_string(heartbeat.number);
   for (const std::string level : {"high", "low"})

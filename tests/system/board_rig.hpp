@@ -1,5 +1,5 @@
 // A virtual board with the flashed firmware, and a host on its USB. Board time passes only inside `run` and while the
-// device answers a request. The same calls therefore give the same run, also on a slow machine.
+// device answers a request. The same calls therefore produce the same run, also on a slow machine.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ class BoardRig {
 
   /// Advances board time in slices of 10 ms, collects all poses, and sends the host's signs of life.
   void run(double time_s);
-  /// Does the same without the signs of life.
+  /// Advances board time in the same way, without the signs of life.
   void run_silent(double time_s);
   void set(std::initializer_list<device::ParameterChange> changes);
   /// Sends a command, which the device receives when board time advances.

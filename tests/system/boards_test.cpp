@@ -1,5 +1,5 @@
-// All boards run the same firmware, built with their facts. Each board starts, passes its self-test and is referenced,
-// and its current loop and walls are correct. Other files contain all tests that need only one board.
+// All boards run the same firmware, built with the facts of each board. Each board starts, passes its self-test and is
+// referenced, and its current loop and walls are correct. Other files contain all tests that need only one board.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
 
-/// True if any motor had voltage at one of 60 times within three PWM periods.
+/// True if any motor had voltage at any of 60 instants within three PWM periods.
 bool any_motor_driven(device::ControlClient& control) {
   bool driven = false;
   for (int i = 0; i < 60; ++i) {
@@ -33,7 +33,7 @@ bool any_motor_driven(device::ControlClient& control) {
   return driven;
 }
 
-/// Stops board time inside the control interrupt, after its first register writes.
+/// Stops board time inside the control interrupt, after the first register writes.
 void run_into_control_interrupt(BoardRig& rig) {
   const auto exception = [&] { return rig.control.status().all.at("exception").get<int>(); };
   while (exception() == control_interrupt) rig.control.run(1e-6);
@@ -223,8 +223,8 @@ TEST_CASE("a spike of 100 ns on an encoder's wire leaves the pose alone; a long 
 }
 
 TEST_CASE("a spike on one encoder wire during a pulse on the other is no whole step of the disc") {
-  // The pulse passes the filter 0.33 us to 0.38 us late, and the spike covers its delayed end. Without a filter on the
-  // spiked wire, both lines would pass through all four states.
+  // The pulse passes the filter 0.33 us to 0.38 us late, and the spike covers the delayed end of the pulse. Without a
+  // filter on the spiked wire, both lines would pass through all four states.
   constexpr double pulse_s = 1e-6, spike_after_s = 1.31e-6, spike_s = 0.1e-6, soon_s = 1e-6;
   BoardRig rig(device::SimulationMode::exact);  // in fast mode a spike may last for one more block of instructions
   rig.run(0.3);

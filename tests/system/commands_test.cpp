@@ -38,7 +38,7 @@ struct BoardAndCompanion {
     return command;
   }
   ProgramResult run(const std::vector<std::string>& command) { return run_program("inkwell", words(command)); }
-  /// Waits for the board's start-up, a fraction of a second.
+  /// Waits a fraction of a second for the board's start-up.
   void wait_for_device() {
     while (!board.find()) control.run(0.1);
     control.run(0.5);

@@ -30,7 +30,7 @@ constexpr float program_N = 0.5f;
 /// Tolerance for the tremor of the hand and the noise of the sensors.
 constexpr double force_tolerance_N = 0.05;
 constexpr device::Vector3 begin_m = beside(-0.025, 0, 0), end_m = beside(0.025, 0, 0);
-/// A minimum-jerk movement between both points, with its peak speed in the middle, at the first wrap.
+/// A minimum-jerk movement between both points. The peak speed occurs in the middle, at the first wrap.
 constexpr double moves_for_s = 1.0, fastest_m_per_s = 1.875 * 0.05 / moves_for_s;
 constexpr std::size_t frames_before = 200, frames_after = 100;
 
@@ -45,7 +45,7 @@ struct Story {
 
 void record_until(BoardRig& rig, recording::Recorder& recorder,
                   const std::function<bool(const device::Pose&)>& condition) {
-  // Limits the board time if the test hangs: each slice is 10 ms.
+  // Maximum number of slices of 10 ms, in case the test hangs.
   for (int slices = 0; !condition(rig.pose()); ++slices) {
     REQUIRE(slices < 500);
     rig.device->send_force({.force_N = {program_N, 0.0f, 0.0f}, .interval_ms = 10});
@@ -99,7 +99,8 @@ const Story& story() {
 
 double magnitude_N(const device::Pose& pose) { return std::hypot(pose.force_N[0], pose.force_N[1], pose.force_N[2]); }
 
-/// Returns the first pose after the wrap of this counter. Checks that force, state and time are continuous around it.
+/// Returns the first pose after the wrap of this counter. Checks that force, state and time are continuous around the
+/// wrap.
 const device::Pose& check_goes_on_around(std::int64_t device::Pose::*counter) {
   const auto& poses = story().poses;
   const auto found = std::ranges::find_if(poses, [&](const auto& pose) { return pose.*counter >= wrap; });
@@ -154,7 +155,7 @@ TEST_CASE("the count of bus frames wraps after 49 days, and no pose is lost and 
   CHECK(story().applied_at_periods > at_wrap.time_periods);
   CHECK(story().applied_at_periods < story().poses.back().time_periods);
 
-  // The program is still the driver, since the same time.
+  // The program is still the driver, and the time since it became the driver is continuous.
   REQUIRE(story().driver);
   CHECK(story().driver->is_this_device);
   const auto& poses = story().poses;

@@ -1,4 +1,4 @@
-// The device as a host sees it: enumeration, identity, parameters, streams, disconnection.
+// The device from the host side: enumeration, identity, parameters, streams, disconnection.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -190,7 +190,8 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for 4 s, none los
 }
 
 TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's") {
-  // One converter samples these inputs in turn. A sampling time that is too short would mix adjacent inputs.
+  // One converter samples potentiometers and supply in turn. A sampling time that is too short would mix adjacent
+  // inputs.
   BoardRig rig;
   using protocol::Signal;
   const std::vector signals{Signal::gimbal_1_rad, Signal::gimbal_2_rad, Signal::gimbal_3_rad, Signal::supply_V};

@@ -89,7 +89,7 @@ Spread spread(const std::vector<double>& values, std::size_t begin, std::size_t 
   return {*smallest, *largest};
 }
 
-/// Returns the start of the half second, deep in a wall, with the most constant force of the simulated hand.
+/// Returns the start of the half second in which the hand force is most constant while the probe is deep in a wall.
 std::size_t steadiest_hold(const Columns& recording, const std::string& axis, std::size_t length) {
   const auto& depth_m = recording["penetration_" + axis + "_m"];
   const auto& hand_N = recording["hand_force_" + axis + "_N"];
@@ -113,7 +113,7 @@ std::size_t steadiest_hold(const Columns& recording, const std::string& axis, st
 }  // namespace
 
 TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
-  // All checks below use one run.
+  // All checks of this test use the same run.
   static const TemporaryDirectory directory;
   static const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()});
   INFO("output: ", result.out, result.err);

@@ -31,7 +31,7 @@ std::string image(const std::string& name) { return build_directory() + "/../boa
 /// A virtual board that runs in real time.
 class FreeBoard {
  public:
-  /// `more`: additional options. These options override the default image and flash file.
+  /// `more`: additional options, which override the default image and flash file.
   explicit FreeBoard(const std::vector<std::string>& more = {}) : program_(words(more)) {
     const std::string ready = program_.read_line();
     const auto at = ready.find("usbip=") + 6;
@@ -105,8 +105,8 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   for (const char* step : {"asking the board to leave", "erasing", "writing", "reading back", "starting the firmware"})
     CHECK(says(result, step));
 
-  // Without a name, the program's image is written. The program finds the board although their protocol versions
-  // differ.
+  // Without a name, the program's image is written. The program finds the board although the protocol versions of
+  // program and board differ.
   result = board.flash({});
   CHECK(result.exit_code == 1);
   CHECK(says(result, "which is older than the firmware"));
@@ -271,7 +271,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // A fake openocd with an erased flash. This openocd reports a verified image, with the marker from its arguments.
+  // A fake openocd with an erased flash. The fake reports a verified image, with the marker from the arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";
@@ -291,8 +291,8 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   CHECK(failed.exit_code == 1);
   CHECK(says(failed, "Is the probe connected"));
 
-  // With a board name the image installed with this program is used. Without one the board is not guessed, and openocd
-  // is not called.
+  // With a board name, the image installed with this program is used. Without a board name, the board is not guessed
+  // and openocd is not called.
   CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
   CHECK(contains(told(), "6E63685F6D6F64756C6573"));  // nch_modules
   std::filesystem::remove(called);

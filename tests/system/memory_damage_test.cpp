@@ -46,18 +46,18 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
-/// Offset of the byte of the force limit whose highest bit doubles or halves the value.
+/// Offset of the byte with the lowest exponent bit of the force limit. This bit doubles or halves the value.
 constexpr std::uint32_t byte_of_force_limit = sizeof(float) * static_cast<std::uint32_t>(Parameter::force_limit_N) + 2;
 
-/// The link object starts with the current parameters. The values for the next start-up follow after its
-/// ParameterStore.
+/// The link object starts with the current parameters. The values for the next start-up follow after the ParameterStore
+/// of the link object.
 std::uint32_t held_force_limit() { return firmware_symbol("host_link") + byte_of_force_limit; }
 std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{sizeof(link::ParameterStore)}; }
 
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
-  // Locations that are neither read nor executed in this state, so that the error is detected before it has an effect.
+  // Locations that are neither read nor executed in this state, so that each error is detected before it has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
                                   firmware_symbol("leave_out"), firmware_symbol("nowhere")};
@@ -68,7 +68,7 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
 }
 
 TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
-  // The two copies of the settings follow the parameters; the interrupt uses one of them.
+  // The two copies of the settings follow the parameters; the interrupt uses one copy.
   const std::uint32_t settings = firmware_symbol("host_link") + sizeof(link::Guarded<protocol::ParameterSet>);
   constexpr std::uint32_t bytes = sizeof(control::Settings);
   // The test flips the lowest bit of a limit that is not reached, so that the error is detected before it has an
@@ -126,7 +126,7 @@ TEST_CASE("a bit that flips in what the next start would give is told, and is no
 TEST_CASE("a flash that is damaged when the board starts is found before the first pulse, and before the main loop") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });  // the self-test has driven the bridges
-  // The last word of the check. The check in the main loop alone would reach this word too late.
+  // Damages the last word that is checked. The check in the main loop alone would reach this word too late.
   rig.control.inject({"flash_bit", text_of(firmware_symbol("image_check")), 0});
   const double reset_s = rig.board_time_s();
   rig.control.reset();

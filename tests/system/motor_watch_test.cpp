@@ -93,12 +93,13 @@ class WatchedRig : public BoardRig {
 
   /// Largest sum, relative to the fault threshold MotorWatch::bearable_sum_V.
   float nearest_V = 0.0f;
-  /// Single check: the voltage that resistance and speed do not explain, and its part beyond the tolerance.
+  /// Single check: the voltage that resistance and speed do not explain, and the excess of this voltage over the
+  /// tolerance.
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
-  /// Largest current change per control period, and its part that loop and speed do not explain. The fault threshold is
-  /// CurrentJump::bearable_A.
+  /// Largest current change per control period, and the share that current loop and speed do not explain. The fault
+  /// threshold is CurrentJump::bearable_A.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:

@@ -19,7 +19,7 @@ std::string picture_file(const std::string& name) {
   return (folder == nullptr ? std::string(".") : std::string(folder)) + "/" + name + ".png";
 }
 
-/// A position where the mouse covers nothing and opens no help.
+/// A mouse position that covers nothing and opens no help text.
 constexpr Point aside{700, 60};
 
 /// The hand presses the sphere into the right wall and the floor, and moves the sphere along their common edge.
@@ -70,7 +70,7 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
                           build_directory() + "/drop-in-well"});
   program.read_line();
   rig.look_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
-  // With decreasing speed, so that the hand finally rests.
+  // The hand slows down gradually and finally rests.
   for (int step = 1; step <= 60; ++step) {
     const double part = step / 60.0, angle_rad = 3 * std::numbers::pi * part * (2 - part);
     rig.move_to({sphere.x + 30 + 60 * std::sin(angle_rad), sphere.y - 50 + 35 * (1 - std::cos(angle_rad))});

@@ -1,4 +1,4 @@
-// The profile of the longest interrupt per instruction, and its flame graph.
+// The instruction profile of the longest interrupt, and the flame graph of this profile.
 #include <doctest/doctest.h>
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 
 namespace inkwell::tests {
 
-/// Time limits for a whole program and for one answer. These limits only stop hanging programs and are long enough for
+/// Time limits for a whole program and for one answer. The limits only stop programs that hang, and are long enough for
 /// a heavily loaded machine.
 inline constexpr std::chrono::seconds hang_guard{1200}, patience{300};
 
@@ -28,7 +28,8 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
 /// A program that runs during the lifetime of this object. The program shares the standard error of the test.
 class RunningProgram {
  public:
-  /// `words`: name or path of the program, and its arguments. `environment`: "NAME=VALUE", added to that of the test.
+  /// `words`: name or path of the program, and its arguments. `environment`: "NAME=VALUE", added to the environment of
+  /// the test.
   RunningProgram(const std::vector<std::string>& words, const std::vector<std::string>& environment = {});
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;

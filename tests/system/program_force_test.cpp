@@ -1,4 +1,4 @@
-// Forces and shapes of a program on the PC, and their end when the program stops.
+// Forces and shapes of a program on the PC, and their removal when the program stops.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using protocol::Parameter;
 constexpr float force_limit_N = 3.3f;
 constexpr std::uint32_t periods_per_ms = protocol::servo_rate_Hz / 1000;
 
-/// The arm is held by a hand in free space, with the force on.
+/// A board whose arm is held by a hand in free space, with the force on.
 struct ProgramRig : BoardRig {
   ProgramRig() {
     set({{Parameter::force_ramp_s, 0.0f}, {Parameter::force_limit_N, force_limit_N}});
@@ -84,7 +84,7 @@ TEST_CASE("a program's force is felt, shown as its own, and gone within its expi
   const auto is_gone = [](const auto& pose) { return pose.force_N[0] == 0.0f; };
   const auto gone = std::find_if(silence.begin(), silence.end(), is_gone);
   REQUIRE(gone != silence.end());
-  // The force waits up to a frame and a control period for the board, and the pose for the host.
+  // The bound includes one bus frame and one control period each for the force and for the pose.
   CHECK(gone->time_periods - last_heard <= (50 + 10 + 2) * periods_per_ms + 2);
   CHECK(gone->time_periods - last_heard >= 50 * periods_per_ms);
   CHECK(std::all_of(gone, silence.end(), is_gone));
@@ -160,7 +160,7 @@ TEST_CASE("a program that pushes an arm which nobody holds makes it no faster th
     double fastest = 0.0;
     bool told = false;
     for (int i = 0; i < 1500; ++i) {
-      // Back and forth across the center; the force always points to the center.
+      // The force always points to the center, so the probe oscillates around the center.
       const double x_m = rig.newest.position_m[0] - free_point_m[0];
       rig.device->send_force({.force_N = {x_m > 0.0 ? -3.0f : 3.0f, 0.0f, 0.5f}, .mode = ForceMode::beside_walls});
       for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::speed);
@@ -221,7 +221,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
     rig.set({{Parameter::sphere_radius_m, 0.0f}, {Parameter::wall_stiffness_N_per_m, stiffness_N_per_m}});
     move_floor = [&](double z_m) { rig.set({{Parameter::box_minimum_z_m, static_cast<float>(z_m)}}); };
   }
-  // A soft hand that presses with 1 N when the probe rests on the floor.
+  // The hand is soft and presses with 1 N when the probe rests on the floor.
   constexpr double hand_N_per_m = 200;
   rig.control.hand({.holds = true, .target_m = free_point_m, .stiffness_N_per_m = hand_N_per_m});
   rig.run(0.3);
@@ -233,7 +233,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   rig.run(0.8);
   CHECK(rig.pose().force_N[2] == doctest::Approx(1.0).epsilon(0.1));
   CHECK(protocol::is_felt(rig.pose().force_sources, whose));
-  // Upwards for a long time; downwards until the hand has followed the floor.
+  // The upward move lasts long. The downward move lasts until the hand has followed the floor.
   struct Move {
     double by_m;
     int milliseconds;

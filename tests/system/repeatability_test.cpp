@@ -28,7 +28,7 @@ struct Story {
   std::uint64_t instructions = 0;
 };
 
-/// Returns the bytes of the members without padding. NaN (an unknown position) is equal to itself here.
+/// Returns the bytes of the members without padding. In this comparison NaN (an unknown position) is equal to NaN.
 std::string bytes_of(const device::Pose& pose) {
   std::string bytes;
   const auto append = [&](const auto&... members) {

@@ -63,7 +63,7 @@ TEST_CASE(
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
   rig.device->select_signals(signals);
   rig.take_to(free_point_m);
-  // Moves inside three walls.
+  // The probe moves inside three walls.
   rig.set(
       {{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}, {Parameter::box_maximum_y_m, 0.0f}});
   rig.take_to({0.02, 0.02, -0.045}, 0.3);
@@ -77,7 +77,7 @@ TEST_CASE(
   CHECK(report.servo_cycles_longest < bearable_cycles);
   check_figure_on_cycles_page("longest control interrupt", report.servo_cycles_longest);
   CHECK(report.servo_overruns == 0);
-  // The poses also contain the longest time, in units of 1/255 period.
+  // Each pose also contains the longest interrupt time, in units of 1/255 period.
   const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
   const double told_cycles = largest / 255.0 * board::servo_cycles;
   CHECK(told_cycles <= report.servo_cycles_longest);
@@ -85,7 +85,7 @@ TEST_CASE(
   // The main loop benefits from flash prefetch and cache; the interrupts run without them.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
-  // The alignment of its functions to the cache lines changes the result by a few percent.
+  // The alignment of the main loop's functions to cache lines changes the result by a few percent.
   CHECK(sleep_share > 0.11);
 }
 
@@ -102,7 +102,7 @@ float contact_cycles(BoardRig& rig) {
   return longest;
 }
 
-/// Returns eight planes around a point, the first `touched` of them one millimeter beyond it.
+/// Returns eight planes around a point. The first `touched` planes are one millimeter above the point.
 device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched, float friction) {
   device::Shapes shapes;
   for (std::size_t i = 0; i < shapes.planes.size(); ++i) {

@@ -1,4 +1,4 @@
-// Two programs with one arm: one is the driver, the other observes.
+// Two programs with one arm: the first program is the driver, and the second program observes.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -48,7 +48,7 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
     return press.at("force_N").get<double>() / press.at("limit_N").get<double>();
   };
   CHECK(part_of_limit("hardest_press") > 0.5);
-  // These fractions depend on the force of the hand at the time of the fault.
+  // The fractions depend on the force of the hand at the time of the fault.
   CHECK(part_of_limit("hardest_press_with_fault") > 0.01);
   CHECK(part_of_limit("hardest_press_with_fault_over_ms") > 0.01);
   CHECK(sitting.at("transactions").get<int>() > 10);

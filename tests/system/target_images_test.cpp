@@ -1,5 +1,5 @@
-// The pure tests, compiled for the Cortex-M4F and run on the virtual board with the same images as QEMU. Agreement of
-// two emulators in 250,000 checks makes a common error unlikely.
+// The hardware-independent tests, compiled for the Cortex-M4F and run on the virtual board with the same images as
+// QEMU. Agreement of two emulators in 250,000 checks makes a common error unlikely.
 #include <doctest/doctest.h>
 
 #include <algorithm>

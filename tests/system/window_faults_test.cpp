@@ -1,4 +1,4 @@
-// The fault injection pane, operated like by a user.
+// The fault injection pane, operated in the same way as by a user.
 #include <doctest/doctest.h>
 
 #include <csignal>

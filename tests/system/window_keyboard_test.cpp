@@ -1,4 +1,4 @@
-// The window without a mouse: moving between parts and controls, and the arrow keys with modifiers.
+// The window without a mouse: moves between panes and controls, and arrow keys with modifiers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 
 std::string part_of(const std::string& item) { return item.substr(0, item.find('/')); }
 
-/// Presses the key repeatedly and returns the parts that receive the keyboard focus, until the first part has it again.
+/// Presses the key repeatedly. Returns the panes that receive the keyboard focus, until the first pane receives it
+/// again.
 std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
   std::vector<std::string> parts;
   for (int step = 0; step < 12; ++step) {

@@ -46,7 +46,7 @@ struct Sight {
   /// Name of the item with the keyboard focus, such as "status/STOP". Empty while the mouse is used, or for an item
   /// without a name.
   std::string with_keyboard() const;
-  /// True if any text in the window contains this.
+  /// True if any text in the window contains `part`.
   bool says(const std::string& part) const;
 };
 
@@ -54,9 +54,9 @@ class WindowRig {
  public:
   static constexpr const char* usual_screen = "1280x800";
 
-  /// Starts everything, and waits until the window is connected and its device is referenced. `options`: options of the
-  /// window; with --flat-colours the pixels have exactly the colors of palette.hpp. `screen`: size of the display in
-  /// pixels. Without the control port the window uses the virtual board like a real board.
+  /// Starts all programs, and waits until the window is connected and its device is referenced. `options`: options of
+  /// the window; with --flat-colours the pixels have exactly the colors of palette.hpp. `screen`: size of the display
+  /// in pixels. Without the control port the window uses the virtual board like a real board.
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
                      const std::string& screen = usual_screen);
 
@@ -67,7 +67,7 @@ class WindowRig {
 
   /// Returns a frame that started after all events.
   Sight look();
-  /// Looks until the condition is satisfied; throws after a generous time limit.
+  /// Waits until a frame satisfies the condition; throws after a long time limit.
   Sight look_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
   Image picture();
   void picture(const std::string& file);

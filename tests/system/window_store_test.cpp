@@ -15,7 +15,7 @@ constexpr float stiff_N_per_m = 1500.0f;
 
 const auto says = [](const std::string& words) { return [words](const Sight& now) { return now.says(words); }; };
 
-/// The window sends one value at its start; the preset makes a total of three.
+/// The window sends one value at its start. The preset increases the number of values to three.
 void make_stiff(WindowRig& rig) {
   rig.look_until("one value waits", says("1 value is not stored"));
   rig.click("tuning/Stiff");
@@ -27,7 +27,7 @@ void store(WindowRig& rig) {
   rig.look_until("they are stored", says("All values are stored"));
 }
 
-/// Restarts the board like a power cut, after which the arm is in its inkwell.
+/// Restarts the board as after a power cut, with the arm in its inkwell.
 void restart(WindowRig& rig) {
   rig.control.reset();
   rig.look_until("the window is connected again",

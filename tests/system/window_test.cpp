@@ -1,4 +1,5 @@
-// Pictures of the real window with software OpenGL under Xvfb, checked by color and compared with the board's truth.
+// Pictures of the real window with software OpenGL under Xvfb, checked by color and compared with the true state of the
+// board.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -19,7 +20,8 @@ std::size_t count(const Image& image, window::Colour colour) {
   return image.count({colour.red, colour.green, colour.blue}, 2);
 }
 
-/// Returns the part of the picture with arm, sphere and walls, because the scope has lines of the same colors.
+/// Returns the region of the picture with arm, sphere and walls. The scope outside this region has lines of the same
+/// colors.
 Image scene_of(WindowRig& rig) {
   const Image whole = rig.picture();
   const auto scene = rig.look().item("scene/view");
