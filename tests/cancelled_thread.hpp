@@ -18,7 +18,7 @@ class CancelledThread {
     pthread_create(&thread_, nullptr, &CancelledThread::run, this);
     while (!is_in_) sched_yield();
   }
-  /// Cancels the thread; true if the cancellation ends it within a minute.
+  /// Cancels the thread. Returns true if the thread ends within a minute.
   bool ends_when_cancelled() {
     pthread_cancel(thread_);
     timespec until{};

@@ -12,7 +12,7 @@ import unittest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tools"))
 
-import architecture  # noqa: E402: it lies in tools/
+import architecture  # noqa: E402: located in tools/
 
 GRAPHS: list[pathlib.Path] = []
 

@@ -18,7 +18,7 @@ TOP = Path(__file__).resolve().parents[2]
 PROGRAMS = Path(sys.argv[1]).resolve()
 FIRMWARE = str(Path(sys.argv[2]).resolve())
 TEXT = (TOP / "docs" / "tutorial.md").read_text()
-PATIENCE_S = 300  # of what no healthy run needs
+PATIENCE_S = 300  # much longer than any healthy run
 
 
 def help_of(program: str, commands: list[str]) -> str:

@@ -1,4 +1,4 @@
-// Tables that both ends use: completeness, unique names, and hashes that detect a change.
+// Tables that firmware and host share: completeness, unique names, and hashes that detect a change.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -32,7 +32,8 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
          name.ends_with(plain + "_per_turn");
 }
 
-/// A parameter table that tests change. All tests share it, because each table needs 3.5 KB of the target's memory.
+/// A parameter table that tests change. All tests share this table, because each table needs 3.5 KB of the target's
+/// memory.
 auto& fresh_table() {
   static auto table = parameter_table;
   return table = parameter_table;
@@ -199,7 +200,7 @@ TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash"
   const std::array one_row{SignalInfo{3, "name", "unit", SignalWire::duty_int16, ""}};
   CHECK(detail::hash_signals(one_row) ==
         detail::fnv1a(detail::fnv1a(detail::hash_number(2166136261u, 3 + 2 * 256), "name"), "unit"));
-  // Every byte of a number counts, and adjacent texts are not merged.
+  // Every byte of a number affects the hash, and adjacent texts are not merged.
   for (const std::uint32_t bit : {0u, 8u, 16u, 31u})
     CHECK(detail::hash_number(2166136261u, 1u << bit) != detail::hash_number(2166136261u, 0));
   CHECK(detail::fnv1a(detail::fnv1a(1, "ab"), "c") != detail::fnv1a(detail::fnv1a(1, "a"), "bc"));

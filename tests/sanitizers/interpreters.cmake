@@ -1,6 +1,6 @@
-# Where sanitizers watch the libraries, `interpreter_environment` lets an interpreter that was built without them load them.
-# The interpreter has to begin with the sanitizer's library, and with the library whose exceptions it watches. It leaks
-# memory itself at its end.
+# In sanitizer builds, `interpreter_environment` lets an interpreter without sanitizers load the libraries. The
+# interpreter must load the sanitizer's library and the C++ library first. Leak detection is off, because interpreters
+# leak memory at exit.
 set(interpreter_environment "")
 if(CMAKE_CXX_FLAGS_RELEASE MATCHES "-fsanitize=address")
   set(preloaded "")

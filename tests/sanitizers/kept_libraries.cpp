@@ -1,5 +1,6 @@
-// Part of `inkwell` where sanitizers watch it. At its end LeakSanitizer looks into the libraries that are loaded: what
-// one that was unloaded before still points to, as Mesa's drivers do, would be a leak of nobody. So none is unloaded.
+// Part of `inkwell` in sanitizer builds. At exit, LeakSanitizer searches the loaded libraries for pointers. If only an
+// unloaded library, such as a Mesa driver, refers to a block of memory, the block would be reported as a leak.
+// Therefore no library is unloaded.
 
-// The name is the C library's.
+// Name of the function in the C library.
 extern "C" int dlclose(void*) { return 0; }  // NOLINT(readability-identifier-naming)

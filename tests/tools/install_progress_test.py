@@ -9,7 +9,7 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1))
 
-# Each package that the fake dpkg knows is a file with its status in the folder "packages".
+# Each package of the fake dpkg is a file in the folder "packages". The file contains the status.
 FAKE_PROGRAMS = {
     "apt-get": """
 case "$*" in
