@@ -3,19 +3,19 @@
 #
 # Versions: GCC 14.2.0 (Debian 13, package g++-14 14.2.0-19), compared with GCC 12.2.0 (Debian 12, g++-12 12.2.0-14+deb12u1).
 # Likely guess: in an ordinary function, a call outside of constexpr variables, array bounds and static_assert is evaluated
-#   at run time, and std::is_constant_evaluated() is false. GCC 12 behaves like that.
+#   at run time, and std::is_constant_evaluated() is false. GCC 12 behaves as expected.
 # What happens: a reference is usable in constant expressions if its initializer is constant. GCC 14 therefore first tries
 #   to evaluate the initializer as a constant, and std::is_constant_evaluated() is true in this attempt. A range-based for
 #   statement binds its range to a hidden reference, so the loop below runs over the constant table and never sees the row
 #   that was added at run time. The call that initializes a value sees this row.
-# Who meets it: authors of functions that return a constant table during compilation and a longer one at run time, and
-#   everybody who switches to GCC 14 with code that passed all tests with GCC 12.
+# Who meets it: authors of functions that return a constant table during compilation and a longer table at run time, and
+#   users of GCC 14 with code that passed all tests with GCC 12.
 #
 # Output seen:
 #   g++-12: value 2, reference 2, loop 2
 #   g++-14: value 2, reference 1, loop 1
 #
-# Exits 1 if a compiler behaves otherwise. Needs mmdebstrap, about 300 MB from Debian's mirror, and root or user
+# Exits with 1 if a compiler behaves differently. Needs mmdebstrap, about 300 MB from Debian's mirror, and root or user
 # namespaces.
 set -euo pipefail
 folder=$(mktemp -d)

@@ -4,21 +4,22 @@
 # Versions: Octave 7.3.0 (Debian 12, package 7.3.0-2).
 # Likely guess: fgetl(stdin) returns as soon as a whole line has arrived, as fgets() of C and readline() of Python do.
 # What happens: after the newline fgetl() reads one more character, to set feof() early. It therefore waits until the
-#   sender writes again or closes the pipe. Both ends wait for ever if the sender waits for an answer to its line.
+#   sender writes again or closes the pipe. Both programs wait indefinitely if the sender waits for an answer to its line.
 #   input('', 's') returns the line immediately.
-# Who meets it: whoever drives Octave from another program with one line per command and one line per answer.
+# Who meets it: authors of programs that control Octave with one line per command and one line per answer.
 #
 # Output seen:
 #   Octave 7.3.0
 #   fgetl: first came the second line
 #   input: first came the answer
 #
-# Exits 1 if Octave behaves otherwise. Needs apt with sources of Debian 12, about 80 MB from its mirror, and no rights.
+# Exits with 1 if Octave behaves differently. Needs apt with sources of Debian 12 and about 80 MB from a Debian mirror;
+# needs no privileges.
 set -euo pipefail
 version=7.3.0-2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-trap '' PIPE  # a reader that has answered is gone when the second line is sent
+trap '' PIPE  # a reader that has answered has exited before the second line is sent
 cd "$folder"
 
 mkdir -p packages root cache/partial
@@ -37,13 +38,13 @@ run_octave() {
     root/usr/bin/octave-cli --norc --quiet --no-history --eval "$1"
 }
 
-# Prints who was first: the answer to the first line, or the sender's second line.
+# Prints the earlier event: the answer to the first line, or the second line of the sender.
 who_is_first() {
   mkfifo lines
   run_octave "line = $1; printf('answer\n'); fflush(stdout);" <lines >order 2>/dev/null &
   exec 3>lines
   echo first >&3
-  # Octave starts within seconds; a reader that waits for more never answers.
+  # Octave starts within seconds. A reader that waits for another line never answers.
   for _ in $(seq 150); do
     ! grep -q answer order || break
     sleep 0.1

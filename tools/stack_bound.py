@@ -19,7 +19,7 @@ from call_graph import Image, Unreadable, read_image
 EXCEPTION_FRAME_BYTES = 27 * 4
 
 # These functions set the stack pointer on purpose: the interrupted stack may be invalid, or the boot loader has a
-# separate one.
+# separate stack.
 MAY_SET_STACK = {"fault_handler", "enter_boot_loader"}
 
 

@@ -8,7 +8,7 @@ set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 
 set(cortex_m4f "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard")
 set(CMAKE_CXX_FLAGS_INIT "${cortex_m4f} -ffunction-sections -fdata-sections")
-# Set completely, because CMake would append its default -O3 to an initial value.
+# The flags are set completely, because CMake would append its default -O3 to an initial value.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG" CACHE STRING "flags of a release build")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "${cortex_m4f} -Wl,--gc-sections")
 

@@ -1,4 +1,4 @@
-# Writes the output of the Python script PROGRAM for the given files to a header. This happens at configure time, so
+# Writes the output of the Python script PROGRAM for the given files to a header. The script runs at configure time, so
 # that an editor finds the header before the first build. A change of any of these files triggers a new configuration.
 function(inkwell_generate_header header program)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${program} ${ARGN})

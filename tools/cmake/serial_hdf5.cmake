@@ -1,6 +1,6 @@
 # PkgConfig::hdf5, the serial HDF5 library. The parallel library would load MPI into every program that reads a
-# recording, and into all programs that link to libinkwell. Where both are installed, the serial library has a separate
-# pkg-config name.
+# recording, and into all programs that link to libinkwell. If both libraries are installed, the serial library has a
+# separate pkg-config name.
 find_package(PkgConfig REQUIRED)
 # File locking can be disabled since HDF5 1.10.7.
 pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial>=1.10.7 hdf5>=1.10.7)
