@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The first byte chooses the device list, the import or transfers. Transfers are a script with four kinds of steps:
+/// The first byte chooses between device list, import and transfers. Transfers are a script with four kinds of steps:
 /// an IN or OUT transfer with its length in two bytes, the cancellation of a transfer, or an answer.
 const Registered usbip_answers{
     "usbip_answers", [](Input input) {

@@ -83,7 +83,8 @@ struct Watched : Board {
     while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  /// Repeats a call of the watcher while poses are missing, after a cable was unplugged or on a busy computer.
+  /// Repeats a call of the watcher while poses are missing. Poses are missing after a cable was unplugged or on a busy
+  /// computer.
   template <class Call>
   void require(Call call) {
     auto result = INKWELL_DISCONNECTED;

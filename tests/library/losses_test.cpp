@@ -31,7 +31,7 @@ int goes_on(inkwell_arm*, const inkwell_pose*, double force_N[3], void*) {
   return 0;
 }
 
-/// A board whose hand feels the force of a servo.
+/// A board that receives the force of a servo.
 struct Driven : Board {
   VirtualArm driver{address};
   inkwell_arm* const arm = driver.arm;

@@ -199,7 +199,7 @@ TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coa
     const auto truth = rig.control.truth();
     return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>();
   };
-  // The half bridges are low from here on.
+  // From this time on the half bridges are low.
   for (int i = 0; i < 1'000 && pause_s() < control_period_s; ++i) rig.control.run(control_period_s / 10);
   rig.control.run(1.1 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));

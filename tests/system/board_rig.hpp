@@ -1,4 +1,4 @@
-// A virtual board with the flashed firmware, and a host on its USB. Board time passes only inside `run` and while the
+// A virtual board with the flashed firmware, and a host on its USB. Board time advances only inside `run` and while the
 // device answers a request. The same calls therefore produce the same run, also on a slow machine.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A board with a crystal of another frequency.
+// A board whose crystal does not have the expected frequency.
 #include <doctest/doctest.h>
 
 #include "program.hpp"

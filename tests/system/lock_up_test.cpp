@@ -1,4 +1,4 @@
-// Firmware that locks up the core: a run in the background stops and reports the location of the error.
+// Firmware that locks up the core: with --seconds the board stops and reports the location of the error.
 #include <doctest/doctest.h>
 
 #include <device/control_client.hpp>

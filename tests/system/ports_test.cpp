@@ -1,4 +1,4 @@
-// The ports of a running virtual board: accepted and refused clients, and the files that remain.
+// The ports of a running virtual board: accepted and refused clients, and the files that remain after the board's exit.
 #include <doctest/doctest.h>
 
 #include <signal.h>

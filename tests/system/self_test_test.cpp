@@ -48,7 +48,7 @@ void check_passed(const SelfTestReport& report) {
   }
 }
 
-/// Resets the board with its injected faults.
+/// Resets the board while its injected faults remain active.
 SelfTestReport report_after_reset(BoardRig& rig) {
   rig.device.reset();
   rig.control.reset();

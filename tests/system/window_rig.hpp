@@ -43,8 +43,8 @@ struct Sight {
   bool can_click(const std::string& name) const { return has(name) && item(name).enabled; }
   /// True if the item has the keyboard focus or is held by the mouse.
   bool is_active(const std::string& name) const { return has(name) && all.at("items").at(name).at("active"); }
-  /// Name of the item with the keyboard focus, such as "status/STOP". Empty while the mouse is used, or for an item
-  /// without a name.
+  /// Name of the item with the keyboard focus, such as "status/STOP". The name is empty while the mouse is used, or for
+  /// an item without a name.
   std::string with_keyboard() const;
   /// True if any text in the window contains `part`.
   bool says(const std::string& part) const;

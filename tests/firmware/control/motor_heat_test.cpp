@@ -92,7 +92,7 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   set[Parameter::current_limit_1_A] = 0.9f * continuous_A;
   CHECK(control::prepare(set).motors.allowed_A(0, motors.beyond) == 0.9f * continuous_A);
 
-  // A demand at the limit receives the allowed current, and the heat settles just below its limit.
+  // A current demand at the limit receives the allowed current, and the heat settles just below its limit.
   set[Parameter::winding_time_constant_s] = 1.0f;
   const control::HeatScale slower = control::prepare(set).heat;
   motors = {};

@@ -157,7 +157,7 @@ TEST_CASE("the controller's report is as new as the pose whenever the host's tur
     for (int frame = 0; frame < 8; ++frame) pass_frame(bench);
     const auto report = read_controller(bench);
     REQUIRE(report.has_value());
-    // The bench sets x to the number of the period in meters, which is out of range.
+    // The bench sets x in meters to the period number, which is out of range.
     CHECK(report->position[0] == 32767);
     CHECK(report->angle[0] == static_cast<std::int16_t>(bench.periods - 1));
     // After the first report, each further report needs one replacement, not one per bus frame.

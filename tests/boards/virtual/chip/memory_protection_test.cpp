@@ -42,7 +42,7 @@ TEST_SUITE("virtual chip: memory protection") {
       check_results(test, 30, {passes, refused, refused, passes, no_answer, 0x800});
       check_results(test, 36, {refused, passes, refused, refused | as_hard_fault, 1, refused | as_hard_fault});
       check_results(test, 42, {passes, unaligned, passes});
-      // nPRIV of CONTROL is also readable in a handler, SPSEL only in thread mode.
+      // nPRIV of CONTROL is also readable in a handler. SPSEL is readable only in thread mode.
       check_results(test, 45, {passes, 1, static_cast<std::uint32_t>(-32), 3, 0});
       CHECK(stop == Stop::locked_up);
       CHECK(test.chip.lockup_reason().find("the memory protection unit refuses 0x20010000") != std::string::npos);

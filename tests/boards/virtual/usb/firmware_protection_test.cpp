@@ -90,7 +90,7 @@ protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   return crash;
 }
 
-/// Returns the first address from `begin` on whose two preceding half words satisfy `are_such`.
+/// Returns the first address at or after `begin` whose two preceding half words satisfy `are_such`.
 std::uint32_t place_behind(const FirmwareOnBus& bus, std::uint32_t begin,
                            const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
   std::uint32_t address = begin + 4;
