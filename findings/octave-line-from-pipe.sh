@@ -4,7 +4,7 @@
 # Versions: Octave 7.3.0 (Debian 12, package 7.3.0-2).
 # Likely guess: fgetl(stdin) returns as soon as a whole line has arrived, as fgets() of C and readline() of Python do.
 # What happens: after the newline fgetl() reads one more character, to set feof() early. It therefore waits until the
-#   sender writes again or closes the pipe. Both programs wait indefinitely if the sender waits for an answer to its line.
+#   sender writes again or closes the pipe. Both programs wait indefinitely if the sender waits for an answer.
 #   input('', 's') returns the line immediately.
 # Who meets it: authors of programs that control Octave with one line per command and one line per answer.
 #

@@ -14,7 +14,7 @@ import sys
 from call_graph import Image, Unreadable, read_image, run
 from interrupt_rules import broken_interrupt_rules
 
-# Functions that the firmware image must not contain, and their cause. Patterns of whole symbol names.
+# Functions that the firmware image must not contain, and the cause of each function. Patterns of whole symbol names.
 FORBIDDEN = {
     r"_?(malloc|calloc|realloc|free)(_r)?|_sbrk(_r)?": "the heap",
     r"_Zn[wa].*|_Zd[la].*": "operator new or delete",
