@@ -27,13 +27,13 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// Exceptions with a handler in the firmware, except for crash handlers: PendSV, the supply detector, and the
-/// converters' control interrupt. USB is polled in the main loop.
+/// Exceptions that have a firmware handler: PendSV, the supply detector, and the control interrupt. Crash handlers are
+/// excluded. USB is polled in the main loop.
 constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};
 
-/// Tested in addition to the amount in the table or in case_faults().
+/// Amounts that are tested in addition to the amount in the table or in case_faults().
 constexpr struct {
   InjectedFault fault;
   double amount;
@@ -154,7 +154,8 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   const auto place = protocol::info(*fault.fault).place;
   if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // Listed wires have the index [1], and touching neighbors also the index [2]. All indices are shifted cyclically.
+  // A listed wire has the index [1]. A pair of shorted wires may contain the indices [1] and [2]. All indices are
+  // shifted cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];
     index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);

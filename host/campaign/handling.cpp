@@ -98,8 +98,7 @@ bool bridges_drive(const nlohmann::json& truth) {
 bool regains_force(BoardRun& board) {
   board.run(0.02);
   if (board.is(State::fault)) {
-    // Repeats the command like a user, because some causes last longer. For example, the supply voltage falls within
-    // 0.1 s.
+    // Repeats the command, like a user, until the cause is gone. For example, the supply voltage needs 0.1 s to fall.
     const auto is_cleared = [](const auto& pose) { return pose.state != State::fault; };
     for (int times = 0; times < 5 && board.is(State::fault); ++times) {
       board.command(Command::clear_fault);

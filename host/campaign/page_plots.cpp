@@ -12,8 +12,8 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Whether the force was on, without self-test pulses. Cases of a flung arm are excluded, because the hand feels the
-/// arm's inertia there.
+/// Whether the force was on; self-test pulses do not count. Cases with a flung arm are excluded, because their hand
+/// force is due to the arm's inertia.
 bool was_driven(const Result& result) {
   return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
 }
@@ -27,7 +27,7 @@ std::map<std::string, double> sound_forces_N(std::span<const Result> results) {
   return forces_N;
 }
 
-/// Class width for which all classes fit next to each other.
+/// Class width for a histogram of at most ten classes.
 double class_width_N(double reach_N) {
   constexpr double widths_N[] = {0.5, 1, 2, 5, 10, 20};
   constexpr double most = 10;

@@ -8,11 +8,11 @@
 
 namespace inkwell::campaign {
 
-/// State of the earlier fault, and the transition to the boot loader.
+/// Section about the reports after an earlier fault, and about the transition to the boot loader.
 std::string after_another(std::span<const Result> results);
 /// Force on the hand that flings the arm, with the force on and off.
 std::string fast_hand(std::span<const Result> results);
-/// Monitored faults that were reported in none of these cases.
+/// Monitored faults that no case reported.
 std::string told_by_none(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

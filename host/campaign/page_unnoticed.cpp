@@ -17,7 +17,7 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Detections during continued use, of the cases with continued use.
+/// Statistics of the cases with continued use, and of the detections during this use.
 class InUse {
  public:
   /// `sound`: the fault-free case with the same start, or null.
@@ -53,7 +53,7 @@ class InUse {
   }
 
  private:
-  /// Compares only cases used until the end, because the others had less time.
+  /// Compares only cases whose continued use was complete, because the other cases had less time.
   void compare(const Result& result, const Result* sound) {
     if (sound == nullptr || sound->noticed_in_use_s || !result.energy_in_use_J || !sound->energy_in_use_J) return;
     const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
@@ -187,7 +187,7 @@ std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>&
 }
 
 std::string unnoticed_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  // Grouped by reason, because many faults share few reasons.
+  // The faults are grouped by reason, because many faults have the same reason.
   struct Row {
     std::string_view reason;
     std::string where;

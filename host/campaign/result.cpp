@@ -41,7 +41,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
 
 namespace {
 
-/// The library converts any number to unsigned, which is undefined for values out of range.
+/// nlohmann::json converts any number to unsigned. The conversion of a value out of range is undefined.
 void require_counts(const nlohmann::json& result) {
   for (const char* name : {"number", "phase", "restarts"}) {
     const auto& value = result.at(name);
@@ -90,7 +90,7 @@ std::filesystem::path file_of(const std::filesystem::path& directory, unsigned n
 
 void save(const Result& result, const std::filesystem::path& directory) {
   const auto file = file_of(directory, result.number);
-  // Several programs may write to the folder, also from several machines.
+  // Programs on several machines may write to the folder.
   auto unfinished = file;
   unfinished += fmt::format(".{}.part", ::getpid());
   recording::write_text(unfinished, text_of(result));

@@ -64,7 +64,7 @@ void begin_self_test(BoardRun& board) {
   expect(has_begun, "the self-test made no pulse.");
 }
 
-/// Requires the arm in the middle of the box with the force off.
+/// Requires that the arm is in the middle of the box and the force is off.
 void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation situation) {
   if (is_pressed(situation)) set_to_maximum(board, parameters, Parameter::wall_stiffness_N_per_m);
   if (situation == CaseSituation::ramping) set_to_maximum(board, parameters, Parameter::force_ramp_s);
@@ -86,7 +86,7 @@ bool is_there(const BoardRun& board, CaseSituation situation) {
 }
 
 /// Causes the earlier fault: the host becomes silent with the force on. This fault has no cause in the board, so it
-/// cannot be confused with another one.
+/// cannot be confused with the injected fault.
 void bring_a_first_fault(BoardRun& board) {
   constexpr double silent_s = 0.1, brakes_s = 0.05;  // brakes_s is short because the arm was at rest
   board.run(silent_s, false);
@@ -94,8 +94,8 @@ void bring_a_first_fault(BoardRun& board) {
   board.run(brakes_s);
 }
 
-/// Starts the update. The board is in transition to the loader while it writes its parameters, none of which are stored
-/// yet.
+/// Starts the update. The transition to the boot loader lasts until the board has written its parameters, none of which
+/// were stored before.
 void begin_update(BoardRun& board) {
   constexpr double until_told_s = 0.002;
   board.command(Command::store_parameters);
@@ -104,7 +104,7 @@ void begin_update(BoardRun& board) {
   expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
 }
 
-/// The hand holds the stylus from before the first instruction. After power-on the watchdog expires once.
+/// The hand holds the stylus before the first instruction is executed. After power-on the watchdog expires once.
 void begin_start(BoardRun& board, const Case& the_case) {
   take_by_hand(board, board.true_position_m(), 0.05);
   if (is_before_power(the_case)) return;
@@ -176,7 +176,7 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
 
 double longest_phase_of(CaseSituation situation) {
   switch (situation) {
-    // The pulses of a motor last 4 ms: motor 1 has started, motors 2 and 3 follow.
+    // The pulses of each motor last 4 ms, so the instant is during the pulses of motor 1.
     case CaseSituation::testing: return 0.004;
     case CaseSituation::update: return 0.05;  // the board writes its parameters for a longer time
     case CaseSituation::ramping: return 1.0;
@@ -224,7 +224,7 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   const double driven_until_s = after.at("bridges_driven_until_s");
   const bool drive = bridges_drive(after);
   if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
-  // The pulses at start-up are intended and have finished by this time.
+  // The self-test pulses at start-up are intended and are over now.
   const bool may_pulse = the_case.situation == CaseSituation::starting;
   result.bridges_went_on = !result.bridges_were_on && (may_pulse ? drive : driven_until_s > result.injected_at_s);
   result.peak_force_N = reading.peak_force_N;
@@ -292,7 +292,7 @@ bool notice(BoardRun& board, const Case& the_case, Result& result) {
   return true;
 }
 
-/// Waits for the state of a board after the boot loader request. The loader must then start the firmware.
+/// Waits until the board runs its boot loader, and commands the boot loader to start the firmware.
 void leave_boot_loader(BoardRun& board, Result& result) {
   constexpr double look_s = 0.005, longest_s = 0.5;
   for (double waited_s = 0; waited_s < longest_s; waited_s += look_s) {
@@ -307,8 +307,8 @@ void leave_boot_loader(BoardRun& board, Result& result) {
   }
 }
 
-/// Clears the fault and restores the force. Detections before this point count; a device that could not report earlier
-/// reports now.
+/// Clears the fault and restores the force. A detection after this point counts only if the device could not report
+/// before.
 void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& result) {
   board.control().heal_all();
   if (the_case.situation == CaseSituation::update) leave_boot_loader(board, result);
@@ -345,7 +345,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.paused = true;
   options.seconds = longest_case_s;
   options.brown_out_level = 3;  // setting of a flashed board
-  // A position chosen from the seed differs in each case. All other conditions are the same for each fault.
+  // Only a fault position that is chosen from the seed differs in each case.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
   options.seed = chooses ? the_case.number : the_case.phase;

@@ -21,8 +21,7 @@ class BoardRun {
 
   /// Waits for the device and opens it; false if it does not appear within the limit.
   bool connect(double limit_s);
-  /// Like connect(), for a restarted board. The function also waits until the board can report the cause of the
-  /// restart.
+  /// Like connect(), for a restarted board. Also waits until the board can report the cause of the restart.
   bool connect_after_restart();
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }

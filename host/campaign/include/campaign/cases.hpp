@@ -56,7 +56,7 @@ enum class Deed : std::uint8_t {
   bus_suspended,  ///< the PC suspends, or the last program that uses the board through USB/IP is killed
 };
 
-/// A fault at a position, or a deed. A case without fault and deed is the control case.
+/// An injected fault with its position, or another event (Deed). The control case has neither a fault nor a Deed.
 struct CaseFault {
   std::optional<protocol::InjectedFault> fault;
   std::string of;
@@ -77,8 +77,8 @@ struct Case {
   std::string name() const;
 };
 
-/// Returns the control case first and the deeds last. Faults of three equivalent parts are listed for motor 2, which
-/// carries the load at the wall.
+/// Returns the control case, then the faults, then the other events. Faults of three equivalent parts are listed for
+/// motor 2, which carries the load at the wall.
 std::vector<CaseFault> case_faults();
 /// The same fault at another of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or gimbal
 /// potentiometer. Faults of single parts are returned unchanged.

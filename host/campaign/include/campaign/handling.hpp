@@ -1,4 +1,4 @@
-// Actions of the user with hand and host: grips the stylus, presses it into a wall, switches the force on.
+// Actions of the user: gripping the stylus, pressing it into a wall, switching the force on.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int co
 /// Path to the middle, then `use_presses` times into the forward and the side wall, then `use_swings` swings
 /// (campaign/run.hpp).
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters);
-/// Path back along x, then past this point to the other side, at a speed above the limit for any force.
+/// Path back along x, then past this point to the other side, faster than the speed limit.
 std::vector<device::HandWaypoint> fling(const device::Vector3& middle_m);
 /// Grips the stylus at its position or in the inkwell, and moves it to the target.
 void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);

@@ -9,7 +9,7 @@
 
 namespace inkwell::campaign {
 
-/// Summary of the cases of a fault in a situation: their worst values.
+/// Worst values of all cases with the same fault and situation.
 struct Summary {
   unsigned cases = 0;       ///< number of completed cases
   unsigned detected = 0;    ///< a fault was reported, or the board restarted; switching the bridges off alone does not
@@ -23,7 +23,7 @@ struct Summary {
 };
 Summary summarise(std::span<const Result> results);
 
-/// Writes the page, and next to the page the plots with the name of the page. Throws device::Error.
+/// Writes the page, and plots with the same name in the same folder. Throws device::Error.
 void write_page(std::span<const Result> results, const std::filesystem::path& page);
 
 }  // namespace inkwell::campaign

@@ -42,7 +42,7 @@ struct Result {
 
   double force_limit_N = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the injection
-  /// For a fault that was not reported with the force on: the report during continued use; empty if none.
+  /// Name of the fault reported during continued use, if no fault was reported before; empty if none.
   std::string noticed_in_use_as;
   std::optional<double> noticed_in_use_s;     ///< time since the start of the use
   std::optional<double> peak_force_in_use_N;  ///< at the hand; std::nullopt without continued use

@@ -7,11 +7,11 @@
 
 namespace inkwell::campaign {
 
-/// Duration of the observation of bridges and hand after the injection.
+/// Time after the injection during which bridges and hand are observed.
 inline constexpr double observed_s = 0.3;
-/// If a fault is undetected with the force on, the use of the arm continues. First the situation continues, until a
-/// swinging hand has finished its path. Then the hand presses into the forward and the side wall with the force limit,
-/// which loads each motor. Finally the hand swings.
+/// If a fault is undetected with the force on, the use of the arm continues. First the situation continues until a
+/// swinging hand has finished its path. Then the hand presses into the forward wall and the side wall at the force
+/// limit, so that each motor carries load. Finally the hand swings.
 inline constexpr double goes_on_s = 0.6;
 inline constexpr int use_presses = 2, use_swings = 4;
 
