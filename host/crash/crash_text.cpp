@@ -9,7 +9,8 @@
 namespace inkwell::crash {
 namespace {
 
-/// A bit of CFSR and its meaning (ARMv7-M, B3.2.15). A lost stack also explains the bits set together with it.
+/// A bit of CFSR and its meaning (ARMv7-M, B3.2.15). A stack error also explains other bits that are set at the same
+/// time.
 struct FaultBit {
   unsigned bit;
   const char* meaning;
@@ -81,7 +82,7 @@ std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) 
   const auto places = chain(crash);
   if (places.empty()) lines += "  at an unknown place, for its stack could not be read\n";
   for (std::size_t i = 0; i < places.size(); ++i) {
-    // The call ends before its return address.
+    // The call instruction is directly before its return address.
     const std::string name = image == nullptr ? "" : image->place(i == 0 ? places[i] : places[i] - 2);
     lines += fmt::format("  {} 0x{:08x}{}{}\n",
                          i == 0   ? "at  "

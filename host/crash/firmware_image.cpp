@@ -22,7 +22,7 @@ int no_other_file(Dwfl_Module*, void**, const char*, Dwarf_Addr, const char*, co
   return -1;
 }
 
-/// Only the given file is read.
+/// Debug information is read only from the given file.
 const Dwfl_Callbacks callbacks{.find_elf = dwfl_build_id_find_elf,
                                .find_debuginfo = no_other_file,
                                .section_address = dwfl_offline_section_address,
