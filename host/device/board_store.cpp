@@ -9,7 +9,7 @@ using protocol::Command;
 using protocol::StoreReport;
 using protocol::StoreResult;
 
-/// Limit in board time. Storing one parameter set takes a fraction of it.
+/// Limit in board time. Storing a parameter set takes a fraction of this limit.
 constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
 
 constexpr std::string_view was_not_stored = "The parameters were not stored.";

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns the value of `read`. A value of the wrong JSON type is an Error with this sentence.
+/// Returns the value of `read`. Throws Error with `sentence` if a value has the wrong JSON type.
 template <class Read>
 auto read_or_fail(const char* sentence, Read read) {
   try {
@@ -24,7 +24,7 @@ auto read_or_fail(const char* sentence, Read read) {
 
 constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build it again.";
 
-/// nlohmann::json converts any number to an unsigned one. For a number out of range that conversion is undefined.
+/// nlohmann::json converts any number to an unsigned number. The conversion of a number out of range is undefined.
 template <class Whole>
 Whole whole_number(const json& value, const char* sentence) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Whole>::max())

@@ -12,8 +12,8 @@ namespace inkwell::device {
 /// answer of a board.
 nlohmann::json parse_answer(std::string_view line, std::string_view command);
 
-// Read the content of an answer. A missing value is zero or empty; a trace and the list of injected faults are
-// required. All throw Error if a value has the wrong type.
+// These functions read the content of an answer. A missing value is zero or empty; a trace and the list of injected
+// faults are required. Each function throws Error if a value has the wrong type.
 BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);
 PutInFault put_in_fault_of(const nlohmann::json& answer, const protocol::InjectionRequest& asked);

@@ -25,7 +25,7 @@ constexpr unsigned timeout_ms = 20'000;  // a sector erase takes a few seconds a
 constexpr char in_use[] = "Another program updates this board's firmware. Wait for it, or close it.";
 constexpr char refused[] = "The board refused a request for its firmware update.";
 
-/// The part that USB and USB/IP share: requests as setup packets.
+/// Common part of USB and USB/IP: converts requests to setup packets.
 class Channel : public ControlChannel {
  public:
   explicit Channel(std::uint8_t interface_number) : interface_(interface_number) {}

@@ -33,10 +33,10 @@ using protocol::Command;
 using protocol::ReportId;
 
 constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
-/// For a request that the board refuses only temporarily.
+/// Time limit for a request that the board refuses only temporarily.
 BoardTimeout busy_limit() { return {2.0, 2s}; }
 constexpr auto claim_poll_interval = 5ms;
-/// Limits for the execution of a command and for a fading force.
+/// Time limits for the execution of a command and for the decrease of the force to zero.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
 /// The counter in the self-test report is not widened: only its differences are used.
@@ -44,8 +44,8 @@ constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2
 /// A claim that is not renewed expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
-/// The claims of this process. A program that opens an arm twice learns from them which of its objects drives the arm.
-/// Objects with the same seed, on different virtual boards, have the same claim.
+/// Claims of the Device objects of this process. If a program has opened an arm twice, they show which object drives
+/// the arm. Objects on different virtual boards with the same seed have the same claim.
 class OwnClaims {
  public:
   void add(std::uint32_t digest, int object) {
@@ -69,7 +69,7 @@ class OwnClaims {
 
 std::atomic<OwnClaims*> claims_of_process = nullptr;
 
-/// Never destroyed, because programs close their arms in their last destructors. A forked child starts without claims.
+/// Never destroyed, because destructors of static objects may close arms. A forked child starts without claims.
 OwnClaims& own_claims() {
   static const bool is_made = [] {
     claims_of_process = new OwnClaims;
@@ -319,7 +319,7 @@ struct Device::Implementation {
     own_claims().remove(protocol::digest_of(own_claim), object);
   }
 
-  /// Waits for an input report. A disconnected device needs no inhibitor.
+  /// Waits for an input report. Releases the sleep inhibitor if the device is disconnected.
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) {
     try {
       return transport()->read_report(report, timeout);
@@ -403,7 +403,8 @@ struct Device::Implementation {
       transport()->set_feature(
           std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
     }
-    // The board has the shapes. If their result has been replaced, they are sent again.
+    // The board has received the shapes. If newer results have replaced the result of the shapes, the shapes are sent
+    // again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
   }
 
@@ -453,7 +454,8 @@ struct Device::Implementation {
       transport()->set_feature(bytes);
       const auto result = transaction_report();
       if (result.ticket != report.ticket) {
-        // A transaction of another program came between. The result of this one is unknown, so it is sent again.
+        // Another program has sent a transaction in the meantime. The result of this transaction is unknown, so this
+        // transaction is sent again.
         if (limit.is_over(now_periods())) throw InUse("Other programs change parameters all the time. Close them.");
         continue;
       }

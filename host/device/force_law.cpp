@@ -122,7 +122,7 @@ bool join_tables(const ForceLaw& law) {
   }
   if (joined.empty() || *joined.back().law.report != *law.report) {
     if (!users.empty()) return false;
-    // Parsed again, so that the tables use a separate copy of the texts.
+    // The report is parsed again, so that the tables use a separate copy of the texts.
     auto& fresh = joined.emplace_back(Joined{parse_force_law(*law.report), {}, {}});
     fresh.parameters = fresh.law.parameters;
     fresh.signals = fresh.law.signals;

@@ -6,8 +6,8 @@
 
 namespace inkwell::device {
 
-// Only table cells whose indices differ by at most `most` are computed: all others exceed it. Once every cell of a row
-// exceeds it, the distance does too.
+// Computes only table cells whose indices differ by at most `most`, because all other cells exceed `most`. If every
+// cell of a row exceeds `most`, the distance also exceeds `most`.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
   const std::size_t beyond = most + 1;
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return beyond;

@@ -14,7 +14,7 @@ struct ParameterRequests {
 
   /// A later value of a parameter replaces the earlier one.
   void add(const std::vector<ParameterChange>& later);
-  /// Puts unsent requests ahead of these newer ones.
+  /// Inserts unsent requests before these newer requests.
   void put_before(ParameterRequests unsent);
   /// The parameter values of the device after these requests.
   protocol::ParameterSet applied_to(const protocol::ParameterSet& held) const;

@@ -11,7 +11,7 @@ bool is_before(std::uint32_t period, std::uint32_t other) { return period - othe
 
 using protocol::SignalWire;
 
-/// Reads values one after another; `ok` turns false instead of reading past the end.
+/// Reads consecutive values. At the end of the data, `ok` becomes false.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -51,7 +51,7 @@ void read_full(Reader& reader, ScopeSamples& samples) {
     for (auto signal : samples.signals) samples.values.push_back(reader.take_signal(info(signal).wire));
 }
 
-/// False if a mask is invalid: it has bits of signals that were not selected, or the first sample is incomplete.
+/// False if a mask contains signals that were not selected, or if the first sample is incomplete.
 bool read_changes(Reader& reader, ScopeSamples& samples) {
   const std::size_t signal_count = samples.signals.size();
   const std::uint32_t every_signal = static_cast<std::uint32_t>((std::uint64_t{1} << signal_count) - 1);
@@ -107,8 +107,8 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
       header.sample_count == 0 || signals_.empty())
     return refuse();
 
-  // Periods must not decrease, so either this frame or the previous one is wrong. This frame is refused, and the next
-  // one is compared with it.
+  // Periods must not decrease, so either this frame or the previous frame is wrong. This frame is refused, and the next
+  // frame is compared with this frame.
   const bool runs_backwards = next_period_ && is_before(header.first_period, *next_period_);
   if (runs_backwards) {
     next_period_ = header.first_period + header.sample_count;

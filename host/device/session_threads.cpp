@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-/// Another program may have changed the parameters. The interval is one second of board time: while that is stopped, no
-/// requests may queue up ahead of a change by the user.
+/// Refresh interval, because another program may change the parameters. The interval is in board time: while board time
+/// is stopped, no requests may queue up ahead of a change by the user.
 constexpr std::int64_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
@@ -264,7 +264,7 @@ void Session::Implementation::send_requests(Device& to) {
     restore_defaults = false;
     if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
   } catch (const Stalled&) {
-    // A repeated request would be refused again. The requests after it were not sent yet.
+    // The board would refuse a repeated request again. Later requests were not sent yet.
     if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
     put_back(std::move(taken.parameters));
     throw;

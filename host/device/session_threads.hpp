@@ -54,7 +54,7 @@ struct Session::Implementation {
   void let_force_fall(Device& of);
   /// Releases the arm after this session has not needed it for some time.
   void release_idle(Device& of, const Pose& pose);
-  /// Queues unsent requests for the next connection, ahead of newer ones.
+  /// Queues unsent requests for the next connection, ahead of newer requests.
   void put_back(ParameterRequests unsent);
   /// A refusal by the board is shown to the user and does not close the connection.
   void carry_out(Device& by, StoreTask task);

@@ -19,7 +19,7 @@
 namespace inkwell::device {
 namespace {
 
-/// systemd-inhibit holds the inhibitor while `cat` reads from the pipe, until the other end of the pipe is closed.
+/// systemd-inhibit blocks sleep while `cat` reads from the pipe, until the other end of the pipe is closed.
 constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--what=sleep:idle",
                                                        "--who=Inkwell",   "--why=The force of the haptic arm is on",
                                                        "--mode=block",    "cat"};
@@ -27,7 +27,7 @@ constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--wha
 class SpawnAttributes {
  public:
   /// The child runs in a separate session: Ctrl-C does not stop it, and it cannot ask for a password on the terminal.
-  /// It does not inherit the program's signal handling.
+  /// The child does not inherit the program's signal handling.
   SpawnAttributes() {
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;
@@ -75,7 +75,7 @@ class RunningInhibitor {
     child_ = spawn(from_here.number());
   }
   ~RunningInhibitor() {
-    // The program may have reaped all its children. The number may then belong to another process.
+    // The program may have reaped all its children. The process number may then belong to another process.
     if (child_ != 0 && waitpid(child_, nullptr, WNOHANG) == 0) {
       kill(child_, SIGKILL);  // the child may wait for logind
       while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {

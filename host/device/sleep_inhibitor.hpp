@@ -16,14 +16,14 @@ namespace inkwell::device {
 class SleepInhibitor {
  public:
   SleepInhibitor() = default;
-  /// Releases the inhibitor. In a forked child it does not release the parent's inhibitor.
+  /// Releases the inhibitor. A forked child does not release the parent's inhibitor.
   ~SleepInhibitor();
   SleepInhibitor(const SleepInhibitor&) = delete;
   SleepInhibitor& operator=(const SleepInhibitor&) = delete;
 
   /// Starts the thread that follow() needs. Only the first call has an effect. Any thread may call this.
   void prepare();
-  /// Acquires or releases the inhibitor asynchronously. Any thread may call this. It has no effect until prepare() was
+  /// Acquires or releases the inhibitor asynchronously. Any thread may call this. Has no effect before prepare() was
   /// called, or in a forked child.
   void follow(bool is_wanted) { request(is_wanted ? Request::hold : Request::release); }
 

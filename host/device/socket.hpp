@@ -22,7 +22,7 @@ class Socket {
   /// Limits the wait for received bytes; exceeding it throws Error. The default is no limit.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
 
-  /// These throw Disconnected when the peer has closed the connection.
+  /// These functions throw Disconnected when the peer has closed the connection.
   void send(std::span<const std::byte> bytes);
   void receive(std::span<std::byte> bytes);  ///< fills `bytes`
   std::size_t receive_some(std::span<std::byte> bytes);

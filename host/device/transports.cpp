@@ -27,7 +27,7 @@ std::unique_ptr<Transport> open_transport(const Endpoint& endpoint) {
 }
 
 std::string permission_message(const std::string& path) {
-  // A rule numbered 73 applies uaccess, so the file name has to sort ahead of it.
+  // The system's rule file number 73 applies uaccess, so the number of this file must be lower than 73.
   return fmt::format(
       "You may not open the arm at {}. Inkwell's package brings the udev rule for that; plug the arm in again after "
       "installing it. Without the package, write this line into /etc/udev/rules.d/60-inkwell.rules first: {}",

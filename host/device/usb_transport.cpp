@@ -25,7 +25,7 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// Usage page of the interface for poses and commands; the game controller interface has another one.
+/// Usage page of the interface for poses and commands; the game controller interface has another usage page.
 constexpr unsigned short vendor_usage_page = 0xFF00;
 
 /// Largest feature report that the device declares.
@@ -37,7 +37,7 @@ std::string narrow(const wchar_t* text) {
   return protocol::plain_text(result);
 }
 
-/// Reads the bulk interface through libusb. The kernel driver keeps the HID interface for hidapi.
+/// Reads the bulk interface through libusb. The HID interface remains with the kernel driver, which hidapi uses.
 class BulkReader {
  public:
   BulkReader(const std::string& serial_number, TransferQueue& queue)
@@ -235,8 +235,8 @@ class UsbTransport : public Transport {
     throw Disconnected(with_detail(unplugged, result.detail));
   }
 
-  /// hidapi does not distinguish a refusal from an unplugged device. A device that refuses one request answers another
-  /// one, and an unplugged device soon disappears from the system's list.
+  /// hidapi does not distinguish a refusal from an unplugged device. A connected device that refuses one request
+  /// answers another request. An unplugged device soon disappears from the system's list.
   bool is_present() {
     constexpr int looks = 10;
     std::array<std::byte, feature_report_maximum> buffer;
@@ -266,7 +266,7 @@ std::vector<Endpoint> find_usb_devices() {
   std::vector<Endpoint> endpoints;
   const auto list = list_devices();
   for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
-    // Private projects share these test identifiers, so the product name decides.
+    // Other private projects use the same USB test identifiers, so the product name is checked.
     const std::string product = narrow(device->product_string);
     if (product != identity::product || device->usage_page != vendor_usage_page) continue;
     endpoints.push_back({Endpoint::Kind::usb, narrow(device->serial_number), product, device->path, "", 0});

@@ -38,7 +38,7 @@ inline constexpr std::uint32_t listed_devices_maximum = 256;
 std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive);
 
 /// Receives the answer to an import request: the device id for transfers, or none if the device is unavailable. Throws
-/// the same errors.
+/// the errors of receive_device_list().
 std::optional<std::uint32_t> receive_import(const ReceiveBytes& receive);
 
 struct UsbipCompletion {

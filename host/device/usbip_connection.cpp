@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Until the import: a peer that is not a USB/IP server may never answer.
+/// Time limit before the import, because a peer that is not a USB/IP server may never answer.
 constexpr auto reply_timeout = 3s;
 
 ReceiveBytes from(Socket& socket) {
@@ -183,7 +183,8 @@ void UsbipConnection::receive(std::span<std::byte> bytes) {
 
 void UsbipConnection::receive_answer() {
   const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
-  // The transfer stays open until its answer is complete, so that an incomplete answer still ends the waiting call.
+  // The transfer stays open until its answer is complete, so that the waiting call fails if the connection fails
+  // before.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);

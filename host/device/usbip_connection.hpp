@@ -25,7 +25,8 @@ std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server);
 
 class UsbipConnection {
  public:
-  /// A request takes some milliseconds of board time. On a busy computer the board time of a virtual board may be slow.
+  /// A request takes some milliseconds of board time. On a busy computer the board time of a virtual board may run
+  /// slowly.
   static constexpr auto control_timeout = std::chrono::seconds(15);
 
   using Completion = UsbipCompletion;

@@ -25,7 +25,7 @@ constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // one second; then the oldest are dropped, which the sequence shows
 constexpr std::size_t writes_under_way = 16;
 constexpr std::size_t writes_in_lock_step = 1024;
-// Limits for a device that accepts no command: one second of board time, which its reports show, or this wall time
+// Limits for a device that accepts no command: this number of reports (one second of board time), or this wall time
 // without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
@@ -102,7 +102,7 @@ class UsbipTransport : public Transport {
       scope_claimed_ = true;
       ask_for_bulk();
     }
-    // Requests are processed in order: once this answer arrives, a refusal of the bulk request has also arrived.
+    // Requests are answered in order, so a refusal of the bulk request arrives before this answer.
     try {
       carry_out([&] { connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18)); });
     } catch (...) {
@@ -117,8 +117,8 @@ class UsbipTransport : public Transport {
     for (int i = 1; i < bulk_transfers; ++i) ask_for_bulk();
   }
 
-  /// The server releases the scope when a transfer was canceled and none is left. Completed transfers alone do not
-  /// release it.
+  /// The server releases the scope when a transfer was canceled and no transfer is pending. Completed transfers alone
+  /// do not release it.
   void release_scope() override {
     std::unique_lock lock(bulk_mutex_);
     if (!std::exchange(scope_claimed_, false)) return;
@@ -148,8 +148,9 @@ class UsbipTransport : public Transport {
   bool is_in_lock_step() const { return endpoint_.lock_step != nullptr; }
   bool is_report_to_come() const { return reports_asked_ > 0 || reports_.size() > 0; }
 
-  /// Executes a control transfer. In lock step, the board lets time pass for it only while a report is requested. The
-  /// thread that reads reports cannot request one during its own transfer, so this function requests it.
+  /// Executes a control transfer. In lock step, board time passes during the transfer only while a report is requested.
+  /// The thread that reads reports cannot request a report during its own transfer, so this function requests the
+  /// report.
   template <class Transfer>
   std::invoke_result_t<Transfer> carry_out(Transfer transfer) {
     const bool is_out_of_step = is_in_lock_step() && reads_reports_ && !endpoint_.lock_step->is_in_step();
@@ -246,8 +247,8 @@ class UsbipTransport : public Transport {
     if (!scope_claimed_) return;
     if (!done.data.empty()) bulk_.push(std::move(done.data));
     if (bulk_.size() < bulk_kept) return ask_again([this] { ask_for_bulk(); });
-    // A virtual board waits for a streaming host that is silent, because the computer may be busy. It does not wait for
-    // a host that cancels a request.
+    // A virtual board waits for a streaming host that is silent, because the computer may be busy. The board does not
+    // wait for a host that cancels a request.
     if (bulk_owed_++ == 0 && !bulk_under_way_.empty())
       ask_again([this] { connection_.unlink(bulk_under_way_.back()); });
   }

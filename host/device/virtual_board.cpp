@@ -55,7 +55,7 @@ struct Pipe {
   }
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
-  /// Call this once the board has inherited the write end.
+  /// Call this after the board has inherited the write end of the pipe.
   void keep_read_end() {
     close_write_end();
     own = process::OwnDescriptor(read_end);

@@ -56,7 +56,8 @@ Address parse_address(std::string_view text);
 SocketAddress parse_socket(std::string_view text);
 /// The address of the arm at a USB/IP server. Throws BadAddress.
 Address parse_server(std::string_view text);
-/// The address of an endpoint. Call it after the device was opened, because its serial number is unknown before.
+/// The address of an endpoint. Call this function after the device was opened, because the serial number is unknown
+/// before.
 std::string address_of(const Endpoint& endpoint);
 
 /// The arms that match the address; empty for a virtual board that is not started yet. Throws Error if a server does

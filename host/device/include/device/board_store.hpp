@@ -25,10 +25,10 @@ class NotStored : public Error {
   protocol::StoreReport report;
 };
 
-/// Stores the current parameters and waits until the flash holds them. Throws NotStored with the remedy if the board
-/// refuses, for example while the force is on. Throws Error if the board does not carry out the command.
+/// Stores the current parameters and waits until they are in flash memory. Throws NotStored with the remedy if the
+/// board refuses, for example while the force is on. Throws Error if the board does not carry out the command.
 protocol::StoreReport store_parameters(Device& device);
-/// Erases the stored parameters and sets every parameter to its default. Throws the same errors.
+/// Erases the stored parameters and sets every parameter to its default. Throws the errors of store_parameters().
 protocol::StoreReport factory_reset(Device& device);
 
 }  // namespace inkwell::device

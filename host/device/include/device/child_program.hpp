@@ -15,7 +15,7 @@
 
 namespace inkwell::device {
 
-/// A new, empty folder for files. Throws Error if the system refuses it.
+/// Creates a new, empty folder. Throws Error on failure.
 local::PrivateFolder make_private_folder();
 
 struct ChildProgram {

@@ -72,8 +72,8 @@ using ParameterChange = std::pair<protocol::Parameter, float>;
 /// Several threads may use a device. Only one thread may read poses, and only one may read the scope.
 class Device {
  public:
-  /// Opens the device and checks the protocol version first. Throws Error with the remedy if the version differs. The
-  /// rows of its force law are added to the tables; throws Error if the tables contain another force law.
+  /// Opens the device and checks the protocol version first. Throws Error with the remedy if the version differs. Adds
+  /// the rows of the device's force law to the tables. Throws Error if the tables contain another force law.
   static std::unique_ptr<Device> open(const Endpoint& endpoint);
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
@@ -104,23 +104,23 @@ class Device {
   /// Throws InUse with the driver's name if another object or program drives the arm. If that process does not exist on
   /// this computer, claim() first waits for its claim to expire.
   void claim();
-  /// Like claim(), but ends the claim of the current driver. The force of that program fades out.
+  /// Like claim(), but ends the claim of the current driver, whose force fades out.
   void take_over();
-  /// Ends the claim, and with it shapes and force. It has no effect if this object does not drive the arm, or in a
-  /// forked child, whose claim belongs to the parent.
+  /// Ends the claim, which removes the shapes and the force. Has no effect if this object does not drive the arm. Has
+  /// no effect in a forked child, because the claim belongs to the parent.
   void release();
   /// Drops the claim without informing the board, like a killed program.
   void abandon();
   /// Whether this object drives the arm. read_pose() detects the loss of the claim.
   bool drives() const;
 
-  /// Sends a command and returns once the control interrupt has executed it. A command that does not fit the state has
-  /// no effect and is not an error. Throws InUse if another program drives the arm, and Error if the board does not
-  /// execute the command in time.
+  /// Sends a command and returns once the control interrupt has executed it. A command that the current state does not
+  /// allow has no effect and is not an error. Throws InUse if another program drives the arm, and Error if the board
+  /// does not execute the command in time.
   void carry_out(protocol::Command command);
   void carry_out(protocol::Command command, const protocol::TestPulse& pulse);
-  /// Switch the force off and return once it is off. stop() acts immediately, also if another program drives the arm.
-  /// disable_force() fades the force out, and throws InUse if another program drives the arm.
+  /// These functions switch the force off and return when the force is off. stop() acts immediately, also if another
+  /// program drives the arm. disable_force() fades the force out, and throws InUse if another program drives the arm.
   void stop();
   void disable_force();
   /// disable_force(), or stop() if another program drives the arm.
@@ -137,7 +137,7 @@ class Device {
   /// Throws InUse if another program uses the scope.
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
-  /// Waits until the board has every command and force that was sent; false on time-out. A force that is sent
+  /// Waits until the board has received every command and force that was sent; false on time-out. A force that is sent
   /// afterwards does not queue and arrives in the next bus frame.
   bool wait_until_written(std::chrono::milliseconds timeout);
   /// Sets the force until the next request or its expiry. Every request is a sign of life. Throws Error if the board
@@ -148,20 +148,21 @@ class Device {
   void place_shapes(const Shapes& shapes);
 
   protocol::ParameterSet parameters();
-  /// One transaction: either all changes take effect in one control period, or none and Refused is thrown.
+  /// One transaction: either all changes take effect in one control period, or Refused is thrown and no change takes
+  /// effect.
   AcceptedTransaction set_parameters(std::span<const ParameterChange> changes);
   AcceptedTransaction restore_default_parameters();
-  /// Sets every parameter to its value after the next start. Throws Refused if the board has no stored parameters.
+  /// Sets every parameter to its stored value. Throws Refused if the board has no stored parameters.
   AcceptedTransaction restore_stored_parameters();
   /// The parameter values after the next start: the stored values, or the defaults.
   protocol::ParameterSet stored_parameters();
   /// The state of the stored parameters. The commands that change them are in board_store.hpp.
   protocol::StoreReport store_report();
 
-  /// The black box of the last fault; its `fault` is none if the black box is empty. Its counters and those of its rows
-  /// count from the board start during which the fault occurred, and are not widened.
+  /// The black box of the last fault; its `fault` is none if the black box is empty. All counters count from the last
+  /// board start before the fault, and are not widened.
   protocol::BlackBoxReport black_box();
-  /// The rows of this black box in chronological order. Throws Error if the board has discarded it meanwhile.
+  /// The rows of this black box in chronological order. Throws Error if the board has discarded this black box.
   std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);
 
   /// The newest result of each self-test item.

@@ -46,7 +46,7 @@ std::string log_line(std::string_view clock_utc, std::optional<double> time_s, E
 /// Uses the board time of the event.
 std::string line_of(const Event& event);
 
-/// The differences between a pose and the previous one, if any: force on or off, a fault or its end.
+/// The events between a pose and the previous pose, if any: force on or off, fault raised or cleared.
 /// `noticed_at_periods`: more accurate time of the current fault, if known.
 std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
                                   std::optional<std::int64_t> noticed_at_periods);

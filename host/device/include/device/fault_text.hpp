@@ -14,7 +14,7 @@ struct FaultText {
 };
 
 FaultText fault_text(protocol::Fault fault);
-/// The same; for self_test_failed with the failed items and their remedies.
+/// Cause and remedy of a fault; for self_test_failed, the failed items and their remedies.
 FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test);
 
 /// One line with the fault's name, its cause and its remedy.

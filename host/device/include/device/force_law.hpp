@@ -13,7 +13,7 @@
 namespace inkwell::device {
 
 struct ForceLaw {
-  /// The report of the device with its texts cleaned. The texts of all rows refer to it.
+  /// The report of the device without unprintable characters. The texts of all rows point into this report.
   std::shared_ptr<const std::vector<std::byte>> report;
   std::string_view name;  ///< name of its file and struct
   std::string_view help;

@@ -11,7 +11,7 @@
 
 namespace inkwell::device {
 
-/// A name that no table has. It may belong to the force law of a device that was not opened yet.
+/// A name that no table contains. The name may belong to the force law of a device that was not opened yet.
 class UnknownName : public Error {
  public:
   using Error::Error;
@@ -21,12 +21,12 @@ class UnknownName : public Error {
 /// `most` + 1.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
-/// Whether `name` was probably meant by the typed text. It contains the text, or few edits lead from the text to the
-/// name or to its beginning.
+/// Whether the user probably meant `name`. This is true if `name` contains the typed text, or if few edits change the
+/// typed text to `name` or to its beginning.
 bool is_near(std::string_view name, std::string_view typed);
 
 /// " Did you mean NAME?" with the most similar name of the table. A name that contains the typed text has priority over
-/// a name that takes few edits. Empty if no name is similar.
+/// a name that differs by few edits. Empty if no name is similar.
 template <class Table>
 std::string suggestion(const Table& table, std::string_view typed) {
   const std::string_view* nearest = nullptr;

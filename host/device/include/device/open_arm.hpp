@@ -20,12 +20,12 @@ struct OpenArm {
 };
 
 /// Opens the arm at the address. For an `own_board` address, starts a virtual board with these options and the
-/// address's arm description, and sends it the parameters of that description. A board that starts paused goes to
-/// standby. With a virtual board, the device uses `lock_step` unless that is null. Throws Error, or NoDevice if no arm
-/// is found.
+/// address's arm description, and sends it the parameters of that description. A board that starts paused enters
+/// standby. The device of a virtual board uses `lock_step` unless `lock_step` is null. Throws Error, or NoDevice if no
+/// arm is found.
 OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step = nullptr);
 
-/// The parameters that an arm description sets. Throws Error with the line of a mistake.
+/// The parameters that an arm description sets. Throws Error with the line number of a mistake.
 std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file);
 
 }  // namespace inkwell::device

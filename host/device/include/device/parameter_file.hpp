@@ -42,7 +42,7 @@ std::string format_value(protocol::Parameter parameter, float value);
 std::optional<float> parse_number(std::string_view text);
 /// Parses a value with a decimal point. Throws Error if it is not a number or is out of range.
 float parse_value(protocol::Parameter parameter, std::string_view number);
-/// Parses "NAME=VALUE". Throws Error with the most similar name or with the range if this is not possible.
+/// Parses "NAME=VALUE". Throws Error with the most similar name or with the allowed range if the text is invalid.
 ParameterChange parse_change(std::string_view text);
 /// Throws Error, with the most similar name if any, if no parameter has this name.
 protocol::Parameter parameter_named(std::string_view name);

@@ -31,7 +31,7 @@ struct Surface {
   float life_s = std::numeric_limits<float>::infinity();
 };
 
-/// A wall. The probe is a point for it.
+/// A wall, which treats the probe as a point.
 struct Plane {
   std::array<float, 3> point_m{};                 ///< any point on the plane
   std::array<float, 3> normal{0.0f, 0.0f, 1.0f};  ///< direction into the free space, of any length except 0
@@ -51,7 +51,8 @@ struct Shapes {
   std::optional<Sphere> sphere;
 };
 
-/// The reports for the board. Both functions throw Error with the value that the board would refuse and its range.
+/// These functions create the reports for the board. If the board would refuse a value, they throw Error with this
+/// value and its range.
 protocol::ForceReport force_report(const ForceRequest& request);
 protocol::ShapesReport shapes_report(const Shapes& shapes);
 

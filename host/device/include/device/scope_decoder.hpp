@@ -1,4 +1,4 @@
-// Decodes scope frames to samples. It has no side effects and validates all received bytes.
+// Decodes scope frames to samples. Decoding has no side effects, and all received bytes are validated.
 #pragma once
 
 #include <array>
@@ -27,25 +27,25 @@ class ScopeDecoder {
   /// Announces the selection of the select_signals command with this token: at most scope_signals_maximum signals.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
-  /// Rejects samples from control periods before this one, whatever their token: they belong to an earlier program.
-  /// An endpoint may retain its last frame for hours.
+  /// Rejects samples from control periods before `period` with any token, because they belong to an earlier program. An
+  /// endpoint may retain its last frame for hours.
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
-  /// Call this with the current control period before each selection. Without it, a frame more than 29 hours after
-  /// the period of forget_before() would seem to precede that period, because the 32-bit counter wraps.
+  /// Call this with the current control period before each selection. Otherwise, a frame more than 29 hours after the
+  /// period of forget_before() would seem to precede that period, because the 32-bit counter wraps.
   void pass_time(std::uint32_t now_period) {
     constexpr std::uint32_t recent_periods = 0x4000'0000;
     if (first_wanted_period_ && now_period - *first_wanted_period_ > recent_periods) first_wanted_period_ = now_period;
   }
 
-  /// The samples of one frame. None if the frame is malformed (counted) or belongs to another selection than the newest
-  /// one. `first_period` is not widened.
+  /// The samples of one frame. None if the frame is malformed (counted) or does not belong to the newest selection.
+  /// `first_period` is not widened.
   ///
   /// `lost_before` counts the control periods between the previously decoded frame and this one. If the first frames of
-  /// a selection are missing, their sample counts are unknown; each then counts as one period.
+  /// a selection are missing, their sample counts are unknown; each missing frame then counts as one period.
   ///
-  /// A program that releases the scope cancels its transfers, possibly within a frame. The device sends the rest of
-  /// that frame to the next reader. One transfer without a header is therefore not counted as malformed if it comes
-  /// before the first frame after the scope was stopped.
+  /// A program that releases the scope cancels its transfers, possibly in the middle of a frame. The device sends the
+  /// rest of that frame to the next reader. One transfer without a header is therefore not counted as malformed if it
+  /// arrives before the first frame after the scope was stopped.
   std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
 
   std::uint64_t malformed_frames() const { return malformed_frames_; }

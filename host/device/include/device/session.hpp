@@ -22,7 +22,7 @@ enum class Connection : std::uint8_t { searching, connected, incompatible, no_pe
 struct NoticedFault {
   protocol::Fault fault;
   /// The control period in which the fault was raised. For a fault that is reported after a restart: the period of the
-  /// first pose with it.
+  /// first pose with this fault.
   std::int64_t at_periods;
   bool operator==(const NoticedFault&) const = default;
 };
@@ -62,7 +62,7 @@ struct Reconnection {
 
 class Session {
  public:
-  /// While no device is connected, `find` is called repeatedly to find one.
+  /// While no device is connected, `find` is called repeatedly to find a device.
   explicit Session(std::function<std::optional<Endpoint>()> find);
   /// Sends the queued requests if a device is connected.
   ~Session();
@@ -86,18 +86,18 @@ class Session {
   /// Queues one transaction. Changes that were queued since the last transaction are merged into it.
   void set_parameters(std::vector<ParameterChange> changes);
   void restore_default_parameters();
-  /// Stores the board's parameters after the pending changes were sent. It has no effect without a device and is not
-  /// repeated after a disconnection.
+  /// Stores the board's parameters after the pending changes were sent. The request has no effect without a device and
+  /// is not repeated after a disconnection.
   void store_parameters();
   /// Erases the stored parameters and sets every parameter to its default.
   void factory_reset();
   /// The newest reconnection while the device is connected. None before the first reconnection, or if the connected
-  /// device is not the lost one.
+  /// device is not the lost device.
   std::optional<Reconnection> reconnection() const;
   /// The refusal of the newest transaction; empty after an accepted one.
   std::optional<std::string> refusal() const;
 
-  /// The events since the last call. If there are too many, only the newest ones.
+  /// The events since the last call; if there are too many, only the newest events.
   std::vector<Event> take_events();
 
   /// Selects these signals for every control period, also after each reconnection.

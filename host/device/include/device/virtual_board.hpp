@@ -1,5 +1,5 @@
-// Starts and owns the `virtual-board` program. The board exits with this object, and with this process even if it is
-// killed.
+// Starts and owns the `virtual-board` program. The board exits when this object is destroyed and when this process
+// exits, even if the process is killed.
 #pragma once
 
 #include <cstdint>
@@ -39,14 +39,15 @@ struct VirtualBoardOptions {
   bool real_time = true;         ///< synchronizes board time with wall time
   bool paused = false;           ///< starts with board time stopped
   bool lock_step = false;        ///< board time passes only while the programs that use the device wait for it
-  /// Board time in seconds after which the board exits. Board time then continues after a processor lock-up, because
-  /// the watchdog may reset the chip.
+  /// Board time in seconds after which the board exits. With this option, board time continues after a processor
+  /// lock-up, because the watchdog may reset the chip.
   std::optional<double> seconds = {};
   bool from_boot_loader = false;  ///< the boot loader of the chip starts the firmware, instead of a reset
   bool strict = false;            ///< the board exits when the firmware violates a rule of the chip
 };
 
-/// Create it in a thread that lives as long as the board is needed: Linux terminates the board when that thread exits.
+/// Create this object in a thread that lives as long as the board is needed: Linux terminates the board when that
+/// thread exits.
 class VirtualBoard {
  public:
   /// Starts the program and waits until it is ready. Throws Error with the program's message if it fails.

@@ -7,7 +7,7 @@
 
 namespace inkwell::device {
 
-/// A PoseReport. Its members have the same meaning there.
+/// A PoseReport with widened counters. protocol::PoseReport describes the members.
 struct Pose {
   protocol::State state{};
   protocol::Fault fault{};
