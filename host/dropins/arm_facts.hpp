@@ -33,7 +33,7 @@ ArmFacts read_facts(inkwell_arm* arm);
 /// The force at the probe that corresponds to these joint torques (tau = J^T F); zero where the arm is singular.
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm);
 
-/// Jacobian in row-major order, m/rad: multiplied by the joint speeds it is the velocity of the probe.
+/// Jacobian in row-major order, m/rad. The Jacobian times the joint speeds is the probe velocity.
 std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]);
 
 }  // namespace inkwell::dropins

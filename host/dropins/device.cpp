@@ -16,7 +16,7 @@ constexpr double motor_value_full = 32767.0;
 /// Intervals for reading the motor heat and for checking the arm's state.
 constexpr auto heat_period = 500ms, care_period = 20ms;
 constexpr double enable_timeout_s = 1.0;
-/// Weight of a new angular velocity in the smoothed one, once per millisecond.
+/// Weight of each new sample, one per millisecond, in the smoothed angular velocity.
 constexpr double angular_smoothing = 0.125;
 /// Below this speed the probe counts as stationary.
 constexpr double rest_m_per_s = 0.1;
@@ -27,7 +27,7 @@ bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == IN
 /// Whether the board has judged the request. Other results come from the link or from the claim of a lost link.
 bool is_judged(inkwell_result result) { return result == INKWELL_OK || result == INKWELL_REFUSED; }
 
-/// Faults that the board raises when a program with force has exited or is late.
+/// Faults that the board raises when a program exits or is late while the force is on.
 bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
@@ -71,7 +71,7 @@ Device::Device(Handle handle, std::string name, const std::string& address)
 }
 
 /// In HDAPI a device belongs to one program, and its force is initially off. The force or the exit of a previous
-/// program must not affect this one.
+/// program must not affect this program.
 void Device::claim() {
   const double none_N[3]{};
   require(inkwell_set_force(arm(), none_N));  // reports another driver now instead of with the first force
@@ -265,14 +265,14 @@ void Device::care() {
     bool asked_for = force_is_asked_for_;
     lock.unlock();
     inkwell_pose pose;
-    // A failure has two possible causes. The next frame reports a lost link, and the next pass retries if the arm is
-    // not ready.
+    // A failure means that the link is lost or the arm is not ready. The next frame reports a lost link. The next pass
+    // retries if the arm is not ready.
     const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
-    // A silence has no effect here: the wait then ends with a time-out.
+    // A silent board is not a lost link, because the wait then returns a time-out.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
     // The force is not switched on automatically after another program, a lasting fault or a lost link has switched it
-    // off. The program must request it again.
+    // off. The program must request the force again.
     const bool was_on = is_on;
     if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;
     const bool passes_by = !is_lost && pose.state == INKWELL_FAULT && passes(pose.fault);

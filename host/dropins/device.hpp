@@ -89,7 +89,7 @@ class Device {
   /// The requests of the current frame.
   Command& command() { return now_.command; }
 
-  /// Called when the scheduler starts or stops. The force follows this state and the capability.
+  /// Called when the scheduler starts or stops. The force depends on this state and on the capability.
   void set_scheduler_runs(bool runs);
   /// Switches the force on or off as the program requests, also after a loss.
   void follow_force_output();

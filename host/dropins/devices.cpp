@@ -27,7 +27,7 @@ inkwell_address_kind kind_of(const std::string& address) {
   return kind;
 }
 
-/// Each opening of such an address starts a separate board.
+/// True if each opening of the address starts a separate board.
 bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
 thread_local Handle current_here = invalid_handle;
@@ -107,7 +107,7 @@ bool Devices::close(Handle handle) {
     device = std::exchange(devices_[handle], nullptr);
     if (current_ == handle) current_ = invalid_handle;
   }
-  // The scheduler may still wait for a pose of the device. The arm must be closed when this returns.
+  // The scheduler may still wait for a pose of the device. The arm must be closed when this function returns.
   while (device.use_count() > 1) std::this_thread::sleep_for(1ms);
   return true;
 }

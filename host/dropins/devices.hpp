@@ -25,7 +25,7 @@ class Devices {
   /// Does not lock the mutex, because a thread that does not exist in the child may have held it.
   ParentsDevices as_parents() const;
 
-  /// Every call of the interface locks this while it uses a device, but not while it opens or closes one.
+  /// Every call of the interface locks this mutex while it uses a device, but not while it opens or closes a device.
   std::mutex& mutex() { return mutex_; }
 
   /// Opens the arm with this name and makes it current. On failure raises an error and returns invalid_handle. Locks
@@ -41,14 +41,14 @@ class Devices {
 
   /// The device with this handle. If there is none, returns NULL and raises BAD_HANDLE.
   Device* find(Handle handle);
-  /// The current device of the calling thread, so that frames of other threads do not change it. For a thread that has
-  /// selected none, the last selection in the program.
+  /// The current device of the calling thread. For a thread that has selected no device, the device that the program
+  /// selected last.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
   /// Keeps the current device open while the mutex is unlocked. If there is none, returns NULL and raises BAD_HANDLE.
   std::shared_ptr<Device> hold_current();
   bool make_current(Handle handle);
-  /// Affects only the calling thread. It has no effect if there is no such device.
+  /// Selects the device for the calling thread only. Has no effect if the handle has no device.
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   void renew_forces();

@@ -63,7 +63,7 @@ struct Stack {
   std::set<std::string> kept;
 };
 
-/// Never destroyed, because programs read errors in their last destructors.
+/// Never destroyed, because destructors of static objects may read errors.
 Stack& stack() {
   static auto& stack = *new Stack;
   return stack;

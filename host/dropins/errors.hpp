@@ -7,8 +7,8 @@
 
 namespace inkwell::dropins {
 
-/// Pushes an error. `sentence` states the problem and the remedy; without it the text of the code is used. When the
-/// stack is full, the oldest error is dropped.
+/// Pushes an error. `sentence` states the problem and the remedy; if it is empty, the text of the code is used. When
+/// the stack is full, the oldest error is dropped.
 void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int internal_code = 0);
 
 /// Pops the newest error; `success` if there is none.

@@ -1,4 +1,5 @@
-// Force limits that HDAPI guarantees: bounded, without jumps, off above the speed limit, and restored by a ramp.
+// Force limits that HDAPI guarantees: a maximum, no jumps, no force above the speed limit, and a ramp after an
+// interruption.
 #pragma once
 
 #include <array>

@@ -56,6 +56,6 @@ INKWELL_HD HdBoolean hdDeploymentLicense(const char* vendor, const char* applica
 INKWELL_HD HdBoolean hdScaleGimbalAngles(double x, double y, double z, double transform[16]);
 
 /// Not part of HDAPI. libhdPhantom.so uses it to remove the errors of one device from the stack, because its frames are
-/// invisible to the program. Returns 1 if the loss of the link was among them.
+/// invisible to the program. Returns 1 if the removed errors included a lost link.
 INKWELL_HD HdBoolean hdInkwellForgetErrors(HdHandle device);
 }

@@ -1,7 +1,8 @@
-// libhdPhantom.so, through which CHAI3D 3 finds an Omni. It is a client of libHD.so with one frame per tick for each
-// open device.
+// libhdPhantom.so, through which CHAI3D 3 finds an Omni. The library is a client of libHD.so with one frame per tick
+// for each open device.
 //
-// CHAI3D: x points to the user, y to the right, z up. These are HDAPI's z, x and y axes. Units are meters and newtons.
+// CHAI3D's x axis points to the user, y to the right, z up; they are HDAPI's z, x and y axes. CHAI3D's units are meters
+// and newtons.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -30,7 +31,7 @@ constexpr Enum current_buttons = 0x2000, current_position = 0x2050, current_velo
                current_transform = 0x2052, usable_workspace = 0x2551, current_force = 0x2700, force_output = 0x4000;
 constexpr unsigned short priority = 32767;
 constexpr char type_text[] = "PHANTOM Omni";
-/// For a tick; the original waits indefinitely.
+/// Time limit for a tick; the original library waits indefinitely.
 constexpr auto tick_patience = 1s;
 /// Ticks until a force expires. A working program sets a force in each tick, and a hanging program must lose its force.
 constexpr int force_ticks = 100;
@@ -137,7 +138,7 @@ void list_arms() {
   std::vector<inkwell_device> arms(count);
   if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return;
   arms.resize(std::min(count, arms.size()));
-  // The arm that INKWELL_DEVICE names is last in the list, but it is the preferred one.
+  // The arm that INKWELL_DEVICE names is last in the list, but must be the first choice.
   std::reverse(arms.begin(), arms.end());
   servo().addresses.clear();
   for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);

@@ -12,8 +12,8 @@ using namespace inkwell::dropins;
 
 namespace {
 
-/// The table row for a call with this type, and the current device if the row needs one. Raises an error for an invalid
-/// call.
+/// The table row for a call with this type, and the current device if the row needs a device. Raises an error for an
+/// invalid call.
 struct Asked {
   const Parameter* row = nullptr;
   Device* device = nullptr;
@@ -70,7 +70,7 @@ void set(Enum value, unsigned type, const Value* values) {
   });
 }
 
-/// Runs `action` with the current device's capability. Raises an error if there is none.
+/// Runs `action` with the current device's capability. Raises an error if there is no device or no such capability.
 template <class Action>
 void with_capability(Enum capability, Action action) {
   guarded([&] {

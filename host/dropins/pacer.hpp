@@ -1,4 +1,5 @@
-// Times the scheduler's ticks by the poses of the first device that sends any, otherwise by the computer's clock.
+// Derives the scheduler's ticks from the poses of the first device that sends poses, otherwise from the computer's
+// clock.
 #pragma once
 
 #include <chrono>

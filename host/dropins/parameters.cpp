@@ -9,7 +9,7 @@
 namespace inkwell::dropins {
 namespace {
 
-// The published values of the Omni, for programs that scale by them.
+// Published stiffness and damping of the Omni, which programs use to scale their forces.
 constexpr double stiffness_N_per_mm = 0.5, damping_Ns_per_mm = 0.002;
 constexpr double tabletop_offset_mm = 110.0;  // height of the origin above the table
 constexpr double input_axes = 6, output_axes = 3;

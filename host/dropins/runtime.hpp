@@ -19,7 +19,7 @@ struct Runtime {
                       }};
 };
 
-/// Never destroyed, because programs call the library in their last destructors. A forked child has a separate runtime:
+/// Never destroyed, because destructors of static objects may call the library. A forked child has a separate runtime:
 /// the devices and the servo thread belong to its parent.
 Runtime& runtime();
 

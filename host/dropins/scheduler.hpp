@@ -20,8 +20,8 @@ namespace inkwell::dropins {
 
 class Scheduler {
  public:
-  /// Waits for the next tick, which comes after this number of poses of the device. Returns soon after `ends` returns
-  /// true. Returns the time between the ticks in seconds, or 0 if it is unknown.
+  /// Waits for the next tick, that is, for this number of poses of the device. Returns early if `ends` returns true.
+  /// Returns the time between the ticks in seconds, or 0 if it is unknown.
   using Pace = std::function<double(std::uint32_t poses, const std::function<bool()>& ends)>;
 
   /// `end_tick` is called after the callbacks of each tick.
@@ -29,22 +29,22 @@ class Scheduler {
 
   /// Throws std::system_error if the system cannot create the thread. A running scheduler continues.
   void start();
-  /// Waits for the running callback, unless the callback itself calls this. False if the wait exceeds `limit`. The
-  /// callbacks remain listed.
+  /// Waits for the running callback, unless the callback itself calls this function. False if the wait exceeds `limit`.
+  /// The callbacks remain listed.
   bool stop(std::chrono::milliseconds limit);
   bool runs() const;
 
   /// False for a rate at which no device sends poses.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
-  /// Rate of the last tick in the time of the pacing device, or the set rate if that is unknown.
+  /// Rate of the last tick in the time of the pacing device, or the set rate if the measured rate is unknown.
   double measured_rate_Hz() const;
 
   /// Returns invalid_handle if the list is full. In the servo thread, the callback is called once before it is listed.
   TaskHandle add(Callback callback, void* user, unsigned short priority);
   /// Returns when the callback is done. Without a servo thread, or in the servo thread, the callback is called once.
   bool run_until_done(Callback callback, void* user, unsigned short priority);
-  /// False if it is not listed. When this returns, the callback is not running, unless it calls this itself.
+  /// False if the callback is not listed. On return the callback is not running, unless it calls this function itself.
   bool remove(TaskHandle handle);
   bool is_listed(TaskHandle handle) const;
   /// True when the callback is done; false in the servo thread, or if the scheduler stops.
@@ -69,7 +69,7 @@ class Scheduler {
   void loop();
   /// False in a child that a callback has forked.
   bool tick();
-  /// Removes a task from the list, and waits until it is not running.
+  /// Removes a task from the list, and waits until the task is not running.
   class OffTheList;
 
   const Pace pace_;
