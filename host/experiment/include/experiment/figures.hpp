@@ -24,7 +24,7 @@ struct PaperFigureOptions {
 /// Writes figure-11.png to figure-14.png into a folder, which is created if it is missing. Also writes figures.gnuplot
 /// and figure-data.csv, from which the figures can be redrawn. Returns the four pictures. Throws device::Error if a
 /// signal was not recorded, the wall was not touched, or the time range contains no samples. Also throws if a file
-/// cannot be written, or with gnuplot's output if gnuplot fails.
+/// cannot be written or if gnuplot fails.
 std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
                                       const PaperFigureOptions& options);
 

@@ -1,4 +1,4 @@
-// Numerical results of the experiment's recordings, without side effects.
+// Computes the numerical results of the experiment from its recordings, without side effects.
 #pragma once
 
 #include <array>

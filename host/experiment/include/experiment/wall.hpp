@@ -17,7 +17,7 @@ struct BoxWall {
 /// "z+" and the like. Throws device::Error.
 BoxWall parse_wall(const std::string& name);
 std::string wall_name(BoxWall wall);
-/// The wall in the arm's plane, opposite its base. A push into it requires no waist torque.
+/// The wall in the arm's plane, opposite the arm's base. A push into the wall requires no waist torque.
 BoxWall forward_wall(const protocol::ParameterSet& parameters);
 /// A vertical wall perpendicular to the arm's plane; the waist motor supplies its force.
 BoxWall side_wall(const protocol::ParameterSet& parameters);
