@@ -15,13 +15,14 @@ using namespace std::chrono_literals;
 using device::Address;
 using device::Endpoint;
 
-/// A board needs half a second to change; a virtual board on a busy computer needs a few seconds.
+/// A board changes between firmware and boot loader in half a second. A virtual board on a busy computer needs a few
+/// seconds.
 constexpr auto change_patience = 20s;
 constexpr auto look_again = 50ms;
 /// Time in which the system grants access to a new device or finds its driver.
 constexpr auto system_patience = 5s;
 
-/// `is_chosen`: the image was chosen by the board's previous image, which is erased.
+/// `is_chosen`: the image was chosen based on the board's previous image, which is now erased.
 std::string how_to_go_on(const Image& image, bool is_chosen) {
   return fmt::format(
       "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
@@ -36,7 +37,7 @@ std::vector<Endpoint> arms_at(const Address& address) {
   return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.server) : device::find_arms(address);
 }
 
-/// The boot loaders at the address, with its serial number if it contains one.
+/// The boot loaders at the address. If the address contains a serial number, only boot loaders with this number.
 std::vector<Endpoint> loaders_at(const Address& address) {
   auto loaders = device::find_boot_loaders(address);
   if (!address.serial_number.empty())
@@ -118,8 +119,8 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
       "again: its old firmware is still there.");
 }
 
-/// Refuses an unsuitable image before the board leaves its firmware, based on the board name in the firmware's report.
-/// If the firmware does not answer, the flash is checked later.
+/// Refuses an unsuitable image before the board enters its boot loader, based on the board name in the firmware's
+/// report. If the firmware does not answer, the flash is checked later.
 void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& options) {
   const auto board = if_it_answers([&] {
     const auto report = device::Device(device::open_transport(arm)).information().report;
@@ -153,7 +154,7 @@ Found find_loader(const Address& address, const Image& image, const UpdateOption
   return found;
 }
 
-/// Blocks of at most one block size, without gaps of the image. The first block of the flash comes last.
+/// A part of the image, at most one block long and without gaps. The first block of the flash is the last in the list.
 struct Block {
   std::uint32_t address;
   std::span<const std::byte> bytes;
@@ -217,7 +218,7 @@ class Writing {
   double done_ = 0;
 };
 
-/// Reads the versions of the new firmware. They stay empty if the board does not restart in time.
+/// Reads the versions of the new firmware. The versions stay empty if the board does not restart in time.
 void look_at_result(const Address& address, const std::set<std::string>& other_arms, UpdateResult& result) {
   wait_for([&] {
     return if_it_answers([&] {
@@ -285,7 +286,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
 }
 
 UpdateResult update(const Address& address, const Image& image, const UpdateOptions& options) {
-  // An image that suits no board is refused before the board leaves its firmware.
+  // An image that suits no board is refused before the board enters its boot loader.
   insist(image, {}, options.consent);
   UpdateResult result;
   const Found found = find_loader(address, image, options);

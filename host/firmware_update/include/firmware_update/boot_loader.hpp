@@ -1,5 +1,5 @@
-// ST's USB boot loader in the chip: DFU 1.1 with ST's extensions (AN3156). Every STM32F405 has it in its system memory,
-// which flash writes cannot change.
+// ST's USB boot loader in the chip: DFU 1.1 with ST's extensions (AN3156). Every STM32F405 contains this boot loader in
+// its system memory, which flash writes cannot change.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ class BootLoader {
   std::vector<std::byte> read(std::uint32_t address, std::size_t bytes);
 
   std::array<std::byte, option_bytes> read_options();
-  /// After this the boot loader resets the chip, which starts its firmware.
+  /// Writes the option bytes. The boot loader then resets the chip, which starts the firmware.
   void write_options(std::span<const std::byte, option_bytes> options);
   /// Starts the program at the beginning of the flash.
   void leave();

@@ -76,7 +76,8 @@ std::string describe(const protocol::ImageIdentity& identity);
 /// The reasons against writing this image to a board, one sentence each; empty if there is no reason. `there` is the
 /// identity of the board's current image, if it has one.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
-/// Returns a sentence if the image is older than the installed firmware. This is a warning and not an objection.
+/// Returns a sentence if the image is older than the installed firmware. An older image causes a warning, not an
+/// objection.
 std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 
 /// Throws Objected with the objections, or Downgrade with the warning, unless the user has agreed to them.

@@ -10,7 +10,7 @@
 
 namespace inkwell::firmware_update {
 
-/// Whether this can be the name of an openocd interface file, such as "stlink". Only lower-case letters, digits, '_'
+/// Whether this is a valid name of an openocd interface file, such as "stlink". Only lower-case letters, digits, '_'
 /// and '-' are allowed, so that the name cannot lead to another folder.
 bool is_interface_name(std::string_view name);
 /// The error sentence for an invalid name.
@@ -22,8 +22,8 @@ std::string intel_hex(const Image& image);
 /// Arguments of openocd for copying the first bytes of the flash to `installed_file` while the firmware continues to
 /// run.
 std::vector<std::string> openocd_arguments_for_reading(const std::string& interface);
-/// Arguments of openocd for writing and reading back the sectors of the image and printing `verified_line`. They also
-/// set the brown-out level if it differs, and start the firmware.
+/// Arguments of openocd for writing and reading back the sectors of the image and printing `verified_line`. The
+/// arguments also set the brown-out level if it differs, and start the firmware.
 std::vector<std::string> openocd_arguments_for_writing(const std::string& interface);
 inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
                       verified_line[] = "inkwell: the image is verified";

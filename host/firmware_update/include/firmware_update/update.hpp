@@ -1,10 +1,10 @@
 // The complete firmware update over USB: from the running firmware to the boot loader of the chip and back.
 //
 // The order of the steps ensures that an incomplete firmware never runs. The first sector, with the vector table, is
-// erased first, and its first block is written last, after all other blocks were verified. In between, the chip finds
-// no vectors, so after a power loss it runs no code and the pull-downs keep the bridges off. While the power is on, the
-// chip stays in the boot loader, and repeating the command continues the update. After a power loss the boot loader
-// starts only with BOOT0.
+// erased first, and its first block is written last, after all other blocks were verified. Until the last write, the
+// flash contains no vectors. After a power loss the chip then runs no code, and the pull-downs keep the bridges off.
+// While the power is on, the chip stays in the boot loader, and repeating the command continues the update. After a
+// power loss the boot loader starts only if BOOT0 is high.
 #pragma once
 
 #include <chrono>
