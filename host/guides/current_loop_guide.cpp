@@ -150,8 +150,8 @@ class IdentifyMotor final : public Step {
     return pulse;
   }
 
-  /// Chooses the second voltage. It aims at twice the current of the later step test, within the allowed current. The
-  /// estimate uses the first pulse's current and the board's dead-time voltage.
+  /// Chooses the second voltage. The second voltage aims at twice the current of the later step test, within the
+  /// allowed current. The estimate uses the first pulse's current and the board's dead-time voltage.
   void choose_voltage() {
     identify(pulses_, period_s, ripple_A);  // throws if the currents do not match the circuit
     const auto wanted_A =

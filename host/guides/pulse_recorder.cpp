@@ -69,7 +69,7 @@ bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
           "reset the board and start the guide again.");
     return false;
   }
-  // From shortly before the pulse to the end of the rest after it.
+  // From shortly before the pulse to the end of the rest period after the pulse.
   const std::size_t from = begin > samples_before ? begin - samples_before : 0;
   recording_.keep(from, begin + needed);
   state_ = State::done;

@@ -1,4 +1,4 @@
-// Arm parameters from joint stops and potentiometer end positions, without side effects.
+// Computes arm parameters from joint stops and potentiometer end positions, without side effects.
 #pragma once
 
 #include <span>

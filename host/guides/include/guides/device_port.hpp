@@ -28,7 +28,7 @@ class DevicePort {
   virtual ~DevicePort() = default;
   virtual void send(protocol::Command command) = 0;
   virtual void send(protocol::Command command, const protocol::TestPulse& pulse) = 0;
-  /// Sends one transaction. Unlike a command, it survives a reconnection.
+  /// Sends one transaction. Unlike a command, a transaction survives a reconnection.
   virtual void set_parameters(std::vector<device::ParameterChange> changes) = 0;
   /// Selects the guide's scope signals; an empty list returns the scope to its previous user.
   virtual void select_signals(std::vector<protocol::Signal> signals) = 0;

@@ -1,4 +1,4 @@
-// Resistance and inductance of a motor from its response to voltage pulses, without side effects.
+// Computes resistance and inductance of a motor from its response to voltage pulses, without side effects.
 //
 // The circuit is  u = R i + L di/dt + e + s(i) U,  sampled once per control period:
 //   u  duty times supply, constant over a period; it acts one period after its computation
