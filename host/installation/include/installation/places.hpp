@@ -7,9 +7,9 @@
 
 namespace inkwell::installation {
 
-/// The installation prefix, such as /usr, or the build folder. It is found upward from the program or shared library
-/// with this code: the nearest folder with arm descriptions at the installed path. Without such a folder, the result is
-/// the program's folder.
+/// The installation prefix, such as /usr, or the build folder. The search goes upward from the program or shared
+/// library that contains this code, to the nearest folder with arm descriptions at the installed path. Without such a
+/// folder, the result is the program's folder.
 std::filesystem::path prefix();
 
 /// Paths below the prefix; the caller checks whether they exist.
