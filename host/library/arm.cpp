@@ -59,7 +59,8 @@ void Arm::bid_farewell() {
   try {
     device.send_force({.mode = protocol::ForceMode::none});
     device.place_shapes({});
-    // If USB disconnects while the force is on, as over USB/IP with the last program, the board raises a fault.
+    // The board raises a fault if USB disconnects while the force is on. Over USB/IP, the exit of the last program
+    // disconnects USB.
     device.disable_force();
     device.release();
   } catch (const Error&) {  // the device is already gone, and so is its force
@@ -137,7 +138,7 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-// Also during a silence: the board may still receive requests.
+// A silent board may still receive requests, so the request is sent during a silence too.
 void Arm::disable_force() {
   expecting_force_off([this] { linked_device().disable_force(); });
 }

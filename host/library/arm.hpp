@@ -9,8 +9,8 @@
 //   ScopeStream  reads samples                   the selected signals, the unread samples, the recording
 //   Servo        calls the servo function        the servo function and its state
 //
-// Each part has private mutexes. While a part holds one, it may call PoseFeed but no other part; PoseFeed may then call
-// only Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
+// Each part has private mutexes. While a part holds a mutex, it may call PoseFeed but no other part; PoseFeed may then
+// call only Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>
@@ -30,7 +30,7 @@ namespace inkwell::library {
 class Arm {
  public:
   explicit Arm(const std::string& address);
-  /// Removes the force first and then waits for a running call of the servo. The servo must not call this.
+  /// Removes the force first and then waits for a running call of the servo. The servo must not call this destructor.
   ~Arm();
   Arm(const Arm&) = delete;
   Arm& operator=(const Arm&) = delete;
@@ -48,7 +48,7 @@ class Arm {
     poses_.read(take);
   }
   /// The first pose after the pose with this sequence. Throws Disconnected if the link is lost, and TimedOut. `answer`:
-  /// a loop that sets a force for each pose also takes part in lock step.
+  /// the caller is a loop that sets a force for each pose, and lock step waits for this force.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
                              Turns::Answer answer = Turns::Answer::none) const;
   /// Waits until this board time has passed. Throws TimedOut if no poses arrive.
@@ -85,7 +85,8 @@ class Arm {
   inkwell_pose pose() const;
   device::Device& linked_device();  ///< throws Disconnected while the link is lost
   void clear_inherited_fault();
-  /// Runs an action that switches the force off, so that this is not a loss. Restores the state if the board refuses.
+  /// Runs an action that switches the force off, and does not report this as a lost force. Restores the state if the
+  /// board refuses the action.
   template <class Action>
   void expecting_force_off(Action action) {
     poses_.expect_force_off();

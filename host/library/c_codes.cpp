@@ -1,4 +1,4 @@
-// The header of the C interface cannot include the protocol. This file compares its numbers with the protocol.
+// The header of the C interface cannot include the protocol. This file compares the header's numbers with the protocol.
 #include <algorithm>
 #include <cstddef>
 #include <string_view>

@@ -25,7 +25,7 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// The same object after the link was lost and restored.
+  /// The device of the arm; the same object after the link was lost and restored.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
 
@@ -45,7 +45,7 @@ class Connection {
   using OnPose = std::function<void(const ReadPose&)>;
   /// Reads poses until the arm closes. Throws when the link is lost.
   void read_poses(const OnPose& on_pose);
-  /// Reports that another program drives the arm, or that none does. False if this is not known yet.
+  /// Reports that another program drives the arm, or that no program drives it. False if this is not known yet.
   bool tell_lost_claim();
   /// Waits until the arm is connected again and opens it. False if the arm closes first.
   bool reopen();

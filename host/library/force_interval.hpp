@@ -12,8 +12,8 @@ namespace inkwell::library {
 /// and a virtual board runs in simulated time.
 class ForceInterval {
  public:
-  /// The program's usual interval between forces, ms: the median of five, so that one late force has no effect.
-  /// `pose_sequence` is that of the newest pose that the program had read when it computed this force.
+  /// The program's usual interval between forces, ms: the median of five intervals, so that one late force has no
+  /// effect. `pose_sequence` is the sequence of the newest pose that the program had read when it computed this force.
   int next(std::uint32_t pose_sequence);
 
  private:

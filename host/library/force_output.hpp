@@ -25,7 +25,7 @@ class ForceOutput : private TurnPart {
   ~ForceOutput();
 
   void set_mode(protocol::ForceMode mode);
-  /// `pose_sequence` is that of the newest pose that the program had read when it computed the force. Throws
+  /// `pose_sequence` is the sequence of the newest pose that the program had read when it computed the force. Throws
   /// BadArgument if the force is not finite.
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
   /// Stops the force, which then fades out.

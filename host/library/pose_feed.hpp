@@ -64,10 +64,10 @@ class PoseFeed final : public device::LockStep {
   /// Called when the arm closes: begin_turn() does not wait any more.
   void leave_turns();
 
-  /// Publishes a pose, which ends a loss. In lock step it returns after servos have answered the pose and the waiting
-  /// calls that the pose completes are released.
+  /// Publishes a pose, which ends a loss. In lock step the function returns after servos have answered the pose and the
+  /// waiting calls that the pose completes are released.
   void publish(const inkwell_pose& pose, bool is_referenced);
-  /// Reports a loss. `cause` is a sentence with the remedy; the newest one replaces earlier ones.
+  /// Reports a loss. `cause` is a sentence with the remedy; the newest cause replaces earlier causes.
   void lose(Loss kind, const std::string& cause);
   /// This program has lost its claim of the arm.
   void lose_claim(const std::string& cause);
@@ -94,8 +94,8 @@ class PoseFeed final : public device::LockStep {
   void require_link() const;
 
   /// Waits until `condition(pose, loss)` is true, this board time has passed, or no pose has arrived for the same wall
-  /// time. Returns the newest pose. Throws Disconnected while the link is lost; a silence may end in time. `answer`:
-  /// use of the pose by the calling thread.
+  /// time. Returns the newest pose. Throws Disconnected while the link is lost; a silence may end before the time-out.
+  /// `answer`: use of the pose by the calling thread.
   template <class Condition>
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {
@@ -145,7 +145,7 @@ class PoseFeed final : public device::LockStep {
   /// Calls `part` in each turn until it is removed. Only in lock step.
   void add(TurnPart& part);
   void remove(TurnPart& part);
-  /// Marks that a thread answers a pose, so that board time waits for it. It has no effect outside lock step.
+  /// Marks that a thread answers a pose, so that board time waits for it. Has no effect outside lock step.
   void begin_answer(std::thread::id thread, Turns::Answer answer) const;
   void end_answer(std::thread::id thread) const;
 

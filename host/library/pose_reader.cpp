@@ -8,7 +8,7 @@ namespace {
 /// Maps newer states to the states that existing programs know.
 inkwell_state state_of(protocol::State state) {
   if (protocol::force_is_on(state)) return INKWELL_ACTIVE;
-  // Temporarily unavailable, and no action is required.
+  // The arm is temporarily unavailable, and no action is required.
   if (state == protocol::State::update || state == protocol::State::testing) return INKWELL_STARTING;
   return static_cast<inkwell_state>(state);
 }

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 /// Limit for unread samples: five seconds.
 constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
-/// Longest delay of the exit while no samples arrive.
+/// Longest delay of the thread's exit while no samples arrive.
 constexpr auto read_timeout = 20ms;
 
 }  // namespace
@@ -87,7 +87,7 @@ void ScopeStream::run() {
   }
 }
 
-/// Ends a selection. After a reconnection the board no longer has it.
+/// Ends a selection. After a reconnection the board no longer has the selection.
 void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   const std::lock_guard lock(mutex_);
   if (selection != selection_ || signals_.empty()) return;

@@ -1,5 +1,5 @@
-// The newest pose that each thread has waited for. The arm stores these, because programs may call the library in their
-// last destructors, when thread-local objects are already destroyed.
+// The newest pose that each thread has waited for. The arm stores these poses, because destructors of static objects
+// may call the library after thread-local objects are destroyed.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class SeenPoses {
     const std::lock_guard lock(mutex_);
     if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());
   }
-  /// Whether the calling thread has set a force since its last pose: it runs a loop that answers poses.
+  /// Whether the calling thread has set a force since its last pose: such a thread runs a loop that answers poses.
   bool take_force() {
     const std::lock_guard lock(mutex_);
     return drives_.erase(std::this_thread::get_id()) > 0;

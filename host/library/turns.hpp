@@ -4,8 +4,8 @@
 //   2. Servos are called with the pose, and their forces are sent. Board time is stopped.
 //   3. Calls that wait for board time check whether they are done.
 //
-// A turn begins when no thread answers a pose. In a stepped group it also requires a waiting call. Program code between
-// two calls then takes no board time, and a program has the same run on any computer.
+// A turn begins when no thread answers a pose. In a stepped group a turn also requires a waiting call. Program code
+// between two calls then takes no board time, and a program has the same run on any computer.
 #pragma once
 
 #include <chrono>
@@ -27,9 +27,9 @@ class Turns {
   /// A board of another process does not wait for loops, because other programs use its time too.
   explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
 
-  /// Longest answer time after which board time passes anyway. In a stepped group the limits are long, so that they do
-  /// not depend on the computer load. The other limits are shorter than the silence that counts as a loss. A hanging
-  /// servo therefore does not block the board for other programs.
+  /// Longest time for an answer. After this time, board time passes without the answer. In a stepped group the limits
+  /// are long, so that they do not depend on the computer load. The other limits are shorter than the silence that
+  /// counts as a loss. A hanging servo therefore does not block the board for other programs.
   struct Patience {
     std::chrono::milliseconds loop, servo;
   };
@@ -60,7 +60,8 @@ class Turns {
     /// The link of the board is lost. The board rejoins the group in its next turn, which begins without a waiting
     /// call.
     void pause();
-    /// Removes the board from the group. Another thread may call this; the calls above then return.
+    /// Removes the board from the group. Another thread may call this function. Waiting calls of this board then
+    /// return.
     void leave();
 
    private:

@@ -13,9 +13,9 @@
  * Every function may be called from any thread, but inkwell_close() must be the last call for its arm. No function
  * throws or aborts. Each function returns a result, and inkwell_error_text() returns the error as a sentence.
  *
- * A forked child cannot use an arm that its parent has opened. There inkwell_close() does nothing, and every other
- * function returns INKWELL_REFUSED. A thread may be canceled. It stops where it waits for a pose, samples, the force or
- * the end of a servo, otherwise after the call. */
+ * A forked child cannot use an arm that its parent has opened. In the child, inkwell_close() does nothing, and every
+ * other function returns INKWELL_REFUSED. A canceled thread stops where it waits for a pose, samples, the force or the
+ * end of a servo, otherwise after the call. */
 #ifndef INKWELL_INKWELL_H
 #define INKWELL_INKWELL_H
 
@@ -234,14 +234,14 @@ INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeou
  * INKWELL_TIMED_OUT if no pose arrives for 2 s. */
 INKWELL_API inkwell_result inkwell_sleep(inkwell_arm* arm, double duration_s);
 
-/* Writes 1 while the encoders are referenced, otherwise 0. They are referenced when the stylus rests in the inkwell,
- * until encoder counts may have been lost. With 0 the newest pose has no valid position, joints and rotation. Its
- * velocity is 0. */
+/* Writes 1 while the encoders are referenced, otherwise 0. They are referenced after the stylus has rested in the
+ * inkwell, until encoder counts may have been lost. Otherwise the newest pose has no valid position, joints or
+ * rotation, and its velocity is 0. */
 INKWELL_API inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced);
 
-/* Computes the probe's position and Jacobian for these joint angles. `jacobian` is in m/rad and in row-major order. Its
- * product with the joint speeds is the probe's velocity. Its transpose times a force is the joint torques. Either
- * output may be NULL. */
+/* Computes the probe's position and Jacobian for these joint angles. `jacobian` is in m/rad and in row-major order. The
+ * Jacobian times the joint speeds is the probe's velocity. The transposed Jacobian times a force is the joint torques.
+ * Either output may be NULL. */
 INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
                                                       double jacobian[9]);
 
@@ -255,11 +255,11 @@ INKWELL_API const char* inkwell_fault_name(int fault);
 /* One program drives an arm at a time, and the board decides which program. A program claims the arm with its first
  * call of inkwell_enable_force(), inkwell_set_force(), inkwell_start_servo() or inkwell_place_*(). The claim lasts
  * until inkwell_close(). If the program exits without this call, the board ends the claim after one second. While a
- * program drives, the calls above, inkwell_disable_force(), inkwell_clear_fault() and parameter changes return
- * INKWELL_IN_USE in every other program. The sentence then names the driver. Any program may read, record and call
- * inkwell_stop(). */
+ * program drives the arm, these functions, inkwell_disable_force(), inkwell_clear_fault() and parameter changes return
+ * INKWELL_IN_USE in every other program. inkwell_error_text() then names the driver. Any program may read, record and
+ * call inkwell_stop(). */
 
-/* Switches the force on. From here on the hand may feel a force. Waits until the device is active, for at most
+/* Switches the force on. After this call the hand may feel a force. Waits until the device is active, for at most
  * `timeout_s` of board time or 2 s of silence. Returns INKWELL_REFUSED in a fault, or if the stylus was not in the
  * inkwell yet. The faults "usb_gone" and "host_silent" of a previous driver, or from before a lost link, are cleared
  * first. */
@@ -269,8 +269,7 @@ INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Switches the force off immediately, whichever program drives the arm, and returns when the force is off. */
 INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
 
-/* Takes the arm over from the program that drives it. That program's force fades, and its shapes are
- * removed. */
+/* Takes the arm over from its current driver. The driver's force fades, and its shapes are removed. */
 INKWELL_API inkwell_result inkwell_take_over(inkwell_arm* arm);
 
 /* The program that drives the arm. */
@@ -284,9 +283,10 @@ typedef struct inkwell_driver {
 
 /* Reads the value from the device. */
 INKWELL_API inkwell_result inkwell_get_driver(inkwell_arm* arm, inkwell_driver* driver);
-/* Clears a fault whose cause is gone, and waits 0.2 s to confirm that it does not recur. If the board repeats its
- * self-test, the function waits for the end of the test. If the cause is still present, the function returns
- * INKWELL_REFUSED, and the sentence names the fault and its remedy. Without a fault it returns without waiting. */
+/* Clears a fault whose cause is gone, and waits 0.2 s to confirm that the fault does not recur. If the board repeats
+ * its self-test, the function waits for the end of the test. If the cause is still present, the function returns
+ * INKWELL_REFUSED, and the sentence names the fault and its remedy. Without a fault the function
+ * returns immediately. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 
 /* Effect of a program's forces on the walls. */
@@ -298,18 +298,18 @@ typedef enum inkwell_force_mode INKWELL_AS_INT {
 /* Sets how this program's forces combine with the board's walls. The default is INKWELL_INSTEAD_OF_WALLS. */
 INKWELL_API inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode);
 
-/* Sets the force on the hand until the next call. The force is sent within a millisecond, at most once in each. The
- * board approaches it linearly, up to its force limit. Without another call the force fades after
+/* Sets the force on the hand until the next call. The force is sent within a millisecond, at most once per millisecond.
+ * The board changes the force linearly, up to its force limit. Without another call the force fades after
  * program_force_expiry_s. A value that is infinite or not a number returns INKWELL_BAD_ARGUMENT, and the previous force
  * stays. While another program drives the arm, the function returns INKWELL_IN_USE. After a fault, another program or a
- * lost link has switched the force off, it returns INKWELL_FORCE_LOST. This lasts until the force is on again, or until
- * this program calls a function that switches the force. In the servo, return the force instead. */
+ * lost link has switched the force off, it returns INKWELL_FORCE_LOST. This result lasts until the force is on again,
+ * or until this program calls a function that switches the force. In the servo, return the force instead. */
 INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]);
 
-/* Function that the library calls at each pose, 1000 times per second, in a thread of the library. It writes the force
- * on the hand, which is preset to 0. A component that is infinite or not a number counts as 0. It returns 0 to continue
- * and any other value to stop the servo. See inkwell_servo_result() for other causes that stop it. The time of a
- * virtual board waits until the function returns, so no pose is missed. */
+/* Function that the library calls at each pose, 1000 times per second, in a thread of the library. The function writes
+ * the force on the hand, which is preset to 0. A component that is infinite or not a number counts as 0. The function
+ * returns 0 to continue and any other value to stop the servo. See inkwell_servo_result() for other causes that stop
+ * it. The time of a virtual board waits until the function returns, so no pose is missed. */
 typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
 /* Starts to call `servo` with the argument `user`. */
 INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);
@@ -317,9 +317,10 @@ INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo s
 INKWELL_API inkwell_result inkwell_stop_servo(inkwell_arm* arm);
 /* 1 while the servo is being called. */
 INKWELL_API int inkwell_servo_is_running(inkwell_arm* arm);
-/* Returns why the last servo has stopped, with the sentence. INKWELL_FORCE_LOST: a fault or another program switched
- * the force off. INKWELL_DISCONNECTED: the link was lost, or the device was silent. INKWELL_IN_USE: another program
- * drives the arm. INKWELL_OK: the program stopped the servo, the servo is running, or there was no servo. */
+/* Returns why the last servo has stopped; inkwell_error_text() then returns the sentence. INKWELL_FORCE_LOST: a fault
+ * or another program switched the force off. INKWELL_DISCONNECTED: the link was lost, or the device was silent.
+ * INKWELL_IN_USE: another program drives the arm. INKWELL_OK: the program stopped the servo, the servo is running, or
+ * there was no servo. */
 INKWELL_API inkwell_result inkwell_servo_result(inkwell_arm* arm);
 
 /* ---- shapes ------------------------------------------------------------------------------------------------- */
@@ -338,14 +339,14 @@ typedef struct inkwell_surface {
   double life_s;
 } inkwell_surface;
 
-/* A plane that the probe stays on one side of. */
+/* A plane. The probe stays on one side of the plane. */
 typedef struct inkwell_plane {
   double point_m[3];
   double normal[3]; /* into the free space, of any length except 0 */
   inkwell_surface surface;
 } inkwell_plane;
 
-/* A sphere that the probe stays outside of. */
+/* A sphere. The probe stays outside the sphere. */
 typedef struct inkwell_sphere {
   double centre_m[3];
   double radius_m; /* the free space is outside */
@@ -367,7 +368,7 @@ typedef struct inkwell_parameter {
   double minimum, maximum, default_value;
 } inkwell_parameter;
 
-/* Number of parameters; once an arm is open, with the parameters of its force law. */
+/* Number of parameters, including the parameters of the force law once an arm is open. */
 INKWELL_API size_t inkwell_parameter_count(void);
 /* Row `index` of the table; NULL after the last row. */
 INKWELL_API const inkwell_parameter* inkwell_parameter_at(size_t index);
@@ -464,7 +465,7 @@ typedef struct inkwell_signal {
   const char* help;
 } inkwell_signal;
 
-/* Number of signals; once an arm is open, with the signals of its force law. */
+/* Number of signals, including the signals of the force law once an arm is open. */
 INKWELL_API size_t inkwell_signal_count(void);
 /* Row `index` of the table; NULL after the last row. */
 INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
@@ -481,7 +482,8 @@ INKWELL_API inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s
                                               size_t capacity, size_t* count, uint64_t* lost);
 
 /* Does the same as inkwell_read_scope(), with control periods that do not wrap. inkwell_read_scope() writes their lower
- * 32 bits, which wrap after 59 hours. Divided by servo_rate_Hz they have the time base of inkwell_pose::time_s. */
+ * 32 bits, which wrap after 59 hours. A control period divided by servo_rate_Hz is a time on the time base of
+ * inkwell_pose::time_s. */
 INKWELL_API inkwell_result inkwell_read_samples(inkwell_arm* arm, double timeout_s, float* values, int64_t* periods,
                                                 size_t capacity, size_t* count, uint64_t* lost);
 

@@ -28,7 +28,7 @@ using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
 using Vector = std::array<double, 3>;  ///< in the workspace axes
 
-/// Error: a function of the library did not return INKWELL_OK. what() is its sentence.
+/// Error: a function of the library did not return INKWELL_OK. what() returns the error sentence.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
@@ -125,7 +125,7 @@ class Arm {
     throw_what_ended_servo();
     if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
     std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
-    // Until its state is stored here, the new servo must not find the state of the previous servo.
+    // The new servo must wait until its state is stored, so that it does not use the state of the previous servo.
     const std::lock_guard<std::mutex> lock(opened_->mutex);
     require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
     opened_->servo.swap(state);
@@ -228,7 +228,7 @@ class Arm {
     Opened(const Opened&) = delete;
     Opened& operator=(const Opened&) = delete;
     ~Opened() {
-      // A servo that destroys its own arm keeps running, so its state must stay.
+      // A servo that destroys its own arm keeps running, so its state must stay valid.
       if (inkwell_close(arm) != INKWELL_OK) static_cast<void>(servo.release());
     }
 
