@@ -40,8 +40,8 @@ void check_folder(const fs::path& folder, const SocketAddress& where, std::strin
     throw refusal(where, option, "other users may change its folder. Choose a folder that only you can write");
 }
 
-/// Serializes programs that start at the same time. The lock ends with the descriptor. A user who locks a shared folder
-/// permanently delays the start by one second.
+/// Serializes programs that start at the same time. Closing the descriptor releases the lock. A user who locks a shared
+/// folder permanently delays the start by one second.
 Descriptor lock_folder(const fs::path& folder) {
   Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   constexpr int tries = 100;
@@ -98,7 +98,7 @@ void Listener::listen_on_port(std::string_view option) {
 }
 
 void Listener::listen_on_path(std::string_view option) {
-  // Absolute, because the working folder may change before the socket is removed.
+  // The path is absolute, because the working folder may change before the socket is removed.
   address_.path = fs::absolute(address_.path);
   if (address_.path.string().size() > UnixName::longest_path)
     throw refusal(address_, option, "the path is too long for a socket. Choose a shorter one");

@@ -128,8 +128,8 @@ void OwnedFile::lock(const Descriptor& file) {
                               owner ? name_of_process(*owner) : "another program"));
 }
 
-/// Opens and locks the new file. Every program locks it before replacing or creating the owned file, so only one
-/// program does so at a time.
+/// Opens and locks the new file. Every program locks the new file before it replaces or creates the owned file, so only
+/// one program does this at a time.
 Descriptor OwnedFile::open_next() {
   for (;;) {
     Descriptor next(::open(next_path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0666));

@@ -20,8 +20,8 @@ class FileInUse : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The lock is on the file itself (flock). It applies to every name and link of the file, and ends with the process in
-/// any case. Child processes do not inherit it.
+/// The lock is on the file itself (flock). The lock applies to every name and link of the file, and ends with the
+/// process in any case. Child processes do not inherit it.
 class OwnedFile {
  public:
   using Flock = int (*)(int descriptor, int operation);
@@ -37,8 +37,8 @@ class OwnedFile {
   /// The content if it has exactly this size, otherwise empty. Also empty if this is not a regular file.
   std::vector<std::byte> content(std::size_t size) const;
   /// Replaces the content atomically: a reader finds the complete old or the complete new content.
-  /// @throws FileInUse if the file was replaced by another one, which does not change. std::system_error if the file
-  /// cannot be
+  /// @throws FileInUse if another program has replaced the file, which then does not change. std::system_error if the
+  /// file cannot be
   ///         written.
   void replace(std::span<const std::byte> content);
 

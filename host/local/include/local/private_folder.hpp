@@ -8,7 +8,7 @@
 
 namespace inkwell::local {
 
-/// The folder has mode 0700 and is removed with its files at the end of the object. Both functions throw
+/// The folder has mode 0700 and is removed with its files when the object is destroyed. Both functions throw
 /// std::runtime_error with a sentence.
 class PrivateFolder {
  public:
