@@ -1,5 +1,5 @@
 function inkwell_enable(arm, on)
-% inkwell_enable(arm)         Switches the force on. From here on the hand may feel a force.
+% inkwell_enable(arm)         Switches the force on. Afterwards the hand may feel a force.
 % inkwell_enable(arm, false)  Switches the force off.
   if nargin < 2
     on = true;
