@@ -13,7 +13,7 @@ namespace {
 constinit HeldAtFork* first = nullptr;
 constinit std::mutex descriptors_mutex;
 
-/// Never destroyed, because descriptors are closed in the last destructors.
+/// Never destroyed, because destructors of static objects close descriptors.
 std::vector<int>& descriptors() {
   static auto& all = *new std::vector<int>;
   return all;

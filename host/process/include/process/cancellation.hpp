@@ -59,7 +59,7 @@ class NoCancellationPoints {
   int state_;
 };
 
-/// For a library thread that calls functions of the program: the program must not unwind its stack.
+/// For a library thread that calls functions of the program: the program must not unwind the library's stack.
 inline void never_cancel_this_thread() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr); }
 
 }  // namespace inkwell::process
