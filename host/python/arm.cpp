@@ -12,7 +12,7 @@ namespace {
 /// True in the thread that calls a servo.
 thread_local bool in_servo = false;
 
-/// None means zero force. Any other value than three finite numbers throws, which stops the servo.
+/// None means zero force. Any value other than three finite numbers throws an exception, which stops the servo.
 Vector force_of(const py::object& answer) {
   if (answer.is_none()) return {};
   Vector force_N;

@@ -112,7 +112,8 @@ class Arm {
   template <class Call>
   void call(Call library_call);
   /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
-  /// durations of the attempts add up to the time-out, which therefore counts board time where the library does.
+  /// durations of the attempts add up to the time-out, which therefore counts board time where the library counts board
+  /// time.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>

@@ -37,7 +37,7 @@ _SECONDS = "seconds, a number"
 _FORCE = "three numbers, the force in N along x, y and z"
 
 _open: "weakref.WeakSet[Arm]" = weakref.WeakSet()
-# An arm that drives stays open, even if no variable refers to it.
+# An arm object that is the driver stays open, even if no variable refers to it.
 _driving: "set[Arm]" = set()
 
 
