@@ -41,7 +41,7 @@ Handle text_type(std::size_t bytes) {
 Handle byte_text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), bytes == 0 ? 1 : bytes);
-  // Padded with zeros instead of terminated, so the text may fill all bytes.
+  // The text is padded with zeros and not terminated, so it may fill all bytes.
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   return type;
 }

@@ -34,8 +34,8 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Owned during every use of HDF5. The object serializes the threads, because the library is not thread-safe. The
-/// object also disables the library's error output, because errors become exceptions with sentences.
+/// Every use of HDF5 requires this object. The object serializes the threads, because the library is not thread-safe.
+/// The object also disables the library's error output, because errors become exceptions with sentences.
 class QuietHdf5 {
  public:
   QuietHdf5();

@@ -69,7 +69,7 @@ class Hdf5Reader {
       about.parameters[*parameter] = input_.real_number("/parameters/" + name);
     }
     about.signals = read_columns("/signals", protocol::find_signal);
-    // Files of earlier versions have no such group.
+    // Files of earlier versions have no group "/simulated".
     if (input_.has("/simulated")) about.simulated = read_columns("/simulated", protocol::find_simulated_quantity);
   }
   std::string text(const char* name) {
@@ -79,7 +79,7 @@ class Hdf5Reader {
           fmt::format("The {} of {} is a text of variable length; it was left out.", name, input_.name()));
     return std::move(found).value_or("");
   }
-  /// Contents of the columns of a group, from their names.
+  /// Quantities in the columns of a group, derived from the column names.
   template <class Value>
   std::vector<Value> read_columns(const char* group_name, std::optional<Value> (*find)(std::string_view)) {
     std::vector<Value> found;

@@ -119,7 +119,7 @@ void Recorder::push(const device::ScopeSamples& samples) {
     self.wake.notify_one();
     return;
   }
-  // Counted from the periods, which includes samples lost between the link and this function.
+  // The loss is computed from the periods, so it includes samples lost between the link and this function.
   if (self.first_period) self.status.lost += static_cast<std::uint64_t>(step - 1);
   if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // counted as lost by the next block
   const bool is_first = !self.first_period;

@@ -42,7 +42,7 @@ struct Recording {
   double elapsed_s_at(std::int64_t period) const {
     return periods.empty() ? 0.0 : device::board_time_s(period - periods.front());
   }
-  /// From the first sample to the last; 0 without samples.
+  /// Duration from the first sample to the last sample; 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
   /// Index of the first sample at or after a time since the first sample; size() if it does not exist.
   std::size_t sample_at(double elapsed_s) const;

@@ -32,7 +32,7 @@ class Replay {
   void pause() { is_playing_ = false; }
   /// Moves to a time since the first sample, limited to the recording.
   void seek(double position_s);
-  /// 1 is the recorded speed; limited to speed_minimum..speed_maximum.
+  /// Sets the speed, limited to speed_minimum..speed_maximum; 1 is the recorded speed.
   void set_speed(double speed);
 
   struct Passed {
