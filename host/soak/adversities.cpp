@@ -45,7 +45,7 @@ Disturbance disturbance_by(InjectedFault fault) {
   }
 }
 
-/// Whether the encoder may count less than the joint turns. The position is then wrong until the next reference.
+/// Whether the encoder may lose counts. The position is then wrong until the next reference.
 bool may_lose_counts(const campaign::CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::encoder_stuck:
@@ -200,7 +200,7 @@ std::string put_fault_in(Bench& bench) {
   bench.pass(bench.random.from(0.05, 0.8));
   const auto told = bench.oracle.told();
   const std::string way = recover(bench, disturbance);
-  // The fault may have caused lost counts. Lost counts may be undetected, or detected on the way to the inkwell.
+  // The fault may have caused lost counts. Lost counts may be undetected, or detected during the motion to the inkwell.
   if (may_lose_counts(put_in)) bench.oracle.allow_lost_counts();
   bench.give_up_force();
   bench.dock();

@@ -217,13 +217,13 @@ void Bench::dock() {
   while (waited_s < longest_s) {
     pass(look_every_s);
     waited_s += look_every_s;
-    // The board detects lost counts only here. The oracle decides whether lost counts are allowed.
+    // The board detects lost counts only in the inkwell. The oracle decides whether lost counts are allowed.
     if (board.is(State::fault)) {
       rested_s = 0;
       const protocol::Fault told = board.pose()->fault;
       if ((lost_counts & protocol::watch(told)) == 0) continue;
       board.command(Command::clear_fault);
-      // This fault also requires the switch to be open once.
+      // To clear this fault, the inkwell switch must also be open once.
       if (told == protocol::Fault::inkwell_implausible) {
         board.control().dock(false);
         pass(look_every_s);

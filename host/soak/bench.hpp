@@ -74,9 +74,10 @@ class Bench {
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
   protocol::ParameterSet stored{};  ///< values after a restart
-  /// Polled continuously. Empty while the board starts, because every sitting completes the start.
+  /// Stop condition, which is polled continuously. Empty while the board starts, because every sitting completes the
+  /// start.
   std::function<bool()> is_over;
-  /// The cable is unplugged, or the program is killed.
+  /// True while the cable is unplugged or the program is killed.
   bool device_may_go = false;
   bool is_sound() const { return disturbance_ == Disturbance::none; }
   /// Sets the active disturbance; Disturbance::none after it is cleared.

@@ -1,4 +1,4 @@
-// Compares the behavior of a board with the actions on it, without side effects. Records all contradictions.
+// Compares the behavior of a board with the actions on the board, without side effects. Records all contradictions.
 #pragma once
 
 #include <cstdint>
@@ -82,7 +82,7 @@ class Oracle {
   static constexpr double telling_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
-  /// The cause is cleared: any further report in this phase is an error.
+  /// The cause is cleared: any further fault report in this phase is an error.
   void allow_no_fault() { may_tell_ = 0; }
   /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
   void allow_lost_counts() { may_tell_ = lost_counts; }

@@ -1,9 +1,9 @@
 // Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
 //
 // A reported fault that the kind does not name is a false trip. The use therefore avoids faults: the hand stays below
-// the speed limit except in the phase about this limit. Some parameters make a fault-free arm look defective: the arm's
-// dimensions, wrong resistances, and gains that cause oscillation. These parameters change only while the force is off,
-// or stay close to the correct values (storm.hpp).
+// the speed limit except in the phase about this limit. Some wrong parameters make a fault-free arm look defective:
+// dimensions, resistances, and gains that cause oscillation. These parameters change only while the force is off, or
+// stay close to the correct values (storm.hpp).
 #pragma once
 
 // To add a kind of phase:
@@ -26,7 +26,7 @@ namespace inkwell::soak {
 inline constexpr protocol::Watches lost_counts =
     protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
 
-/// Faults of a disconnected host; the board reports the first detected one.
+/// Faults that a disconnected host causes; the board reports the first detected fault.
 inline constexpr protocol::Watches host_gone =
     protocol::watch(protocol::Fault::usb_gone) | protocol::watch(protocol::Fault::host_silent);
 
@@ -73,7 +73,8 @@ inline constexpr auto kind_table = std::to_array<KindInfo>({
 
 constexpr const KindInfo& info(Kind kind) { return kind_table[static_cast<std::size_t>(kind)]; }
 
-/// A deck in random order, with as many phases of each kind as the table states. Each kind occurs in every deck.
+/// A list of phases in random order, with the number of phases of each kind from the table. Each kind occurs in every
+/// list.
 std::vector<Kind> shuffled_deck(Random& random);
 
 }  // namespace inkwell::soak

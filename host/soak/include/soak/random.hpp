@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine, unlike the standard's distributions.
+// Random numbers that are the same on every machine, unlike the distributions of the C++ standard library.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@ struct Choices {
 };
 
 /// A sitting is the same on any machine, independent of other sittings. `tell` receives a line for each phase and
-/// finding. A premature end is a finding, except through `is_stopped`, which is polled continuously.
+/// finding. A premature end is a finding, unless `is_stopped` has caused the end. `is_stopped` is polled continuously.
 Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoardOptions board,
                     const std::function<void(const std::string&)>& tell = {},
                     const std::function<bool()>& is_stopped = {});
