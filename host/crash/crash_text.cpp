@@ -17,21 +17,24 @@ struct FaultBit {
 };
 
 constexpr FaultBit fault_bits[] = {
-    {3, "memory protection refused the stack on the way out of an interrupt"},
-    {4, "memory protection refused the stack on the way into an interrupt: it has overflowed or been lost"},
-    {5, "memory protection refused the stack for the floats of an interrupted program"},
-    {11, "the stack lay where nothing is on the way out of an interrupt"},
-    {12, "the stack lay where nothing is on the way into an interrupt: it has overflowed or been lost"},
-    {13, "the stack lay where nothing is for the floats of an interrupted program"},
-    {0, "it went to run what is no code"},
-    {1, "it used memory in a way that is not allowed there"},
-    {8, "it went to run from where nothing is"},
-    {9, "nothing answered at the address"},
-    {10, "a store came to where nothing is, some instructions before"},
-    {16, "it met what is no instruction"},
-    {17, "it left the instruction set that it has"},
-    {18, "it returned from an exception in a way that does not exist"},
-    {19, "it met an instruction of a coprocessor that is not there"},
+    {3, "memory protection refused a stack access on exception return"},
+    {4,
+     "memory protection refused a stack access on exception entry: the stack has overflowed, or the stack pointer is "
+     "wrong"},
+    {5, "memory protection refused a stack access while floating-point registers were saved"},
+    {11, "the stack was in unmapped memory on exception return"},
+    {12,
+     "the stack was in unmapped memory on exception entry: the stack has overflowed, or the stack pointer is wrong"},
+    {13, "the stack was in unmapped memory while floating-point registers were saved"},
+    {0, "it fetched an instruction from memory that must not be executed"},
+    {1, "it accessed memory in a way that memory protection forbids"},
+    {8, "it fetched an instruction from unmapped memory"},
+    {9, "it accessed an unmapped address"},
+    {10, "a store some instructions earlier went to an unmapped address"},
+    {16, "it met an undefined instruction"},
+    {17, "it left its only instruction set"},
+    {18, "it returned from an exception with an invalid return value"},
+    {19, "it met an instruction for a missing coprocessor"},
     {24, "an access was not aligned"},
     {25, "it divided by zero"},
 };
@@ -44,13 +47,14 @@ bool has(std::uint32_t status, unsigned bit) { return (status >> bit & 1) != 0; 
 std::string cause(const protocol::CrashFacts& crash) {
   const std::uint32_t status = crash.configurable_fault_status;
   if (crash.exception == protocol::crystal_exception) return "The crystal stopped.";
-  if (crash.exception == protocol::hang_exception) return "The main loop did not come round, and the watchdog bit.";
-  if (crash.exception >= 16) return fmt::format("Interrupt {} came, which nobody has asked for.", crash.exception - 16);
+  if (crash.exception == protocol::hang_exception) return "The main loop hung, and the watchdog expired.";
+  if (crash.exception >= 16)
+    return fmt::format("Interrupt {} occurred, although it is not used.", crash.exception - 16);
   if (has(crash.hard_fault_status, 1)) return "A handler's address could not be read from the vector table.";
   const auto* found = std::find_if(std::begin(fault_bits), std::end(fault_bits),
                                    [&](const FaultBit& fault) { return has(status, fault.bit); });
-  if (found == std::end(fault_bits)) return fmt::format("The processor met exception {}.", crash.exception);
-  std::string sentence = fmt::format("The processor could not go on: {}", found->meaning);
+  if (found == std::end(fault_bits)) return fmt::format("The processor raised exception {}.", crash.exception);
+  std::string sentence = fmt::format("The processor could not continue: {}", found->meaning);
   if (has(status, protection_address_holds) || has(status, bus_address_holds))
     sentence += fmt::format(", 0x{:08x}", crash.fault_address);
   return sentence + ".";
@@ -68,19 +72,19 @@ void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& im
   const auto check = image.check();
   if (!check)
     throw device::Error(
-        "This ELF has no checksum, so it is no image of this firmware as it is flashed. Give the one "
-        "that the build has left.");
+        "This ELF file has no checksum, so it is not an image that was flashed. Give the ELF file that the build has "
+        "written.");
   if (*check != crash.image_check)
     throw device::Error(
-        fmt::format("This is not the firmware that crashed: its checksum is 0x{:08x}, and 0x{:08x} ran. "
-                    "Give the ELF of that build.",
+        fmt::format("This is not the firmware that crashed: its checksum is 0x{:08x}, but the crashed firmware has "
+                    "0x{:08x}. Give the ELF file of that build.",
                     *check, crash.image_check));
 }
 
 std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) {
   std::string lines = cause(crash) + "\n";
   const auto places = chain(crash);
-  if (places.empty()) lines += "  at an unknown place, for its stack could not be read\n";
+  if (places.empty()) lines += "  at an unknown address, because the stack could not be read\n";
   for (std::size_t i = 0; i < places.size(); ++i) {
     // The call instruction is directly before its return address.
     const std::string name = image == nullptr ? "" : image->place(i == 0 ? places[i] : places[i] - 2);
@@ -97,7 +101,7 @@ std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) 
       fmt::format("  sp {:08x}  lr {:08x}  xPSR {:08x}  CFSR {:08x}  HFSR {:08x}", crash.stack_pointer,
                   crash.link_register, crash.program_status, crash.configurable_fault_status, crash.hard_fault_status);
   if (image == nullptr && !places.empty())
-    lines += "\n`inkwell fault --elf FILE` names the functions, with the ELF of the firmware that was flashed.";
+    lines += "\nRun `inkwell fault --elf FILE` with the ELF file of the flashed firmware to see the function names.";
   return lines;
 }
 

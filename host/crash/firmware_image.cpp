@@ -55,10 +55,10 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& elf) : reader_(std::ma
   if (reader_->module != nullptr) reader_->elf = dwfl_module_getelf(reader_->module, &bias);
   GElf_Ehdr header;
   if (reader_->elf == nullptr || gelf_getehdr(reader_->elf, &header) == nullptr || header.e_machine != EM_ARM)
-    throw device::Error(fmt::format(
-        "{} is no program for the board's processor. Give the ELF file of the firmware, which the build leaves beside "
-        "what is flashed.",
-        elf.string()));
+    throw device::Error(
+        fmt::format("{} is not a program for the board's processor. Give the ELF file of the firmware, which the build "
+                    "writes next to the flashed file.",
+                    elf.string()));
 }
 
 FirmwareImage::~FirmwareImage() = default;

@@ -27,12 +27,13 @@ std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
 std::string nobody(const Address& address) {
   if (address.kind == Address::Kind::usbip)
     return fmt::format(
-        "The USB/IP server at {} exports no arm. Check that its board runs Inkwell's firmware and its cable is in.",
+        "The USB/IP server at {} exports no arm. Check that its board runs Inkwell's firmware and that its cable is "
+        "plugged in.",
         address.server.text());
-  if (address.serial_number.empty()) return "No arm was found on USB. Plug one in, or use a virtual one.";
+  if (address.serial_number.empty()) return "No arm was found on USB. Plug in an arm, or use a virtual board.";
   const auto others = find_arms({});
   return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number,
-                     others.empty() ? "None is: plug it in." : "Those are:" + serial_numbers(others) + ".");
+                     others.empty() ? "Plug it in." : "The connected arms are:" + serial_numbers(others) + ".");
 }
 
 Address parse_board_options(std::string_view options) {

@@ -13,13 +13,13 @@ using protocol::StoreResult;
 constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
 
 constexpr std::string_view was_not_stored = "The parameters were not stored.";
-constexpr std::string_view was_not_forgotten = "What is stored was not forgotten.";
+constexpr std::string_view was_not_forgotten = "The stored parameters were not erased.";
 
 bool is_carried_out(StoreResult result) { return result == StoreResult::done || result == StoreResult::nothing_stored; }
 
 std::int64_t board_periods(Device& device) {
   const auto frame = device.frame();
-  if (!frame) throw Error("The board counts no bus frames, so its time is not known. Connect it again.");
+  if (!frame) throw Error("The board receives no bus frames, so its time is unknown. Reconnect the board.");
   return frame->time_periods;
 }
 
@@ -34,7 +34,8 @@ StoreReport carry_out(Device& device, Command command, std::string_view failure)
     const bool is_taken = report.commands != commands_before;
     if (is_taken && is_carried_out(report.result)) return report;
     if (is_taken && (is_late || report.result != StoreResult::under_way)) throw NotStored(failure, report);
-    if (is_late) throw Error(fmt::format("{} The board does not take the command. Reset it and try again.", failure));
+    if (is_late)
+      throw Error(fmt::format("{} The board did not execute the command. Reset the board and try again.", failure));
   }
 }
 

@@ -57,7 +57,8 @@ local::PrivateFolder make_private_folder() {
 
 int run_child_program(const ChildProgram& program, const std::function<void(std::string_view)>& on_output) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe can be made: too many files are open. Close some programs.");
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error("A pipe cannot be created: too many files are open. Close some programs.");
   const local::Descriptor from_child(ends[0]);
   local::Descriptor to_parent(ends[1]);
   const pid_t child = spawn(program, to_parent.number());

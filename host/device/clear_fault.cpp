@@ -34,7 +34,7 @@ void clear_fault(Device& device, const ShownFault& now, const std::function<Show
          (tests_itself(seen.state) && passed_periods() < retest_patience_periods))
     seen = next();
   if (seen.state == State::fault)
-    throw FaultStays(fmt::format("The fault is there again. {}", fault_line(seen.fault, device)));
+    throw FaultStays(fmt::format("The board has raised the fault again. {}", fault_line(seen.fault, device)));
 }
 
 }  // namespace inkwell::device

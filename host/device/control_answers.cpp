@@ -22,7 +22,7 @@ auto read_or_fail(const char* sentence, Read read) {
   }
 }
 
-constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build it again.";
+constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build the virtual board again.";
 
 /// nlohmann::json converts any number to an unsigned number. The conversion of a number out of range is undefined.
 template <class Whole>
@@ -46,13 +46,13 @@ PutInFault put_in_fault(const json& told, const char* time_key, const char* sent
 }  // namespace
 
 json parse_answer(std::string_view line, std::string_view command) {
-  return read_or_fail("What answers at the control port is not a virtual board. Give the control port that it printed.",
-                      [&] {
-                        json answer = parse_plain_json(line);
-                        if (answer.at("ok").get<bool>()) return answer;
-                        throw CommandRefused(fmt::format("The virtual board refused \"{}\": {}", command,
-                                                         answer.value("error", std::string("it gave no reason."))));
-                      });
+  return read_or_fail(
+      "The program at the control port is not a virtual board. Give the control port that virtual-board printed.", [&] {
+        json answer = parse_plain_json(line);
+        if (answer.at("ok").get<bool>()) return answer;
+        throw CommandRefused(fmt::format("The virtual board refused \"{}\": {}", command,
+                                         answer.value("error", std::string("no reason was given."))));
+      });
 }
 
 BoardStatus status_of(json answer) {
@@ -88,7 +88,8 @@ PutInFault put_in_fault_of(const json& answer, const protocol::InjectionRequest&
 }
 
 Injections injections_of(const json& status) {
-  static constexpr char sentence[] = "The virtual board does not say which faults are in. Build it again.";
+  static constexpr char sentence[] =
+      "The virtual board does not report its injected faults. Build the virtual board again.";
   return read_or_fail(sentence, [&] {
     const json& period = status.at("control_period");
     Injections now{.board_time_s = status.at("board_time_s").get<double>(),
@@ -110,7 +111,7 @@ MeterReading meter_reading_of(const json& answer) {
 }
 
 Trace trace_of(const json& answer) {
-  static constexpr char sentence[] = "The virtual board sent a damaged trace. Build it again.";
+  static constexpr char sentence[] = "The virtual board sent a damaged trace. Build the virtual board again.";
   return read_or_fail(sentence, [&] {
     Trace trace;
     trace.columns = answer.at("columns").get<std::vector<std::string>>();

@@ -22,8 +22,9 @@ constexpr std::uint8_t boot_loader_interface = 0, set_interface = 11;
 constexpr std::uint8_t detach_request = 0, get_status_request = 3, status_vendor_error = 0x0B;
 constexpr std::uint16_t status_length = 6;
 constexpr unsigned timeout_ms = 20'000;  // a sector erase takes a few seconds at most
-constexpr char in_use[] = "Another program updates this board's firmware. Wait for it, or close it.";
-constexpr char refused[] = "The board refused a request for its firmware update.";
+constexpr char in_use[] =
+    "Another program is updating this board's firmware. Wait until the update is finished, or close that program.";
+constexpr char refused[] = "The board refused a firmware update request.";
 
 /// Common part of USB and USB/IP: converts requests to setup packets.
 class Channel : public ControlChannel {
@@ -80,7 +81,7 @@ class UsbChannel final : public Channel {
                                 reinterpret_cast<unsigned char*>(data), setup.length, timeout_ms);
     if (length == LIBUSB_ERROR_PIPE) throw Stalled(refused);
     if (length == LIBUSB_ERROR_TIMEOUT)
-      throw Error("The board does not answer. Take its cable out and plug it in again.");
+      throw Error("The board does not answer. Unplug its cable and plug the cable in again.");
     if (length < 0) throw Disconnected(unplugged);
     return static_cast<std::size_t>(length);
   }

@@ -34,7 +34,7 @@ struct ControlClient::Implementation {
       }
       if (received.size() > line_maximum)
         throw Error(
-            "What answers at the control socket sends a line without an end. Give the address that virtual-board "
+            "The program at the control socket sent a line without an end. Give the address that virtual-board "
             "printed.");
       searched = received.size();
       const std::size_t length = socket.receive_some(chunk);
@@ -60,8 +60,9 @@ BoardStatus ControlClient::status() { return status_of(call({{"command", "status
 
 void BoardStatus::insist_on_running() const {
   if (locked_up.empty()) return;
-  throw Error(
-      fmt::format("The firmware does not run on this virtual board. {} Check that it is for this board.", locked_up));
+  throw Error(fmt::format(
+      "The firmware does not run on this virtual board. {} Check that the firmware was built for this board.",
+      locked_up));
 }
 
 json ControlClient::truth() { return call({{"command", "truth"}}); }

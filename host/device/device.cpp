@@ -195,7 +195,7 @@ struct Device::Implementation {
       if (result == protocol::RequestResult::accepted && report.first_row == request.first_row) return report;
     }
     if (result != protocol::RequestResult::accepted) throw refused("a request for rows of the black box", result);
-    throw InUse("Another program reads the black box all the time. Close it and try again.");
+    throw InUse("Another program reads the black box continuously. Close that program and try again.");
   }
 
   /// Assigns the command its token and sends it. `before` runs once the token is known.
@@ -277,7 +277,7 @@ struct Device::Implementation {
     const Driver driver = driver_in(report);
     return InUse(fmt::format(
         "The arm is driven by {}. {}", driver_text(driver),
-        driver.object ? "Use that object, or close it first." : "End that program, or take the arm over from it."));
+        driver.object ? "Use that object, or close it first." : "Close that program, or take the arm over from it."));
   }
 
   protocol::DriverReport answer_to(protocol::ClaimOperation operation) {
@@ -377,7 +377,7 @@ struct Device::Implementation {
       const auto result = result_in(report, command.ticket);
       if (result && *result != protocol::RequestResult::waiting) return *result;
       if (report.time_periods - *begin_periods > command_patience_periods)
-        throw Error("The board has not carried out a command. Reset it and try again.");
+        throw Error("The board did not execute a command. Reset the board and try again.");
     }
   }
 
@@ -425,7 +425,8 @@ struct Device::Implementation {
     const std::size_t length = transport()->get_feature(writable_bytes(report).first(size));
     const bool is_whole = length >= size && report.version == protocol::protocol_version && report.count == count;
     if (!is_whole)
-      throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
+      throw Incompatible(
+          "The device's parameters do not match this companion. Flash the firmware that belongs to this companion.");
     protocol::ParameterSet set = protocol::default_parameters();
     for (std::size_t i = 0; i < report.count; ++i)
       if (const auto parameter = protocol::find_parameter(report.entries[i].id))
@@ -456,7 +457,8 @@ struct Device::Implementation {
       if (result.ticket != report.ticket) {
         // Another program has sent a transaction in the meantime. The result of this transaction is unknown, so this
         // transaction is sent again.
-        if (limit.is_over(now_periods())) throw InUse("Other programs change parameters all the time. Close them.");
+        if (limit.is_over(now_periods()))
+          throw InUse("Other programs change parameters continuously. Close these programs.");
         continue;
       }
       if (result.refusal == protocol::Refusal::not_the_driver) {
@@ -476,21 +478,22 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
   const auto& report = information.report;
   if (information.protocol_version != protocol::protocol_version)
     throw Incompatible(
-        fmt::format("The device speaks version {} of the protocol, this companion version {}. Flash the "
-                    "firmware that belongs to this companion, or use the companion of firmware {}.",
+        fmt::format("The device uses protocol version {}, this companion uses version {}. Flash the firmware that "
+                    "belongs to this companion, or use the companion of firmware {}.",
                     information.protocol_version, protocol::protocol_version, information.firmware_version),
         information.board_name);
   if (report.parameter_table_hash != protocol::parameter_table_hash ||
       report.signal_table_hash != protocol::signal_table_hash)
-    throw Incompatible(fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
-                                   "version {} of the protocol. Build both from the same source and flash again.",
-                                   information.firmware_version, protocol::protocol_version),
-                       information.board_name);
+    throw Incompatible(
+        fmt::format("Firmware {} and this companion have different parameters or signals, although both use protocol "
+                    "version {}. Build both from the same source and flash the firmware again.",
+                    information.firmware_version, protocol::protocol_version),
+        information.board_name);
   auto law = device->implementation_->read_force_law();
   if (!join_tables(law))
     throw Error(
-        fmt::format("This device has the force law {}, but this program works with {} at the same time. Close that "
-                    "arm or recording, or use a program of its own for each of them.",
+        fmt::format("This device has the force law {}, but this program already uses the force law {}. Close the other "
+                    "arm or recording, or use a separate program for each force law.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
   // Without a bus frame no program has read samples since the board started.
@@ -555,7 +558,7 @@ void Device::carry_out(Command command, const protocol::TestPulse& pulse) {
 void Device::stop() {
   carry_out(Command::stop);
   if (protocol::force_is_on(implementation_->request_results().state))
-    throw Error("The force is on again: another program has switched it on. End that program.");
+    throw Error("The force is on again: another program has switched it on. Close that program.");
 }
 
 void Device::disable_force() {
@@ -564,7 +567,7 @@ void Device::disable_force() {
   const std::uint32_t begin_periods = report.time_periods;
   while (protocol::force_is_on(report.state)) {
     if (report.time_periods - begin_periods > landing_patience_periods)
-      throw Error("The force is still on: another program switches it on again. End that program.");
+      throw Error("The force is still on: another program switches it on again. Close that program.");
     keep_alive();
     report = implementation_->request_results();
   }
@@ -582,7 +585,7 @@ void Device::take_link_of(Device& opened) {
   auto& self = *implementation_;
   auto& other = *opened.implementation_;
   if (self.force_law && other.force_law && *self.force_law->report != *other.force_law->report)
-    throw Error(fmt::format("The board came back with the force law {} instead of {}. Open the arm again.",
+    throw Error(fmt::format("The reconnected board has the force law {} instead of {}. Open the arm again.",
                             other.force_law->name, self.force_law->name));
   std::shared_ptr<Transport> before;  // destroyed after the locks are released, because closing may take long
   const std::scoped_lock lock(self.feature_mutex, self.output_mutex, self.scope_mutex);
@@ -666,7 +669,7 @@ std::uint8_t Device::send(Command command, const protocol::TestPulse& pulse) {
 
 std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   if (signals.size() > protocol::scope_signals_maximum)
-    throw Error(fmt::format("{} signals are more than the scope carries. Choose at most {}.", signals.size(),
+    throw Error(fmt::format("The scope cannot transmit {} signals. Choose at most {}.", signals.size(),
                             protocol::scope_signals_maximum));
   if (!signals.empty()) implementation_->transport()->claim_scope();
   protocol::CommandReport report{};
@@ -760,7 +763,7 @@ std::vector<protocol::BlackBoxRow> Device::black_box_rows(const protocol::BlackB
   while (rows.size() < box.row_count) {
     const auto report = implementation_->rows_from(rows.size());
     if (report.row_count == 0 || report.fault_periods != box.fault_periods)
-      throw Error("The black box went while it was read, because the force was switched on.");
+      throw Error("The board discarded the black box while it was read, because the force was switched on.");
     const std::size_t count =
         std::min({std::size_t{report.row_count}, std::size(report.rows), box.row_count - rows.size()});
     rows.insert(rows.end(), report.rows, report.rows + count);
@@ -788,10 +791,10 @@ protocol::SelfTestReport Device::self_test() {
   carry_out(Command::self_test);
   if (!wait_while([&] { return report.tests_begun == begun_before; }))
     throw NotTested(
-        "The board does not test itself now. Switch the force off; if a fault is shown, see to that first: `inkwell "
-        "fault` tells.");
+        "The board cannot run its self-test now. Switch the force off. If a fault is shown, correct its cause first: "
+        "`inkwell fault` prints the cause.");
   if (!wait_while(it_runs))
-    throw Error("The board's self-test does not come to an end. Report this with the firmware version.");
+    throw Error("The board's self-test does not finish. Report this with the firmware version.");
   return report;
 }
 

@@ -14,7 +14,7 @@ namespace inkwell::device {
 namespace {
 
 Error damaged() {
-  return Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+  return Error("The device's description of its force law is damaged. Build its firmware again and flash it.");
 }
 
 /// Reads the rows of a report from its beginning.

@@ -89,8 +89,8 @@ ParameterFile parse_parameters(std::string_view toml_text, const std::string& fi
   }
   const toml::table* section = document["parameters"].as_table();
   if (section == nullptr)
-    throw Error(
-        fmt::format("{} has no [parameters] section. Make one with `inkwell parameters save FILE`.", file_name));
+    throw Error(fmt::format(
+        "{} has no [parameters] section. Create a parameter file with `inkwell parameters save FILE`.", file_name));
 
   ParameterFile file;
   for (const auto& [key, node] : *section) {
@@ -125,8 +125,8 @@ ParameterFile load_parameters(const std::filesystem::path& file) {
 
 std::string format_parameters(const protocol::ParameterSet& parameters) {
   std::string text = fmt::format(
-      "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` gives them to the device.\n\n"
-      "protocol_version = {}\n\n[parameters]\n",
+      "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` sends them to the "
+      "device.\n\nprotocol_version = {}\n\n[parameters]\n",
       protocol::protocol_version);
   std::string_view group;
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
@@ -149,7 +149,7 @@ void save_parameters(const std::filesystem::path& file, const protocol::Paramete
   std::error_code code;
   if (!stream) {
     std::filesystem::remove(unfinished, code);
-    throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the space left.",
+    throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the free space.",
                             file.string()));
   }
   std::filesystem::rename(unfinished, file, code);

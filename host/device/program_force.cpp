@@ -50,7 +50,7 @@ protocol::ForceReport force_report(const ForceRequest& request) {
     if (!std::isfinite(force_N))
       throw Error(fmt::format("The force is {} N on one axis. Give finite numbers.", force_N));
   if (request.interval_ms < 1 || request.interval_ms > protocol::force_interval_maximum_ms)
-    throw Error(fmt::format("A force for {} ms can not be sent. Send one every 1 to {} ms, and name that interval.",
+    throw Error(fmt::format("A force for {} ms cannot be sent. Send a force every 1 to {} ms, and give this interval.",
                             request.interval_ms, protocol::force_interval_maximum_ms));
   protocol::ForceReport report{};
   report.mode = request.mode;
@@ -68,7 +68,7 @@ protocol::ShapesReport shapes_report(const Shapes& shapes) {
     require_place("A coordinate of " + name, plane.point_m);
     require_place("A coordinate of the normal of " + name, plane.normal);
     if (std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]) < 1e-5f)
-      throw Error(fmt::format("The normal of {} has no length. Let it point into the free space.", name));
+      throw Error(fmt::format("The normal of {} has length 0. Give a normal that points into the free space.", name));
     copy(plane.point_m, report.planes[i].point_m);
     copy(plane.normal, report.planes[i].normal);
     report.planes[i].surface = surface_entry(name, plane.surface);
@@ -77,7 +77,7 @@ protocol::ShapesReport shapes_report(const Shapes& shapes) {
   if (shapes.sphere) {
     const Sphere& sphere = *shapes.sphere;
     require_place("A coordinate of the sphere", sphere.centre_m);
-    if (!(sphere.radius_m > 0.0f)) throw Error("The sphere's radius is not above 0 m. Give it one.");
+    if (!(sphere.radius_m > 0.0f)) throw Error("The sphere's radius is not above 0 m. Give a radius above 0 m.");
     require_in_range("The sphere's radius", sphere.radius_m, 0.0f, protocol::shape_distance_maximum_m, " m");
     copy(sphere.centre_m, report.sphere.centre_m);
     report.sphere.radius_m = sphere.radius_m;

@@ -58,7 +58,7 @@ void Session::Implementation::report_loop() {
       if (const auto endpoint = find())
         serve(connect(*endpoint));
       else
-        set_connection(Connection::searching, "No arm was found. Plug one in, or start a virtual one.");
+        set_connection(Connection::searching, "No arm was found. Plug in an arm, or start a virtual board.");
     } catch (const NoPermission& error) {
       set_connection(Connection::no_permission, error.what());
     } catch (const Incompatible& error) {
@@ -129,7 +129,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       release_idle(*served, *before);
       if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
     }
-    if (lost) throw Disconnected("The device was unplugged. Connect it again.");
+    if (lost) throw Disconnected("The device was unplugged. Connect the device again.");
     send_requests(*served);
     served->keep_alive();
     const auto now = Clock::now();
@@ -140,7 +140,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       state.scope_frames_malformed = served->malformed_scope_frames();
       note_losses(newest_periods);
       const bool is_silent = now - last_pose > silence_limit;
-      if (is_silent) state.message = "The device is connected but silent: it is paused or stuck.";
+      if (is_silent) state.message = "The device is connected but silent: it is paused or not working.";
       if (std::exchange(was_silent, is_silent) && !is_silent) state.message = connected_message();
       window_start = now;
       poses_in_window = 0;
@@ -401,7 +401,7 @@ void Session::Implementation::set_connection(Connection connection, const std::s
 
 void Session::Implementation::forget_device() {
   const std::lock_guard lock(mutex);
-  if (device) events.add(event_now(EventKind::connection, "The device went away.", std::nullopt));
+  if (device) events.add(event_now(EventKind::connection, "The device was disconnected.", std::nullopt));
   device.reset();
   state.information.reset();
   state.store.reset();

@@ -61,8 +61,8 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
 Socket::Socket(const SocketAddress& server)
     : descriptor_(server.is_unix() ? local::connect_to(server.path) : connect_to_port(server)), peer_(server.text()) {
   if (!descriptor_.is_open())
-    throw Error(fmt::format("Nothing answers at {} ({}). Start the virtual board, or check the {} it printed.", peer_,
-                            std::strerror(errno), server.is_unix() ? "path" : "port"));
+    throw Error(fmt::format("No program answers at {} ({}). Start the virtual board, or check the {} that it printed.",
+                            peer_, std::strerror(errno), server.is_unix() ? "path" : "port"));
   own_ = process::OwnDescriptor(descriptor_.number());
 }
 
@@ -76,7 +76,7 @@ void Socket::send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(descriptor_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) throw Disconnected(fmt::format("The connection to {} broke. Start the board again.", peer_));
+    if (sent <= 0) throw Disconnected(fmt::format("The connection to {} was lost. Start the board again.", peer_));
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
   }
 }
@@ -87,11 +87,9 @@ std::size_t Socket::receive_some(std::span<std::byte> bytes) {
     if (received > 0) return static_cast<std::size_t>(received);
     if (received < 0 && errno == EINTR) continue;
     if (received < 0 && errno == EAGAIN)
-      throw Error(
-          fmt::format("What listens at {} gives no answer. Check that this is the port that virtual-board printed "
-                      "for this.",
-                      peer_));
-    throw Disconnected(fmt::format("The other end of {} closed the connection. Start the board again.", peer_));
+      throw Error(fmt::format(
+          "The program at {} does not answer. Check that virtual-board printed this port for this connection.", peer_));
+    throw Disconnected(fmt::format("The program at {} closed the connection. Start the board again.", peer_));
   }
 }
 

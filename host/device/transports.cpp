@@ -29,8 +29,8 @@ std::unique_ptr<Transport> open_transport(const Endpoint& endpoint) {
 std::string permission_message(const std::string& path) {
   // The system's rule file number 73 applies uaccess, so the number of this file must be lower than 73.
   return fmt::format(
-      "You may not open the arm at {}. Inkwell's package brings the udev rule for that; plug the arm in again after "
-      "installing it. Without the package, write this line into /etc/udev/rules.d/60-inkwell.rules first: {}",
+      "You have no permission to open the arm at {}. Install Inkwell's package, which contains the udev rule, and plug "
+      "the arm in again. Without the package, first write this line into /etc/udev/rules.d/60-inkwell.rules: {}",
       path, udev_rule);
 }
 

@@ -10,7 +10,7 @@
 
 namespace inkwell::device {
 
-inline constexpr char unplugged[] = "The device was unplugged. Connect it again.";
+inline constexpr char unplugged[] = "The device was unplugged. Connect the device again.";
 
 /// Pending scope transfers: 128 KiB last more than 100 ms on a full-speed bus.
 inline constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;

@@ -13,7 +13,7 @@
 namespace inkwell::device {
 namespace {
 
-constexpr char no_libusb[] = "libusb does not start. Check that /dev/bus/usb exists.";
+constexpr char no_libusb[] = "libusb cannot be initialized. Check that /dev/bus/usb exists.";
 constexpr char open_elsewhere[] = "The device is open in another program. Close that program.";
 
 /// Opens each device with these identifiers and passes its serial number and handle to `take`. If `take` returns false,

@@ -11,8 +11,7 @@ namespace {
 usbip::OperationHeader receive_reply(const ReceiveBytes& receive, usbip::Operation operation) {
   const auto reply = receive_message<usbip::OperationHeader>(receive);
   if (reply.version != usbip::protocol_version || reply.operation != operation)
-    throw Error(
-        "What answers at this port does not speak USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
+    throw Error("The program at this port does not use USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
   return reply;
 }
 
@@ -46,10 +45,10 @@ std::optional<std::uint32_t> receive_import(const ReceiveBytes& receive) {
 std::size_t OpenTransfers::data_length_of(const usbip::ReturnSubmit& answer) const {
   if (answer.header.command == usbip::Command::return_unlink) return 0;
   if (answer.header.command != usbip::Command::return_submit)
-    throw Disconnected("The USB/IP server sent a message that is not of the protocol. Start the board again.");
+    throw Disconnected("The USB/IP server sent an invalid message. Start the board again.");
   const auto found = transfers_.find(answer.header.sequence);
   if (found == transfers_.end() || answer.actual_length > found->second.length)
-    throw Disconnected("The USB/IP server answered a transfer that was not asked for. Start the board again.");
+    throw Disconnected("The USB/IP server answered a transfer that was not requested. Start the board again.");
   return found->second.direction == usbip::Direction::in ? std::size_t{answer.actual_length} : 0;
 }
 

@@ -36,18 +36,17 @@ std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server) {
 UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                                  std::chrono::milliseconds timeout)
     : timeout_(timeout),
-      gone_(
-          fmt::format("The arm at {} is gone: its board has ended or restarted, or its cable was unplugged. Start the "
-                      "board, or plug the cable in.",
-                      server.text())),
+      gone_(fmt::format("The arm at {} was disconnected: its board has exited or restarted, or its cable was "
+                        "unplugged. Start the board, or plug the cable in.",
+                        server.text())),
       socket_(server) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
   socket_.wait_at_most(reply_timeout);
   const auto device = receive_import(from(socket_));
   if (!device)
     throw Error(
-        fmt::format("The device {} at {} cannot be taken: another program uses it, or its cable is out. "
-                    "Close the other program.",
+        fmt::format("The device {} at {} is not available: another program uses it, or its cable is unplugged. Close "
+                    "the other program, or plug the cable in.",
                     bus_id, server.text()));
   device_ = *device;
   socket_.wait_at_most(std::nullopt);  // after the import, silence only means that the device has no data
@@ -79,7 +78,7 @@ std::uint32_t UsbipConnection::submit(usbip::Direction direction, std::uint8_t e
   if (setup != nullptr) std::memcpy(message.setup.data(), setup, sizeof *setup);  // setup packets are little-endian
 
   const std::lock_guard lock(mutex_);
-  if (closed_) throw Disconnected("The device is gone. Connect it again.");
+  if (closed_) throw Disconnected("The device was disconnected. Connect the device again.");
   const std::uint32_t sequence = ++sequence_;
   message.header.sequence = sequence;
   open_.add(sequence, {direction, length, std::move(on_completion)});
@@ -142,7 +141,7 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
   Completion completion = std::move(*waiting->completion);
   if (completion.status == -EPIPE)
     throw Stalled("The device refused a USB request. Flash the firmware that belongs to this companion.");
-  if (completion.status != 0) throw Disconnected("The device was unplugged. Connect it again.");
+  if (completion.status != 0) throw Disconnected("The device was unplugged. Connect the device again.");
   return completion;
 }
 

@@ -29,7 +29,7 @@ constexpr std::size_t writes_in_lock_step = 1024;
 // without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
-constexpr char takes_no_commands[] = "The device takes no commands, although it sends its pose. Reset the board.";
+constexpr char takes_no_commands[] = "The device accepts no commands, although it sends poses. Reset the board.";
 
 class UsbipTransport : public Transport {
  public:
@@ -186,14 +186,16 @@ class UsbipTransport : public Transport {
     if (is_in_lock_step()) {  // waiting here might prevent the thread that reads reports from letting time pass
       if (lost_) throw Disconnected(unplugged);
       if (writes_ >= writes_in_lock_step)
-        throw Error("1024 commands wait for board time to pass. Send fewer, or wait for poses in between.");
+        throw Error(
+            "1024 commands wait for board time to pass. Send fewer commands, or wait for poses between the commands.");
       return;
     }
     const auto has_room = [&] { return writes_ < writes_under_way; };
     for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !takes_none(); known = reports_come_) {
       const bool changed = writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || takes_none(); });
       if (!changed && reports_come_ == known)
-        throw Error("The device takes no commands and is silent. Reset the board, or let a paused virtual board run.");
+        throw Error(
+            "The device accepts no commands and is silent. Reset the board, or let a paused virtual board run.");
     }
     if (lost_) throw Disconnected(unplugged);
     if (!has_room()) throw Error(takes_no_commands);

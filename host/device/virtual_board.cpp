@@ -44,7 +44,8 @@ struct Pipe {
   process::OwnDescriptor own;
   Pipe() {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe to the virtual board can be made: too many files are open.");
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      throw Error("A pipe to the virtual board cannot be created: too many files are open.");
     read_end = ends[0];
     write_end = ends[1];
   }
@@ -112,7 +113,8 @@ std::filesystem::path firmware_for(const std::string& name) {
   if (name.empty()) return installation::firmware();
   const board::Facts* const facts = board::find_board(name);
   if (facts == nullptr)
-    throw Error(fmt::format("There is no board called {}. Known are {}.", name, board::names_of_boards()));
+    throw Error(
+        fmt::format("There is no board with the name {}. Known boards are {}.", name, board::names_of_boards()));
   return installation::firmware(board::image_name(*facts));
 }
 
@@ -232,10 +234,9 @@ VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_
     throw Error(fmt::format("The program {} is missing. Build it with tools/build, or install Inkwell again.",
                             program.string()));
   if (access(elf.c_str(), R_OK) != 0)
-    throw Error(
-        fmt::format("The firmware {} is missing. Build it with tools/build, install Inkwell again, or name one with "
-                    "--elf.",
-                    elf.string()));
+    throw Error(fmt::format(
+        "The firmware {} is missing. Build it with tools/build, install Inkwell again, or give a firmware with --elf.",
+        elf.string()));
   auto& self = *implementation_;
   self.start(arguments_of(options, program, elf));
   const std::string line = self.read_ready_line();

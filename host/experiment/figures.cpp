@@ -143,12 +143,12 @@ std::vector<std::string> draw_figures(const Recording& recording, const std::fil
   if (options.from_s) shown.from_s = *options.from_s;
   if (options.to_s) shown.to_s = std::min(end_s, *options.to_s);
   if (shown.from_s >= shown.to_s)
-    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording lasts {:.3f} s.",
                                     shown.from_s, shown.to_s, end_s));
   std::error_code code;
   if (!directory.empty()) std::filesystem::create_directories(directory, code);
   if (code)
-    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.",
+    throw device::Error(fmt::format("The folder {} cannot be created: {}. Give another folder with --out.",
                                     directory.string(), code.message()));
 
   const FigureData data = figure_data(recording, wall);

@@ -94,7 +94,7 @@ void PacedDevice::wait_for_pose(const std::function<bool(const device::Pose&)>& 
 
 void PacedDevice::wait_for_token(std::uint8_t token) {
   wait_for_pose([&](const auto& pose) { return is_at_or_after(pose.command_token, token); }, command_limit_s,
-                "The device does not carry out commands. Reset the board and run the experiment again.");
+                "The device does not execute commands. Reset the board and run the experiment again.");
 }
 
 }  // namespace inkwell::experiment

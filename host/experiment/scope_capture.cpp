@@ -63,7 +63,7 @@ recording::Recording ScopeCapture::take(std::size_t samples) {
     return size() >= samples;
   };
   device_.wait_until(arrived, arrival_limit_s,
-                     "The scope does not send what it recorded. Reset the board and run the experiment again.");
+                     "The scope does not send its samples. Reset the board and run the experiment again.");
   device_.select_signals({});
   const std::lock_guard lock(mutex_);
   recording::Recording taken = recording_;

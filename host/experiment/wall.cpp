@@ -25,7 +25,7 @@ char axis_letter(int axis) { return static_cast<char>('x' + axis); }
 BoxWall parse_wall(const std::string& name) {
   if (name.size() == 2 && name[0] >= 'x' && name[0] <= 'z' && (name[1] == '+' || name[1] == '-'))
     return {name[0] - 'x', name[1] == '+' ? 1 : -1};
-  throw device::Error(fmt::format("There is no wall {}. Name one of x-, x+, y-, y+, z-, z+.", name));
+  throw device::Error(fmt::format("There is no wall {}. Give one of x-, x+, y-, y+, z-, z+.", name));
 }
 
 std::string wall_name(BoxWall wall) { return {axis_letter(wall.axis), wall.side > 0 ? '+' : '-'}; }
@@ -48,7 +48,7 @@ BoxWall pushed_wall(const recording::Recording& recording) {
       // The penetration vector points out of the wall, into the box.
       wall = {axis, penetration_m < 0 ? 1 : -1};
     }
-  if (deepest_m == 0) throw device::Error("The sphere touches no wall in this recording. Record a push into one.");
+  if (deepest_m == 0) throw device::Error("The sphere touches no wall in this recording. Record a push into a wall.");
   return wall;
 }
 

@@ -112,7 +112,7 @@ std::vector<CurrentStep> current_steps(const Recording& recording) {
 void switch_force_on(PacedDevice& device, const ParameterSet& parameters) {
   device.command(Command::enable_force);
   device.wait_for_pose([](const auto& pose) { return protocol::force_is_on(pose.state); }, 1.0,
-                       "The device did not switch the force on. Look at its state with `inkwell watch`.");
+                       "The device did not switch the force on. Check its state with `inkwell watch`.");
   device.pass(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
 
@@ -146,7 +146,7 @@ void take_to_middle(PacedDevice& device, device::ControlClient& control, const P
 Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control, const recording::Information& about,
                             BoxWall wall, const Progress& progress) {
   const ParameterSet& parameters = about.parameters;
-  progress("The hand takes the stylus to the middle of the box.", 0.25);
+  progress("The hand moves the stylus to the middle of the box.", 0.25);
   take_to_middle(device, control, parameters);
   switch_force_on(device, parameters);
 
@@ -166,7 +166,7 @@ Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control,
   control.trace_stop();
   device.command(Command::disable_force);
 
-  progress("The simulation's own values are read.", 0.82);
+  progress("The simulated values are read.", 0.82);
   add_simulated_columns(recording, read_trace(control), recorded_quantities());
   // The offset is negative if the path starts before the first sample.
   const double offset_s = device::board_time_s(path_begins_at - recording.periods.front());
@@ -187,18 +187,18 @@ bool is_clear(const device::Pose& pose, const ParameterSet& parameters) {
 
 Push push_by_user(PacedDevice& device, const recording::Information& about, BoxWall wall, const Progress& progress) {
   const ParameterSet& parameters = about.parameters;
-  progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
+  progress("Move the stylus out of the inkwell to the middle of the box. The force is switched on there.", 0.25);
   const auto in_the_middle = [&](const auto& pose) {
     return is_clear(pose, parameters) && !is_closed(pose.switches, protocol::Switch::inkwell);
   };
   device.wait_for_pose(in_the_middle, user_limit_s,
-                       "The stylus did not come to the middle of the box. Run the experiment again.");
+                       "The stylus did not reach the middle of the box. Run the experiment again.");
   switch_force_on(device, parameters);
 
   ScopeCapture capture(device, about);
-  progress(
-      fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)),
-      0.4);
+  progress(fmt::format("Push into the wall {} with increasing force, hold still for a second, then release the stylus.",
+                       wall_name(wall)),
+           0.4);
   const auto beyond_m = [&](const device::Pose& pose) {
     return wall.side * (static_cast<double>(pose.position_m[wall.axis]) - contact_m(parameters, wall));
   };
@@ -217,7 +217,7 @@ void make_folder(const std::filesystem::path& directory) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (!std::filesystem::is_directory(directory))
-    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.",
+    throw device::Error(fmt::format("The folder {} cannot be created: {}. Give another folder with --out.",
                                     directory.string(), code.message()));
 }
 
@@ -253,7 +253,7 @@ nlohmann::ordered_json run_wall_experiment(device::Device& device, device::Contr
   const auto result = evaluate(push.recording, about.parameters, wall, push.hold);
   if (!result.contact)
     throw device::Error(
-        fmt::format("The sphere never touched the wall {}. Choose another with --wall.", wall_name(wall)));
+        fmt::format("The sphere never touched the wall {}. Choose another wall with --wall.", wall_name(wall)));
 
   progress("The recording is written.", 0.88);
   recording::save(steps_recording, directory / "current-step.csv");

@@ -24,21 +24,21 @@ constexpr unsigned longest_poll_ms = 10'000;
 /// DFU 1.1, section 6.1.2.
 std::string_view meaning_of(std::uint8_t status) {
   constexpr std::string_view meanings[] = {"no error",
-                                           "it does not take this address",
-                                           "the file is not for it",
-                                           "it cannot write",
-                                           "it cannot erase",
-                                           "the flash is not blank",
+                                           "it does not accept this address",
+                                           "the file is not for this device",
+                                           "the memory cannot be written",
+                                           "the memory cannot be erased",
+                                           "the flash is not erased",
                                            "a word cannot be programmed",
-                                           "what was programmed differs",
+                                           "the programmed data differs",
                                            "a wrong address",
-                                           "the data ended too soon",
-                                           "its program is damaged",
+                                           "the data is incomplete",
+                                           "its firmware is damaged",
                                            "the flash is read-protected",
                                            "the bus was reset",
-                                           "its power came on",
+                                           "the power was switched on",
                                            "an unknown error",
-                                           "a request in the wrong order"};
+                                           "an unexpected request"};
   return status < std::size(meanings) ? meanings[status] : "an unknown error";
 }
 
@@ -117,7 +117,8 @@ void BootLoader::make_idle() {
     else
       channel_.write({now.state == State::error_state ? Request::clear_status : Request::abort_request}, {});
   }
-  throw device::Error("The boot loader does not come to rest. Switch the board off and on again with BOOT0 held.");
+  throw device::Error(
+      "The boot loader does not become idle. Switch the board off, then hold BOOT0 while you switch it on again.");
 }
 
 void BootLoader::start() {
@@ -125,7 +126,7 @@ void BootLoader::start() {
   make_idle();
   sectors_ = parse_memory_layout(channel_.alternate_name(flash_setting));
   if (sectors_.empty() || sectors_.front().address != protocol::image_begin)
-    throw device::Error("This boot loader is not that of an STM32F405. Is the right board plugged in?");
+    throw device::Error("This is not the boot loader of an STM32F405. Check that the right board is plugged in.");
 }
 
 void BootLoader::wait_until_done() {
@@ -135,7 +136,7 @@ void BootLoader::wait_until_done() {
     now = status();
   }
   if (now.state == State::error_state || now.status != 0)
-    throw device::Error(fmt::format("The boot loader could not do that: {}.", meaning_of(now.status)));
+    throw device::Error(fmt::format("The boot loader reported an error: {}.", meaning_of(now.status)));
 }
 
 void BootLoader::download(std::uint16_t block, std::span<const std::byte> data) {
@@ -164,7 +165,7 @@ std::vector<std::byte> BootLoader::read(std::uint32_t address, std::size_t bytes
       make_idle();
     }
     const auto block = channel_.read({upload, first_block}, length);
-    if (block.size() != length) throw device::Error("The boot loader did not give what was asked for. Try again.");
+    if (block.size() != length) throw device::Error("The boot loader did not return the requested data. Try again.");
     read.insert(read.end(), block.begin(), block.end());
     make_idle();
   }

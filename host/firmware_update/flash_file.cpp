@@ -19,8 +19,8 @@ std::vector<std::byte> read_flash(const std::filesystem::path& name, const local
   auto content = file.content(protocol::flash_bytes);
   if (!protocol::may_be_flash(content))
     throw device::Error(fmt::format(
-        "{} is no flash of a virtual board: that is {} bytes and begins with a firmware's vectors, or erased. It stays "
-        "as it is. Give the file of virtual-board --flash, or one that is not there yet.",
+        "{} is not a flash file of a virtual board: such a file has {} bytes and is erased or starts with a vector "
+        "table. The file was not changed. Give the file of virtual-board --flash, or the name of a new file.",
         name.string(), protocol::flash_bytes));
   return content;
 }
@@ -34,10 +34,9 @@ void use_flash(const std::filesystem::path& name, Use use) {
   } catch (const local::FileInUse& error) {
     throw device::Error(error.what());
   } catch (const std::system_error& error) {
-    throw device::Error(
-        fmt::format("{} cannot be read or written: {}. Check the free space, and the rights of the "
-                    "file and its folder.",
-                    name.string(), error.code().message()));
+    throw device::Error(fmt::format(
+        "{} cannot be read or written: {}. Check the free space, and the permissions of the file and its folder.",
+        name.string(), error.code().message()));
   }
 }
 

@@ -68,13 +68,14 @@ Image read_image(std::span<const std::byte> elf, const std::filesystem::path& fi
     const std::uint64_t segment_end = std::uint64_t{segment.address} + segment.bytes.size();
     if (segment.address < end || segment_end > flash_begin + flash_bytes)
       throw NoImage(
-          fmt::format("{} is no program for the flash of an STM32F405: it has {} bytes at 0x{:08x}. Give the "
-                      ".elf of a firmware.",
+          fmt::format("{} is not a program for the flash of an STM32F405: it has {} bytes at 0x{:08x}. Give the .elf "
+                      "file of a firmware.",
                       name, segment.bytes.size(), segment.address));
     end = segment_end;
   }
   if (image.segments.empty() || image.segments.front().address != flash_begin)
-    throw NoImage(fmt::format("{} has no vector table at the begin of the flash. Give the .elf of a firmware.", name));
+    throw NoImage(
+        fmt::format("{} has no vector table at the beginning of the flash. Give the .elf file of a firmware.", name));
   std::vector<std::byte> begin;
   for (std::uint32_t i = 0; i < identity_end; ++i) begin.push_back(image.at(flash_begin + i).value_or(std::byte{0xFF}));
   image.identity = identity_in(begin);
@@ -85,8 +86,8 @@ Image read_image(std::span<const std::byte> elf, const std::filesystem::path& fi
 Image read_image(const std::filesystem::path& elf) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(elf, code))
-    throw NoImage(fmt::format("There is no firmware {}. Build it first (tools/build board), or give another file.",
-                              elf.string()));
+    throw NoImage(fmt::format(
+        "The firmware {} does not exist. Build it first (tools/build board), or give another file.", elf.string()));
   if (std::filesystem::file_size(elf, code) > file_maximum)
     throw NoImage(fmt::format("{} is too large to be a firmware.", elf.string()));
   std::ifstream stream(elf, std::ios::binary);
@@ -111,18 +112,17 @@ std::vector<std::string> objections(const Image& image, const std::optional<prot
   std::vector<std::string> sentences;
   if (!image.identity) {
     sentences.push_back(
-        fmt::format("{} does not say which board it is for: it is no firmware of Inkwell, or an old one.", name));
+        fmt::format("{} does not state its board: it is not a firmware of Inkwell, or it is an old version.", name));
     return sentences;
   }
   const auto& identity = *image.identity;
   if (there && there->board_name() != identity.board_name())
-    sentences.push_back(fmt::format("{} is for the board {}, and this one is {}: its pins would drive other things.",
+    sentences.push_back(fmt::format("{} is for the board {}, but this board is {}, whose pins have other functions.",
                                     name, identity.board_name(), there->board_name()));
   if (identity.protocol_version != protocol::protocol_version)
     sentences.push_back(
-        fmt::format("{} speaks version {} of the protocol, this companion version {}: they could not "
-                    "work together.",
-                    name, identity.protocol_version, protocol::protocol_version));
+        fmt::format("{} uses protocol version {}, this companion uses version {}: they are not compatible.", name,
+                    identity.protocol_version, protocol::protocol_version));
   if (!image.is_whole)
     sentences.push_back(fmt::format("{} is damaged: its checksum is wrong. Build or copy it again.", name));
   return sentences;
@@ -131,8 +131,8 @@ std::vector<std::string> objections(const Image& image, const std::optional<prot
 std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there) {
   if (!image.identity || !there || image.identity->version() >= there->version()) return {};
   return fmt::format(
-      "{} has firmware {}, which is older than the firmware {} that it would replace. Faults that were corrected "
-      "since then would come back.",
+      "{} contains firmware {}, which is older than the installed firmware {}. Defects that were corrected since then "
+      "would return.",
       image.file.string(), version_of(*image.identity), version_of(*there));
 }
 

@@ -15,14 +15,15 @@ namespace inkwell::firmware_update {
 namespace {
 
 constexpr char cannot_use[] =
-    "openocd could not write the firmware: see above. Is the probe connected to SWDIO, SWCLK, NRST and ground, and the "
-    "board's power on?";
+    "openocd could not write the firmware: see above. Check that the probe is connected to SWDIO, SWCLK, NRST and "
+    "ground, and that the board's power is on.";
 constexpr char cannot_read[] =
-    "openocd could not read the board's firmware: see above. Is the probe connected to SWDIO, SWCLK, NRST and ground, "
-    "and the board's power on? For a chip whose flash cannot be read, add --yes. Nothing was changed.";
+    "openocd could not read the board's firmware: see above. Check that the probe is connected to SWDIO, SWCLK, NRST "
+    "and ground, and that the board's power is on. For a chip whose flash cannot be read, add --yes. Nothing was "
+    "changed.";
 constexpr char not_verified[] =
-    "openocd ended without a report that the firmware was verified, so it is not known what the flash holds. Check "
-    "openocd's installation and its settings, then try again.";
+    "openocd exited without a report that the firmware was verified, so the flash content is unknown. Check openocd's "
+    "installation and settings, then try again.";
 
 enum class HexRecord : std::uint8_t { data = 0, end = 1, upper_address = 4 };
 

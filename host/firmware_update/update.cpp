@@ -26,8 +26,9 @@ constexpr auto system_patience = 5s;
 std::string how_to_go_on(const Image& image, bool is_chosen) {
   return fmt::format(
       "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
-      "give the same command again{}: it goes on from there. If its power was off, hold BOOT0 while it comes on first.",
-      is_chosen ? fmt::format(", now with {}, as the board cannot say any more which one it is", image.file.string())
+      "run the same command again{}: the command continues the update. If the power was off, first hold BOOT0 while "
+      "you switch the power on.",
+      is_chosen ? fmt::format(", now with {}, because the board can no longer report its name", image.file.string())
                 : "");
 }
 
@@ -48,9 +49,8 @@ std::vector<Endpoint> loaders_at(const Address& address) {
 [[noreturn]] void complain_of_number(const std::vector<Endpoint>& arms, const std::vector<Endpoint>& loaders) {
   if (arms.empty() && loaders.empty())
     throw device::NoDevice(
-        "There is neither an arm nor a boot loader. Plug the board in; if its firmware does not run, hold its button "
-        "BOOT0 "
-        "while its power comes on.");
+        "Neither an arm nor a boot loader was found. Plug the board in. If its firmware does not run, hold its button "
+        "BOOT0 while you switch its power on.");
   std::string list;
   for (const auto& each : arms) list += fmt::format(" {} (runs),", each.serial_number);
   for (const auto& each : loaders) list += fmt::format(" {} (boot loader),", each.serial_number);
@@ -106,7 +106,8 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
     device::detach_firmware(arm);
   } catch (const device::Stalled&) {
     throw device::Error(
-        "The board does not leave its firmware while the force is on. Switch it off first: inkwell force off.");
+        "The board does not start its boot loader while the force is on. Switch the force off first: inkwell force "
+        "off.");
   }
   const auto loader = wait_for_admitted([&]() -> std::optional<Endpoint> {
     for (auto& each : device::find_boot_loaders(address))
@@ -115,8 +116,8 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
   });
   if (loader) return *loader;
   throw device::Error(
-      "The board has left its firmware, but its boot loader does not show itself. Switch the board's power off and on "
-      "again: its old firmware is still there.");
+      "The board has stopped its firmware, but its boot loader was not found. Switch the board's power off and on "
+      "again: its old firmware is still installed.");
 }
 
 /// Refuses an unsuitable image before the board enters its boot loader, based on the board name in the firmware's
@@ -149,7 +150,7 @@ Found find_loader(const Address& address, const Image& image, const UpdateOption
   }
   found.other_arms.erase(arms.front().serial_number);
   insist_for(arms.front(), image, options);
-  options.on_progress("asking the board to leave its firmware", 0);
+  options.on_progress("starting the boot loader of the board", 0);
   found.loader = detach(arms.front(), address);
   return found;
 }
@@ -193,7 +194,7 @@ class Writing {
 
  private:
   void step(const std::string& text) {
-    if (options_.is_cancelled()) throw device::Error("Stopped as you asked.");
+    if (options_.is_cancelled()) throw device::Error("Stopped at your request.");
     options_.on_progress(text, std::min(done_, 0.99));
   }
   void write(const Block& block) {
@@ -206,7 +207,7 @@ class Writing {
     const auto read = loader_.read(block.address, block.bytes.size());
     const auto difference = std::ranges::mismatch(read, block.bytes);
     if (difference.in2 != block.bytes.end())
-      throw device::Error(fmt::format("The flash differs from the image at 0x{:08x}: it may be worn.",
+      throw device::Error(fmt::format("The flash differs from the image at 0x{:08x}. The flash may be worn.",
                                       block.address + (difference.in2 - block.bytes.begin())));
     done_ += 0.3 / static_cast<double>(blocks_.size());
   }
@@ -242,7 +243,7 @@ std::optional<std::array<std::byte, BootLoader::option_bytes>> with_brown_out_le
     const std::array<std::byte, BootLoader::option_bytes>& options) {
   constexpr std::byte level_bits{0x0C}, unprotected{0xAA};
   if (options[1] != unprotected)
-    throw device::Error("The chip's option bytes say that its flash is protected; they are left as they are.");
+    throw device::Error("The chip's option bytes show that its flash is protected. They were not changed.");
   if ((options[0] & level_bits) == std::byte{0}) return {};
   auto changed = options;
   changed[0] &= ~level_bits;  // the other bits are retained: some of them would lock the chip permanently
@@ -265,7 +266,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
   }
   if (options.is_cancelled()) {
     if (written.before) loader.leave();
-    throw device::Error("Stopped as you asked. Nothing was changed.");
+    throw device::Error("Stopped at your request. Nothing was changed.");
   }
   const auto options_before = loader.read_options();
   const auto options_wanted = with_brown_out_level_3(options_before);
@@ -298,7 +299,7 @@ UpdateResult update(const Address& address, const Image& image, const UpdateOpti
     result.written = std::move(written.image);
     result.has_set_brown_out = written.has_set_brown_out;
   }
-  options.on_progress("waiting for the board to come back", 0.99);
+  options.on_progress("waiting for the board to restart", 0.99);
   look_at_result(address, found.other_arms, result);
   options.on_progress("done", 1);
   return result;

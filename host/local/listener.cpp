@@ -58,7 +58,7 @@ void remove_left_behind(const SocketAddress& where, std::string_view option) {
   if (status.st_uid != ::geteuid())
     throw refusal(where, option, "there is a socket of another user. Choose another path");
   if (connect_to(where.path).is_open() || errno != ECONNREFUSED)
-    throw refusal(where, option, "another program listens there. Choose another path, or end that program");
+    throw refusal(where, option, "another program listens there. Choose another path, or close that program");
   ::unlink(where.path.c_str());
 }
 

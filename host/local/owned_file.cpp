@@ -124,7 +124,7 @@ void OwnedFile::lock(const Descriptor& file) {
     return;
   }
   const auto owner = owner_of(file);
-  throw FileInUse(fmt::format("{} is in use by {}. End that program first, or give another file.", path_.string(),
+  throw FileInUse(fmt::format("{} is in use by {}. Close that program first, or give another file.", path_.string(),
                               owner ? name_of_process(*owner) : "another program"));
 }
 
@@ -175,8 +175,8 @@ void OwnedFile::replace(std::span<const std::byte> content) {
     std::error_code code;
     if (fs::exists(path_, code) && !(exists() && is_named(file_, path_)))
       throw FileInUse(
-          fmt::format("{} was exchanged for another file while this program used it, and stays as it is. "
-                      "Start again.",
+          fmt::format("{} was replaced by another file while this program used it. The new file was not changed. Start "
+                      "the program again.",
                       path_.string()));
     if (exists()) ::fchmod(next_.number(), status_of(file_).st_mode & 07777);
     write_all(next_, content, next_path_);

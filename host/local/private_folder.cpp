@@ -61,8 +61,9 @@ PrivateFolder::PrivateFolder(std::span<const std::string> parents) {
     }
     reason = errno;
   }
-  throw std::runtime_error(fmt::format("No private folder can be made in {}: {}. Set TMPDIR to a folder of yours.",
-                                       parents.empty() ? "/tmp" : parents.back(), std::strerror(reason)));
+  throw std::runtime_error(
+      fmt::format("A private folder cannot be created in {}: {}. Set TMPDIR to one of your folders.",
+                  parents.empty() ? "/tmp" : parents.back(), std::strerror(reason)));
 }
 
 PrivateFolder::~PrivateFolder() {

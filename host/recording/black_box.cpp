@@ -18,8 +18,8 @@ Recording of_black_box(const protocol::BlackBoxReport& box, std::span<const prot
                        Information about) {
   const auto fault = protocol::info(box.fault).name;
   if (rows.empty())
-    throw device::Error(fmt::format(
-        "The black box of {} holds no signals: the board was restarted before it had recorded any.", fault));
+    throw device::Error(
+        fmt::format("The black box of {} contains no signals: the board restarted before it recorded any.", fault));
   about.step_periods = protocol::black_box_step_periods;
   auto recording = Recording::without_samples(std::move(about));
   for (const auto& row : rows) {
@@ -28,7 +28,7 @@ Recording of_black_box(const protocol::BlackBoxReport& box, std::span<const prot
                                     : WideCounter::nearest_to(recording.periods.back(), row.time_periods);
     if (recording.size() > 0 && period <= recording.periods.back())
       throw device::Error(fmt::format(
-          "The black box of {} is damaged: its rows are not in the order of time. Nothing was saved.", fault));
+          "The black box of {} is damaged: its rows are not in chronological order. Nothing was saved.", fault));
     recording.periods.push_back(period);
     for (std::size_t i = 0; i < recording.columns.size(); ++i)
       recording.columns[i].push_back(row.values[static_cast<std::size_t>(recording.information.signals[i])]);

@@ -55,7 +55,7 @@ class CsvReader {
       else
         sample(line);
     }
-    if (!is_recording_) fail(fmt::format("does not start with \"# {}\", so it is no recording", format_name));
+    if (!is_recording_) fail(fmt::format("does not start with \"# {}\", so it is not a recording", format_name));
     if (!columns_known_) fail("has no line of column names");
     return std::move(recording_);
   }
@@ -107,7 +107,7 @@ class CsvReader {
     if (period && can_be_period(*period))
       recording_.marks.push_back({*period, std::string(text), kind, std::string(next())});
     else
-      recording_.remarks.push_back(fmt::format("The mark \"{}\" of {} has no period; it was left out.", text, name_));
+      recording_.remarks.push_back(fmt::format("The mark \"{}\" of {} has no period and was ignored.", text, name_));
   }
   void parameter(std::string_view name, std::string_view text) {
     const auto known = protocol::find_parameter(name);
@@ -116,11 +116,11 @@ class CsvReader {
       recording_.information.parameters[*known] = static_cast<float>(*value);
     else
       recording_.remarks.push_back(
-          fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
+          fmt::format("The parameter {} of {} is unknown to this version and was ignored.", name, name_));
   }
   void column_names(std::string_view line) {
     columns_known_ = true;
-    if (!line.starts_with("time_s")) fail("has no column time_s in front");
+    if (!line.starts_with("time_s")) fail("does not have time_s as its first column");
     for (line.remove_prefix(6); !line.empty();) {
       line.remove_prefix(1);
       const auto name = line.substr(0, line.find(','));
@@ -133,7 +133,7 @@ class CsvReader {
         holds_.push_back(Holds::simulated);
       } else {
         recording_.remarks.push_back(
-            fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
+            fmt::format("The signal {} of {} is unknown to this version and was ignored.", name, name_));
         holds_.push_back(Holds::unknown);
       }
       line.remove_prefix(name.size());
@@ -145,13 +145,13 @@ class CsvReader {
     const auto next = [&]() -> double {
       const auto cell = line.substr(0, line.find(','));
       const auto value = number(cell);
-      if (!value) fail(fmt::format("is damaged in line {}: \"{}\" is no number", line_number_, cell));
+      if (!value) fail(fmt::format("is damaged in line {}: \"{}\" is not a number", line_number_, cell));
       line.remove_prefix(std::min(line.size(), cell.size() + 1));
       return *value;
     };
     const double time_s = next();
     const auto period = period_at(time_s);
-    if (!period) fail(fmt::format("is damaged in line {}: {} s is no time of a board", line_number_, time_s));
+    if (!period) fail(fmt::format("is damaged in line {}: {} s is not a valid board time", line_number_, time_s));
     recording_.periods.push_back(recording_.size() == 0 ? *period : period_after(recording_.periods.back(), *period));
     auto column = recording_.columns.begin(), simulated_column = recording_.simulated_columns.begin();
     for (const Holds holds : holds_) {

@@ -89,8 +89,8 @@ class CsvWriter final : public Writer {
     text_.clear();
   }
   [[noreturn]] void fail() const {
-    throw device::Error(
-        fmt::format("{} cannot be written: {}. Free some space or choose another place.", name_, std::strerror(errno)));
+    throw device::Error(fmt::format("{} cannot be written: {}. Free some space or choose another location.", name_,
+                                    std::strerror(errno)));
   }
 
   std::string name_;

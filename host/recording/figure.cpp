@@ -294,13 +294,13 @@ std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
 }
 
 void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
-  if (recording.size() == 0) throw device::Error("The recording holds no samples, so there is nothing to draw.");
+  if (recording.size() == 0) throw device::Error("The recording contains no samples, so there is nothing to draw.");
   const auto quantities = options.quantities.empty() ? recording.quantities() : options.quantities;
   const double end_s = recording.duration_s();
   const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
   const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
   if (shown.end <= shown.begin + 1)
-    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording lasts {:.3f} s.",
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
   const auto work = device::make_private_folder();
@@ -320,7 +320,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   if (!error) return;
   std::filesystem::remove(unfinished, ignored);
   throw device::Error(
-      fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
+      fmt::format("{} cannot be written: {}. Give another location with --out.", picture.string(), error.message()));
 }
 
 }  // namespace inkwell::recording

@@ -33,12 +33,12 @@ void take_force_law(Recording& recording, std::string_view digits, std::string_v
     recording.information.force_law = law.report;
     if (!device::join_tables(law))
       recording.remarks.push_back(
-          fmt::format("{} was recorded with the force law {}, but this program works with {} at the same time: "
-                      "parameters and signals of the former are left out.",
+          fmt::format("{} was recorded with the force law {}, but this program already uses the force law {}: the "
+                      "parameters and signals of the recorded force law are ignored.",
                       file, law.name, device::joined_force_law()));
   } catch (const device::Error&) {
     recording.remarks.push_back(fmt::format(
-        "The description of the force law in {} is damaged: its parameters and signals are left out.", file));
+        "The description of the force law in {} is damaged: its parameters and signals are ignored.", file));
   }
 }
 

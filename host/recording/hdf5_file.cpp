@@ -21,7 +21,8 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (!attribute || H5Awrite(attribute.id(), type, value) < 0)
-    throw device::Error("The head of the recording could not be written. Free some space or choose another place.");
+    throw device::Error(
+        "The header of the recording could not be written. Free some space or choose another location.");
 }
 
 }  // namespace

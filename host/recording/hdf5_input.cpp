@@ -52,7 +52,7 @@ Hdf5Input::Hdf5Input(const std::filesystem::path& file) : name_(file.string()) {
   const Handle access = file_access();
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ})
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), mode, access.id()), H5Fclose);
-  if (!file_) fail("is damaged, or is being written: HDF5 cannot open it. Try again once its recorder has ended");
+  if (!file_) fail("is damaged, or is being written: HDF5 cannot open it. Try again after the recording has finished");
   hsize_t bytes = 0;
   if (H5Fget_filesize(file_.id(), &bytes) < 0) fail("is damaged: HDF5 cannot determine its size");
   bytes_left_ = bytes;
@@ -82,7 +82,7 @@ void Hdf5Input::check_is_here(const std::string& path) const {
     H5L_info_t link{};
     if (H5Lget_info(file_.id(), part.c_str(), &link, H5P_DEFAULT) < 0)
       fail(fmt::format("is damaged: it has no {}", part));
-    if (link.type != H5L_TYPE_HARD) fail(fmt::format("is damaged: {} leads elsewhere", part));
+    if (link.type != H5L_TYPE_HARD) fail(fmt::format("is damaged: {} is a link to another object", part));
     if (end == std::string::npos) return;
   }
 }
@@ -161,7 +161,7 @@ Hdf5Input::Dataset Hdf5Input::open(const std::string& path) const {
     is_known &= filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32;
     dataset.is_compressed |= filter == H5Z_FILTER_DEFLATE;
   }
-  const std::string unknown = fmt::format("is damaged: {} is stored in a form that no recording has", path);
+  const std::string unknown = fmt::format("is damaged: {} has a storage format that recordings do not use", path);
   if (!is_known) fail(unknown);
 
   // Read only after the checks above, because HDF5 opens other files to determine the size of a virtual dataset.
@@ -223,7 +223,7 @@ void Hdf5Input::check_content(const Dataset& column, std::uint64_t count) {
   const std::uint64_t stored = H5Dget_storage_size(column.itself.id());
   const std::uint64_t unpacked = stored * (column.is_compressed ? deflate_ratio_maximum : 1) + harmless_bytes;
   if (stored > bytes_left_ || count * H5Tget_size(column.type.id()) > unpacked)
-    fail(fmt::format("is damaged: {} declares {} elements, but the file does not have them", column.path, count));
+    fail(fmt::format("is damaged: {} declares {} elements, but the file does not contain them", column.path, count));
   bytes_left_ -= stored;
 }
 

@@ -16,7 +16,7 @@ namespace {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(Hdf5Input input) : input_(std::move(input)) {
-    if (input_.text_attribute("format") != format_name) input_.fail("is an HDF5 file, but no recording");
+    if (input_.text_attribute("format") != format_name) input_.fail("is an HDF5 file, but not a recording");
   }
 
   Recording read() {
@@ -38,9 +38,9 @@ class Hdf5Reader {
     } catch (const device::Error&) {
       if (is_complete) throw;
       recording_.marks.clear();
-      recording_.remarks.push_back(
-          fmt::format("The marks of {} are left out: its program ended while it wrote one, or writes one just now.",
-                      input_.name()));
+      recording_.remarks.push_back(fmt::format(
+          "The marks of {} are ignored: the recording program stopped while it wrote a mark, or is writing a mark now.",
+          input_.name()));
     }
     recording_.complete = is_complete && whole == samples;
     return std::move(recording_);
@@ -63,7 +63,7 @@ class Hdf5Reader {
       const auto parameter = protocol::find_parameter(name);
       if (!parameter) {
         recording_.remarks.push_back(
-            fmt::format("The parameter {} of {} is not known here; it was left out.", name, input_.name()));
+            fmt::format("The parameter {} of {} is unknown to this version and was ignored.", name, input_.name()));
         continue;
       }
       about.parameters[*parameter] = input_.real_number("/parameters/" + name);
@@ -76,7 +76,7 @@ class Hdf5Reader {
     auto found = input_.text_attribute(name);
     if (!found)
       recording_.remarks.push_back(
-          fmt::format("The {} of {} is a text of variable length; it was left out.", name, input_.name()));
+          fmt::format("The {} of {} is a text of variable length and was ignored.", name, input_.name()));
     return std::move(found).value_or("");
   }
   /// Quantities in the columns of a group, derived from the column names.
@@ -88,12 +88,12 @@ class Hdf5Reader {
         found.push_back(*value);
       else
         recording_.remarks.push_back(
-            fmt::format("The signal {} of {} is not known here; it was left out.", name, input_.name()));
+            fmt::format("The signal {} of {} is unknown to this version and was ignored.", name, input_.name()));
     }
     // HDF5 returns names in alphabetical order. The order of the table groups related columns.
     std::sort(found.begin(), found.end());
     if (std::adjacent_find(found.begin(), found.end()) != found.end())
-      input_.fail(fmt::format("is damaged: {} has a name twice", group_name));
+      input_.fail(fmt::format("is damaged: {} contains a name twice", group_name));
     for (const auto value : found) columns_.push_back(fmt::format("{}/{}", group_name, info(value).name));
     return found;
   }

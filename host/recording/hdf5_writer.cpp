@@ -257,9 +257,10 @@ class Hdf5Writer final : public Writer {
     const auto space = std::filesystem::space(std::filesystem::absolute(file_name_).parent_path(), error);
     // File systems that are not disks, such as /proc, report no capacity and are not full.
     const bool full = !error && space.capacity > 0 && space.available < 1'000'000;
-    throw device::Error(fmt::format("{} cannot be written: {}.", name_,
-                                    full ? "the disk is full. Free some space or choose another place"
-                                         : "the system refused it. Check that the folder exists and may be written"));
+    throw device::Error(
+        fmt::format("{} cannot be written: {}.", name_,
+                    full ? "the disk is full. Free some space or choose another location"
+                         : "the system refused access. Check that the folder exists and that you may write to it"));
   }
 
   std::string name_, file_name_;

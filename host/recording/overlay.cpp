@@ -21,7 +21,7 @@ std::int64_t periods_to_mark(const Recording& recording, std::string_view text) 
 
 void check_holds_samples(const Recording& recording) {
   if (recording.periods.empty())
-    throw device::Error(fmt::format("{} holds no samples, so it cannot be compared.", recording.name));
+    throw device::Error(fmt::format("{} contains no samples, so it cannot be compared.", recording.name));
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ struct Recorder::Implementation {
         if (last) writer->finish();
       } catch (const device::Error& problem) {
         lock.lock();
-        status.error =
-            fmt::format("{} The recording holds everything up to the last half second before.", problem.what());
+        status.error = fmt::format("{} At most the last half second before this error is missing from the recording.",
+                                   problem.what());
         status.running = false;
         return;
       }
@@ -114,7 +114,7 @@ void Recorder::push(const device::ScopeSamples& samples) {
   const std::int64_t step = samples.first_period - self.newest_period;
   if (self.first_period && step <= 0) {
     self.status.error =
-        "The board was restarted, so its time began anew. The recording ends with the last sample before.";
+        "The board restarted, so its time restarted too. The recording stops at the last sample before the restart.";
     self.stopping = true;
     self.wake.notify_one();
     return;

@@ -62,7 +62,7 @@ const std::vector<float>& Recording::column(Quantity quantity) const {
   std::vector<std::string_view> names;
   for (const auto each : recorded) names.push_back(name_of(each));
   throw device::Error(
-      fmt::format("The recording does not hold {}. It holds {}.", name_of(quantity), fmt::join(names, ", ")));
+      fmt::format("The recording does not contain {}. It contains {}.", name_of(quantity), fmt::join(names, ", ")));
 }
 
 std::size_t Recording::end_of_stretch(std::size_t begin, std::size_t end) const {
@@ -138,7 +138,7 @@ Recording read_either(const std::filesystem::path& file) {
     stream.seekg(0);
     return read_csv(stream, file.string());
   }
-  throw device::Error(fmt::format("{} is no recording: it is neither HDF5 nor a CSV file that starts with \"# {}\".",
+  throw device::Error(fmt::format("{} is not a recording: it is neither HDF5 nor a CSV file that starts with \"# {}\".",
                                   file.string(), format_name));
 }
 
@@ -170,9 +170,10 @@ Recording read(const std::filesystem::path& file) {
   try {
     recording = read_either(file);
   } catch (const std::bad_alloc&) {
-    throw device::Error(fmt::format(
-        "{} needs more memory than this computer has free. Close other programs, or read it on another computer.",
-        file.string()));
+    throw device::Error(
+        fmt::format("{} needs more memory than is free on this computer. Close other programs, or read the recording "
+                    "on another computer.",
+                    file.string()));
   }
   make_plain(recording);
   if (!recording.periods.empty())
@@ -186,13 +187,13 @@ Recording read(const std::filesystem::path& file) {
 void check_can_be_created(const std::filesystem::path& file, Existing existing) {
   const auto ending = file.extension();
   if (ending != ".h5" && ending != ".hdf5" && ending != ".csv")
-    throw device::Error(fmt::format("{} must end in .h5 or .csv, which chooses the format.", file.string()));
+    throw device::Error(fmt::format("{} must end in .h5 or .csv, which selects the format.", file.string()));
   if (existing == Existing::stays && std::filesystem::exists(file))
     throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
   const auto folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))
     throw device::Error(
-        fmt::format("The folder {} does not exist. Make it, or choose another place.", folder.string()));
+        fmt::format("The folder {} does not exist. Create the folder, or choose another location.", folder.string()));
 }
 
 namespace {

@@ -15,7 +15,7 @@ constexpr double half_period_s = 0.5 / protocol::servo_rate_Hz;
 }  // namespace
 
 Replay::Replay(Recording recording) : recording_(std::move(recording)) {
-  if (recording_.size() == 0) throw device::Error("The recording holds no samples, so there is nothing to replay.");
+  if (recording_.size() == 0) throw device::Error("The recording contains no samples, so there is nothing to replay.");
   for (std::size_t i = 0; i < recording_.information.signals.size(); ++i)
     columns_[static_cast<std::size_t>(recording_.information.signals[i])] = i;
 }

@@ -23,7 +23,7 @@ std::vector<std::string_view> split(std::string_view names) {
     parts.push_back(names.substr(0, names.find(',')));
     names.remove_prefix(std::min(names.size(), parts.back().size() + 1));
   }
-  if (parts.empty()) throw device::Error("No signal is named. Name at least one, such as force_N.");
+  if (parts.empty()) throw device::Error("No signal is given. Give at least one signal, such as force_N.");
   return parts;
 }
 
@@ -60,7 +60,7 @@ std::vector<Signal> parse_signals(std::string_view names) {
     add_once(signals, *signal);
   }
   if (signals.size() > protocol::scope_signals_maximum)
-    throw device::Error(fmt::format("{} signals are named, but the scope carries {} at once. Leave some out.",
+    throw device::Error(fmt::format("{} signals are given, but the scope can transmit only {}. Give fewer signals.",
                                     signals.size(), protocol::scope_signals_maximum));
   return signals;
 }

@@ -15,7 +15,7 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   stream.close();
   std::error_code ignored;
   if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);  // an incomplete file
-  throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+  throw device::Error(fmt::format("{} cannot be written. Check the free space.", file.string()));
 }
 
 }  // namespace inkwell::recording

@@ -75,7 +75,7 @@ TEST_CASE("a device of another version of the protocol is not opened, and the te
   forget_errors();
   CHECK(hdInitDevice(nullptr) == HD_INVALID_HANDLE);
   CHECK(only_error() == HD_DEVICE_FAULT);
-  CHECK(says(HD_DEVICE_FAULT, "of the protocol"));
+  CHECK(says(HD_DEVICE_FAULT, "uses protocol version"));
 }
 
 TEST_CASE("a device is opened once, by any name, and may be opened again after it was disabled") {

@@ -32,7 +32,7 @@ TEST_CASE("a fault whose cause stays cannot be cleared, and the sentence says wh
   board.control.inject({"bridge_fault"});
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_FAULT; });
   CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_REFUSED);
-  CHECK(says("The fault is there again. bridge_fault: A bridge reported"));
+  CHECK(says("The board has raised the fault again. bridge_fault: A bridge reported"));
   board.control.heal("bridge_fault");
   CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_OK);
   inkwell_pose pose;
@@ -44,7 +44,7 @@ TEST_CASE("an arm of another version of the protocol is not opened, and the sent
   Board board(next_protocol);
   inkwell_arm* arm = nullptr;
   CHECK(inkwell_open(board.address.c_str(), &arm) == INKWELL_INCOMPATIBLE);
-  CHECK(says("of the protocol"));
+  CHECK(says("uses protocol version"));
   CHECK(arm == nullptr);
 }
 

@@ -73,7 +73,7 @@ for wrong = {-1, 0, NaN, Inf, 'long', [1 2]}
   refused(@() inkwell_capture(arm, {'position_x_m'}, wrong{1}), 'The duration is not valid');
 end
 for wrong = {{}, '', 7}
-  refused(@() inkwell_capture(arm, wrong{1}, 1), 'No signal is named');
+  refused(@() inkwell_capture(arm, wrong{1}, 1), 'No signal is given');
 end
 refused(@() inkwell_mex('read', arm, 1, 1), 'No signals are selected');
 

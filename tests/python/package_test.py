@@ -190,7 +190,7 @@ class Reading(unittest.TestCase):
         for wrong_s in -1, 0, math.nan, math.inf, "long", None:
             with self.assertRaisesRegex(inkwell.BadArgument, "duration is .*Give a time of more than 0 s"):
                 self.arm.capture("supply_V", duration_s=wrong_s)
-        with self.assertRaisesRegex(inkwell.BadArgument, "No signal is named"):
+        with self.assertRaisesRegex(inkwell.BadArgument, "No signal is given"):
             self.arm.capture(duration_s=1)
         with mock.patch.object(self.arm, "_samples", side_effect=KeyboardInterrupt), \
                 self.assertRaises(KeyboardInterrupt):
@@ -249,7 +249,7 @@ class Programs(unittest.TestCase):
             first.set_force((0, 0, 0))
             said = run(program, board.address)
             self.assertRegex(said.stdout, rf"^True\nThe arm is driven by \w+ \(process {os.getpid()}\), which claimed it \d+ s ago\. "
-                                          "End that program, or take the arm over from it\\.\n$")
+                                          "Close that program, or take the arm over from it\\.\n$")
             with inkwell.open(board.address) as second, self.assertRaises(inkwell.InUse):
                 second.set_force((0, 0, 0))
 
@@ -258,7 +258,7 @@ class Programs(unittest.TestCase):
             arm.clear_fault()  # there is no fault
             board.call("inject", fault="bridge_fault")
             wait_until(arm, lambda pose: pose.state == inkwell.State.FAULT)
-            with self.assertRaisesRegex(inkwell.Refused, "The fault is there again. bridge_fault: A bridge reported"):
+            with self.assertRaisesRegex(inkwell.Refused, "The board has raised the fault again. bridge_fault: A bridge reported"):
                 arm.clear_fault()
             board.call("heal", fault="bridge_fault")
             arm.clear_fault()
@@ -433,7 +433,7 @@ class Programs(unittest.TestCase):
 
     def test_another_version_of_the_protocol(self):
         with VirtualBoard(BUILD, elf="next-protocol.elf") as board:
-            with self.assertRaisesRegex(inkwell.Incompatible, "of the protocol"):
+            with self.assertRaisesRegex(inkwell.Incompatible, "uses protocol version"):
                 inkwell.open(board.address)
 
     def test_an_arm_that_does_not_know_where_it_is(self):

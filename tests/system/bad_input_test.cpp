@@ -274,7 +274,7 @@ TEST_CASE("a full disk is told in our words, and nothing half written is left") 
   REQUIRE(run_program("inkwell", {"--virtual", "record", file, "--seconds", "0.1"}).exit_code == 0);
   std::filesystem::create_symlink("/dev/full", directory.file("full.toml.unfinished"));
   check_refused(run_program("inkwell", {"--virtual", "parameters", "save", directory.file("full.toml")}),
-                {"full.toml cannot be written", "space left"});
+                {"full.toml cannot be written", "free space"});
   CHECK_FALSE(std::filesystem::is_symlink(directory.file("full.toml.unfinished")));
   CHECK_FALSE(std::filesystem::exists(directory.file("full.toml")));
 }

@@ -118,7 +118,7 @@ TEST_CASE("the firmware of one board, flashed on another, shows no device and dr
 TEST_CASE("a board that nobody knows is refused with those that are known") {
   const auto run = run_program("inkwell", {"info", "--virtual", "--board", "feather"});
   CHECK(run.exit_code == 1);
-  CHECK(run.err == "inkwell: There is no board called feather. Known are bench_modules, omni_driver.\n");
+  CHECK(run.err == "inkwell: There is no board with the name feather. Known boards are bench_modules, omni_driver.\n");
   const auto board =
       run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "feather"});
   CHECK(board.exit_code == 2);

@@ -68,7 +68,7 @@ TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone"
   const auto again = rig.run({"fault", "clear"});
   CHECK(again.exit_code == 1);
   INFO(again.err);
-  CHECK(again.err.find("The fault is there again. bridge_fault: A bridge reported") != std::string::npos);
+  CHECK(again.err.find("The board has raised the fault again. bridge_fault: A bridge reported") != std::string::npos);
 
   rig.control.heal("bridge_fault");
   const auto cleared = rig.run({"fault", "clear"});

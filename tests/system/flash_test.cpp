@@ -90,9 +90,9 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   board.wait_until(&FreeBoard::runs);
   auto result = board.flash({image("next-protocol.elf")});
   CHECK(result.exit_code == 1);
-  CHECK(says(result, "they could not work together"));
+  CHECK(says(result, "they are not compatible"));
   CHECK(says(result, "--yes"));
-  CHECK_FALSE(says(result, "asking the board to leave"));
+  CHECK_FALSE(says(result, "starting the boot loader"));
 
   result = board.flash({image("next-protocol.elf"), "--yes", "--json"});
   INFO(result.err);
@@ -102,17 +102,17 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   CHECK(json.at("brown_out_level_set") == true);  // the brown-out reset of a new chip is disabled
   CHECK(json.at("serial_number") == "000000000000000000000001");
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 1);  // the version is different now
-  for (const char* step : {"asking the board to leave", "erasing", "writing", "reading back", "starting the firmware"})
+  for (const char* step : {"starting the boot loader", "erasing", "writing", "reading back", "starting the firmware"})
     CHECK(says(result, step));
 
   // Without a name, the program's image is written. The program finds the board although the protocol versions of
   // program and board differ.
   result = board.flash({});
   CHECK(result.exit_code == 1);
-  CHECK(says(result, "which is older than the firmware"));
+  CHECK(says(result, "which is older than the installed firmware"));
   CHECK(says(result, "--allow-downgrade"));
   CHECK_FALSE(says(result, "--yes"));
-  CHECK_FALSE(says(result, "asking the board to leave"));
+  CHECK_FALSE(says(result, "starting the boot loader"));
   CHECK(board.runs());
   result = board.flash({"--dfu", "--allow-downgrade"});
   INFO(result.err);
@@ -147,13 +147,13 @@ TEST_CASE("an image that does not belong on the board is refused, and the old fi
     CHECK(result.exit_code == 1);
     CHECK(says(result, "is for the board other_board, and this one is omni_driver"));
     CHECK(says(result, "--yes"));
-    CHECK_FALSE(says(result, "asking the board to leave"));
+    CHECK_FALSE(says(result, "starting the boot loader"));
   }
   SUBCASE("an older protocol") {
     --identity.protocol_version;
     const auto result = board.flash({write_elf(directory, made_segments(identity))});
     CHECK(result.exit_code == 1);
-    CHECK(says(result, "they could not work together"));
+    CHECK(says(result, "they are not compatible"));
   }
   SUBCASE("damaged") {
     auto segments = made_segments(identity);
@@ -187,7 +187,7 @@ TEST_CASE("a flashing that was cut off is repaired by the same command") {
     kill(flash.process(), SIGINT);
     std::string last;
     for (std::string line; last.find("The board is in its boot loader") == std::string::npos;) last = flash.read_line();
-    CHECK(last.find("give the same command again") != std::string::npos);
+    CHECK(last.find("run the same command again") != std::string::npos);
     CHECK(flash.wait() == 1);
   }
   SUBCASE("by a death of the program") {
@@ -254,10 +254,10 @@ TEST_CASE("the firmware does not leave while the force is on") {
 TEST_CASE("without a board, and without openocd, flashing says what to do") {
   const auto nobody = run_program("inkwell", {"flash", "--usbip", "1"});
   CHECK(nobody.exit_code == 1);
-  CHECK(says(nobody, "Nothing answers"));
+  CHECK(says(nobody, "No program answers"));
   const auto none = run_program("inkwell", {"flash", "nowhere.elf"});
   CHECK(none.exit_code == 1);
-  CHECK(says(none, "no firmware nowhere.elf"));
+  CHECK(says(none, "The firmware nowhere.elf does not exist"));
   CHECK(run_program("inkwell", {"--virtual", "flash"}).exit_code == 2);
   CHECK(run_program("inkwell", {"flash", "--swd", "--dfu"}).exit_code == 2);
   CHECK(run_program("inkwell", {"flash", "--virtual"}).exit_code == 2);
@@ -289,7 +289,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const auto failed =
       run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd", "--board", "omni_driver"});
   CHECK(failed.exit_code == 1);
-  CHECK(says(failed, "Is the probe connected"));
+  CHECK(says(failed, "the probe is connected"));
 
   // With a board name, the image installed with this program is used. Without a board name, the board is not guessed
   // and openocd is not called.

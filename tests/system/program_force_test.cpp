@@ -115,12 +115,13 @@ TEST_CASE("what the board would refuse is refused with a sentence before it is s
   CHECK_THROWS_WITH_AS(rig.device->send_force({.force_N = {std::numeric_limits<float>::quiet_NaN(), 0, 0}}),
                        "The force is nan N on one axis. Give finite numbers.", device::Error);
   CHECK_THROWS_WITH_AS(rig.device->send_force({.interval_ms = 51}),
-                       "A force for 51 ms can not be sent. Send one every 1 to 50 ms, and name that interval.",
+                       "A force for 51 ms cannot be sent. Send a force every 1 to 50 ms, and give this interval.",
                        device::Error);
   device::Shapes shapes;
   shapes.planes[3] = device::Plane{.normal = {0, 0, 0}};
   CHECK_THROWS_WITH_AS(rig.device->place_shapes(shapes),
-                       "The normal of plane 3 has no length. Let it point into the free space.", device::Error);
+                       "The normal of plane 3 has length 0. Give a normal that points into the free space.",
+                       device::Error);
   shapes.planes[3] = device::Plane{.surface = {.stiffness_N_per_m = 1e6f}};
   CHECK_THROWS_AS(rig.device->place_shapes(shapes), device::Error);
   CHECK(rig.device->information().report.force_reports == 0);

@@ -62,8 +62,8 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
     const auto result = run_program("inkwell", words);
     INFO(command.front(), ": ", result.out, result.err);
     CHECK(result.exit_code == 1);
-    for (const std::string& said : {"The device speaks version " + std::to_string(next_version) + " of the protocol",
-                                    "this companion version " + std::to_string(protocol::protocol_version),
+    for (const std::string& said : {"The device uses protocol version " + std::to_string(next_version),
+                                    "this companion uses version " + std::to_string(protocol::protocol_version),
                                     std::string("Flash the firmware that belongs to this companion")})
       CHECK(result.err.find(said) != std::string::npos);
   }

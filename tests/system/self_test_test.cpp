@@ -342,7 +342,7 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   const auto clear = [&] { return run_program("inkwell", {"fault", "clear", "--usbip", port}); };
   const auto again = clear();
   CHECK(again.exit_code == 1);
-  CHECK(again.err.find("The fault is there again. self_test_failed: ") != std::string::npos);
+  CHECK(again.err.find("The board has raised the fault again. self_test_failed: ") != std::string::npos);
   CHECK(again.err.find("that the force needs: motor_2.") != std::string::npos);
   rig.control.heal_all();
   const auto cleared = clear();

@@ -30,7 +30,7 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   WindowRig rig;
   rig.switch_force_on();
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug one in"); });
+  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug in an arm"); });
   CHECK_FALSE(rig.look().can_click("status/Switch force on"));
   plug_in(rig, "fault");
   CHECK(rig.look().says("The USB connection was lost while the force was on"));

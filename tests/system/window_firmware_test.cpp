@@ -20,7 +20,7 @@ TEST_CASE("a board that speaks another version of the protocol is updated from t
   sight = window.look_until("it asks, because the board's firmware is newer",
                             [](const Sight& now) { return now.can_click("connection/Write older firmware"); });
   CHECK(sight.says("The board has a newer firmware"));
-  CHECK(sight.says("Faults that were corrected since then would come back"));
+  CHECK(sight.says("Defects that were corrected since then would return"));
   window.click("connection/Write older firmware");
   sight = window.look_until("it is under way", [](const Sight& now) { return now.says("erasing"); });
   CHECK(sight.says("Updating the firmware"));

@@ -100,7 +100,7 @@ TEST_CASE("where nothing answers at the address that was given, the window says 
   rig.control.usb(false);
   rig.look_until("no arm is there", [](const Sight& now) { return now.says("No arm was found"); });
   rig.control.quit();
-  rig.look_until("nobody answers", [answer = "Nothing answers at " + rig.board.usbip().text()](const Sight& now) {
+  rig.look_until("nobody answers", [answer = "No program answers at " + rig.board.usbip().text()](const Sight& now) {
     return now.says(answer);
   });
 }

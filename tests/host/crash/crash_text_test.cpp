@@ -15,22 +15,23 @@ constexpr std::uint32_t address_of_protection = 1u << 7, address_of_bus = 1u << 
 
 TEST_CASE("the cause of a crash is a sentence, with the address where the processor tells it") {
   CHECK(cause({.exception = 2}) == "The crystal stopped.");
-  CHECK(cause({.exception = 14}) == "The main loop did not come round, and the watchdog bit.");
-  CHECK(cause({.exception = 83}) == "Interrupt 67 came, which nobody has asked for.");
+  CHECK(cause({.exception = 14}) == "The main loop hung, and the watchdog expired.");
+  CHECK(cause({.exception = 83}) == "Interrupt 67 occurred, although it is not used.");
   CHECK(cause({.exception = 3, .hard_fault_status = 2}) ==
         "A handler's address could not be read from the vector table.");
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 1 | address_of_protection, .fault_address = 4}) ==
-        "The processor could not go on: it used memory in a way that is not allowed there, 0x00000004.");
+        "The processor could not continue: it accessed memory in a way that memory protection forbids, 0x00000004.");
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 9 | address_of_bus, .fault_address = 0x6000'0000}) ==
-        "The processor could not go on: nothing answered at the address, 0x60000000.");
+        "The processor could not continue: it accessed an unmapped address, 0x60000000.");
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 12, .fault_address = 0x1234}) ==
-        "The processor could not go on: the stack lay where nothing is on the way into an interrupt: it has overflowed "
-        "or been lost.");
+        "The processor could not continue: the stack was in unmapped memory on exception entry: the stack has "
+        "overflowed, "
+        "or the stack pointer is wrong.");
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 1 | 1u << 4 | address_of_protection})
             .find("overflowed") != std::string::npos);
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 25}) ==
-        "The processor could not go on: it divided by zero.");
-  CHECK(cause({.exception = 7}) == "The processor met exception 7.");
+        "The processor could not continue: it divided by zero.");
+  CHECK(cause({.exception = 7}) == "The processor raised exception 7.");
 }
 
 TEST_CASE("the chain of calls begins where the crash was, and ends with the first that is missing") {
@@ -49,7 +50,7 @@ TEST_CASE("without an image the text has the places, the registers and how to ge
   CHECK(with_stack.find("sp 10001000") != std::string::npos);
   CHECK(with_stack.find("`inkwell fault --elf FILE`") != std::string::npos);
   const std::string without_stack = text({.exception = 3}, nullptr);
-  CHECK(without_stack.find("its stack could not be read") != std::string::npos);
+  CHECK(without_stack.find("the stack could not be read") != std::string::npos);
   CHECK(without_stack.find("--elf") == std::string::npos);
 }
 

@@ -83,7 +83,7 @@ TEST_CASE("the error for an unusable socket path states the reason") {
   }
   const std::string nobody =
       message_of<device::Error>([] { device::find_arm(parse_address("usbip:unix:/nowhere/x")); });
-  CHECK(contains(nobody, "Nothing answers at unix:/nowhere/x"));
+  CHECK(contains(nobody, "No program answers at unix:/nowhere/x"));
 }
 
 TEST_CASE("one arm is meant, or the sentence says which there are") {

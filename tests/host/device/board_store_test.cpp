@@ -65,7 +65,8 @@ TEST_CASE("what the board refuses to store is told with its meaning and remedy")
     CHECK(contains(sentence, "The parameters were not stored."));
     CHECK(contains(sentence, std::string(info(result).meaning)));
     CHECK(contains(sentence, std::string(info(result).remedy)));
-    CHECK(contains(message_of<device::NotStored>([&] { factory_reset(*arm); }), "What is stored was not forgotten."));
+    CHECK(contains(message_of<device::NotStored>([&] { factory_reset(*arm); }),
+                   "The stored parameters were not erased."));
   }
   server.judge_store = [](Command) { return StoreResult::nothing_stored; };
   CHECK_NOTHROW(factory_reset(*arm));
@@ -103,7 +104,7 @@ TEST_CASE("a board that takes no command to store, or never ends it, is given up
   server.spoil[protocol::ReportId::store] = [&](Bytes&) { ++asked; };
   SUBCASE("takes none") {
     server.ignores_store = true;
-    CHECK(contains(message_of<device::Error>([&] { store_parameters(*arm); }), "does not take the command"));
+    CHECK(contains(message_of<device::Error>([&] { store_parameters(*arm); }), "did not execute the command"));
   }
   SUBCASE("never ends it") {
     server.judge_store = [](Command) { return StoreResult::under_way; };

@@ -73,5 +73,5 @@ TEST_CASE("clearing waits until a self-test is over, but not for ever, and a fau
   CHECK(cleared_after_ms(1000, State::fault, tests_until(350, State::ready)) == 350);
   CHECK(cleared_after_ms(1000, State::fault, tests_until(5000, State::ready)) == 1000);
   CHECK_THROWS_WITH_AS(cleared_after_ms(1000, State::fault, tests_until(350, State::fault)),
-                       doctest::Contains("The fault is there again. bridge_fault: "), device::FaultStays);
+                       doctest::Contains("The board has raised the fault again. bridge_fault: "), device::FaultStays);
 }

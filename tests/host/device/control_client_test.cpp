@@ -46,7 +46,7 @@ TEST_CASE("a refusal tells the command and the board's reason") {
   const auto message = failure_at(R"({"ok": false, "error": "No trace runs."})");
   CHECK(contains(message, "refused \"trace\""));
   CHECK(contains(message, "No trace runs."));
-  CHECK(contains(failure_at(R"({"ok": false})"), "it gave no reason"));
+  CHECK(contains(failure_at(R"({"ok": false})"), "no reason was given"));
   CHECK(contains(failure_at(R"({"ok": false, "error": "\u001b[2Jred"})"), ": ?[2Jred"));
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("a refusal leaves the connection as it was; no answer in time is anoth
   CHECK_THROWS_AS(client.run(1), device::CommandRefused);
   client.pause();
   client.wait_at_most(std::chrono::milliseconds(1));
-  CHECK(contains(message_of<device::Error>([&] { client.reset(); }), "gives no answer"));
+  CHECK(contains(message_of<device::Error>([&] { client.reset(); }), "does not answer"));
 }
 
 TEST_CASE("what is in a board and what is still to come are taken from its status") {
@@ -79,7 +79,7 @@ TEST_CASE("what is in a board and what is still to come are taken from its statu
   CHECK(now.faults[1] ==
         device::PutInFault{.number = 2, .fault = "supply_sag", .amount = 9.5, .at_s = 4.5, .has_come = false});
   FakeControlServer older([](const json&) { return "{\"ok\": true, \"injected\": []}\n"; });
-  CHECK(contains(message_of<device::Error>([&] { client_of(older).injections(); }), "which faults are in"));
+  CHECK(contains(message_of<device::Error>([&] { client_of(older).injections(); }), "its injected faults"));
 }
 
 TEST_CASE("what answers but is no virtual board is told so") {
@@ -107,7 +107,7 @@ TEST_CASE("an answer whose values are of another kind, or fit no number, is an e
     line = R"({"ok": true, "board_time_s": 1, "control_period": {"number": 1, "board_time_s": 1}, "injected": [)"
            R"({"fault": "motor_open", "since_s": 1, "number": )" +
            std::string(number) + R"(}], "still_to_come": []})";
-    CHECK(contains(failure([&] { client.injections(); }), "which faults are in"));
+    CHECK(contains(failure([&] { client.injections(); }), "its injected faults"));
   }
   CHECK(contains(failure_at(R"({"ok": false, "error": 7})"), "is not a virtual board"));
 }

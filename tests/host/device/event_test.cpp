@@ -74,8 +74,8 @@ TEST_CASE("a log keeps its newest events under their numbers") {
 TEST_CASE("a line of the log has clock, time, kind and text; kinds come back by their names") {
   CHECK(line_of({EventKind::fault, "supply_low: it is low.", "2026-11-23T22:15:34.123Z", 20'001}) ==
         "2026-11-23T22:15:34.123Z       1.00005 s  fault       supply_low: it is low.\n");
-  CHECK(line_of({EventKind::connection, "The device went away.", "", {}}) ==
-        "-                                      -  connection  The device went away.\n");
+  CHECK(line_of({EventKind::connection, "The device was disconnected.", "", {}}) ==
+        "-                                      -  connection  The device was disconnected.\n");
   for (std::size_t i = 0; i < event_kind_count; ++i)
     CHECK(find_event_kind(name_of(static_cast<EventKind>(i))) == static_cast<EventKind>(i));
   CHECK_FALSE(find_event_kind("dance"));

@@ -68,7 +68,7 @@ TEST_CASE("a description that ends too early, or counts more than there can be, 
     if (size < 6) continue;
     cut[4] = static_cast<std::byte>(size);
     CHECK_THROWS_WITH_AS(device::parse_force_law(cut),
-                         "The device's description of its force law is damaged. Build its firmware anew and flash it.",
+                         "The device's description of its force law is damaged. Build its firmware again and flash it.",
                          device::Error);
   }
   auto many = whole;

@@ -74,7 +74,7 @@ TEST_CASE("whatever the firmware would refuse is refused here, with the value an
       {[](auto& shapes) { shapes.planes[0]->surface.life_s = 0; }, "life of plane 0"},
       {[](auto& shapes) { shapes.planes[0]->point_m[2] = 10.5f; }, "coordinate of plane 0 is 10.5 m"},
       {[](auto& shapes) { shapes.planes[0]->normal[2] = not_a_number; }, "normal of plane 0"},
-      {[](auto& shapes) { shapes.planes[0]->normal = {}; }, "has no length"},
+      {[](auto& shapes) { shapes.planes[0]->normal = {}; }, "has length 0"},
       {[](auto& shapes) { shapes.sphere->radius_m = 0; }, "radius is not above 0"},
       {[](auto& shapes) { shapes.sphere->radius_m = 11; }, "sphere's radius is 11 m"},
       {[](auto& shapes) { shapes.sphere->centre_m[0] = not_a_number; }, "coordinate of the sphere"},

@@ -145,7 +145,7 @@ TEST_CASE("a session notes what happens to its device, and a change at the perio
     CHECK(eventually([&] { return session.refusal().has_value(); }));
     CHECK(becomes_told(*session.refusal()));
     server.hang_up();
-    CHECK(becomes_told("The device went away."));
+    CHECK(becomes_told("The device was disconnected."));
   }
   CHECK(std::ranges::count_if(events, [](const auto& event) { return event.text == "The force is on."; }) == 1);
 }

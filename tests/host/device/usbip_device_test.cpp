@@ -120,7 +120,7 @@ TEST_CASE("more signals than the scope carries are refused before anything is se
   std::vector<protocol::Signal> signals(protocol::scope_signals_maximum, protocol::Signal::force_N);
   arm->select_signals(signals);
   signals.push_back(protocol::Signal::force_N);
-  CHECK(contains(message_of<device::Error>([&] { arm->select_signals(signals); }), "33 signals are more"));
+  CHECK(contains(message_of<device::Error>([&] { arm->select_signals(signals); }), "cannot transmit 33 signals"));
   arm->send(protocol::Command::heartbeat);
   CHECK(eventually([&] { return server.commands().size() == 2; }));
 }
@@ -147,12 +147,12 @@ TEST_CASE("a device that takes no more commands is told, and not sent ever more 
   for (std::size_t i = 0; i < under_way; ++i) arm->send(protocol::Command::heartbeat);
   SUBCASE("and sends nothing either") {
     const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
-    CHECK(contains(message, "takes no commands and is silent"));
+    CHECK(contains(message, "accepts no commands and is silent"));
   }
   SUBCASE("while it sends its pose for a second of its time") {
     for (int i = 0; i < 1000; ++i) server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
     const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
-    CHECK(contains(message, "takes no commands, although it sends its pose"));
+    CHECK(contains(message, "accepts no commands, although it sends poses"));
   }
   arm->information();
   CHECK(server.commands().size() == under_way);
@@ -175,7 +175,7 @@ TEST_CASE("what was written is waited for until the device has all of it, or tak
   SUBCASE("it accepts nothing") {
     for (int i = 0; i < 1000; ++i) server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
     const auto message = message_of<device::Error>([&] { arm->wait_until_written(60s); });
-    CHECK(contains(message, "takes no commands, although it sends its pose"));
+    CHECK(contains(message, "accepts no commands, although it sends poses"));
   }
   SUBCASE("it is gone") {
     server.hang_up();
@@ -247,21 +247,21 @@ TEST_CASE("a server that breaks the rules of USB/IP is left with a sentence") {
   std::string words;
   SUBCASE("more data than there is room for") {
     server.send(1, Bytes(sizeof(protocol::PoseReport) + 1));
-    words = "was not asked for";
+    words = "was not requested";
   }
   SUBCASE("an answer to nothing") {
     usbip::ReturnSubmit answer{.status = 0};
     answer.header.sequence = 0xFFFF;
     server.send_unasked(bytes_of(answer));
-    words = "was not asked for";
+    words = "was not requested";
   }
   SUBCASE("no answer at all") {
     server.send_unasked(bytes_of(usbip::Submit{}));
-    words = "not of the protocol";
+    words = "an invalid message";
   }
   SUBCASE("an end") {
     server.hang_up();
-    words = "The arm at 127.0.0.1:" + std::to_string(server.port()) + " is gone";
+    words = "The arm at 127.0.0.1:" + std::to_string(server.port()) + " was disconnected";
   }
   CHECK(contains(message_of<device::Disconnected>([&] { arm->read_pose(60s); }), words));
 }
@@ -273,8 +273,8 @@ TEST_CASE("what answers but does not speak USB/IP 1.1.1 is told so") {
   SUBCASE("a reply to something else") { at = 3; }
   server.spoil_reply = [=](Bytes& reply) { reply[at] ^= std::byte{0x40}; };
   const auto list = [&] { device::find_usbip_devices({"127.0.0.1", server.port()}); };
-  CHECK(contains(message_of<device::Error>(list), "does not speak USB/IP"));
-  CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "does not speak USB/IP"));
+  CHECK(contains(message_of<device::Error>(list), "does not use USB/IP"));
+  CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "does not use USB/IP"));
 }
 
 TEST_CASE("a server that lists more devices than there can be is not listened to") {
@@ -308,7 +308,7 @@ TEST_CASE("one program works with one force law at a time, and says which is in 
   CHECK(arm->information().force_law->name == "spring");
   CHECK_THROWS_AS(arm->parameters(), device::Incompatible);  // the server sends the parameters of the table only
   const auto message = message_of<device::Error>([&] { device::Device::open(other.endpoint()); });
-  CHECK(contains(message, "force law magnet, but this program works with spring"));
+  CHECK(contains(message, "force law magnet, but this program already uses the force law spring"));
   arm.reset();
   CHECK_NOTHROW(device::Device::open(other.endpoint()));
   FakeUsbipServer without_rows;
@@ -600,7 +600,10 @@ TEST_CASE("a device that is in use, or is none of ours, is refused") {
     CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
   }
   SUBCASE("nobody there") {
-    CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices({"127.0.0.1", 1}); }), "Nothing answers"));
+    CHECK(contains(message_of<device::Error>([] {
+                     device::find_usbip_devices({"127.0.0.1", 1});
+                   }),
+                   "No program answers"));
   }
   SUBCASE("a name that is none") {
     CHECK(contains(message_of<device::Error>([] {
@@ -616,7 +619,7 @@ TEST_CASE("a server that answers nothing is given up; a device that says nothing
   const auto arm = device::Device::open(quiet.endpoint());
   const auto address = std::to_string(silent.port());
   const auto message = message_of<device::Error>([&] { device::find_usbip_devices({"127.0.0.1", silent.port()}); });
-  CHECK(contains(message, "gives no answer"));
+  CHECK(contains(message, "does not answer"));
   CHECK(contains(message, address.c_str()));
   CHECK_NOTHROW(arm->information());
 }

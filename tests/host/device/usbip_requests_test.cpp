@@ -108,7 +108,7 @@ TEST_CASE("parameters that are not whole, of another version or of another numbe
   }
   const auto arm = device::Device::open(server.endpoint());
   const auto message = message_of<device::Incompatible>([&] { arm->parameters(); });
-  CHECK(contains(message, "do not fit this companion") == is_refused);
+  CHECK(contains(message, "do not match this companion") == is_refused);
 }
 
 TEST_CASE("a feature report that is too short is refused with both lengths") {

@@ -93,7 +93,7 @@ TEST_CASE("what cannot be drawn as in the paper is said in a sentence") {
     return message_of<device::Error>([&] { draw_figures(recording, directory.path(), options); });
   };
   CHECK(error_of(push(), {.wall = BoxWall{0, 1}}).find("wall x+") != std::string::npos);
-  CHECK(error_of(push(), {.wall = {}, .from_s = 0.5, .to_s = 0.4}).find("takes 0.700 s") != std::string::npos);
+  CHECK(error_of(push(), {.wall = {}, .from_s = 0.5, .to_s = 0.4}).find("lasts 0.700 s") != std::string::npos);
   auto other = recording::Recording::without_samples({.signals = {Signal::force_N}});
-  CHECK(error_of(other, {}).find("does not hold penetration_x_m") != std::string::npos);
+  CHECK(error_of(other, {}).find("does not contain penetration_x_m") != std::string::npos);
 }

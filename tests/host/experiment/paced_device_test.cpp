@@ -79,6 +79,6 @@ TEST_CASE("a device that carries nothing out is noticed") {
     paced.command(Command::enable_force);
     FAIL("a command was carried out by nobody");
   } catch (const device::Error& error) {
-    CHECK(std::string(error.what()).find("does not carry out commands") != std::string::npos);
+    CHECK(std::string(error.what()).find("does not execute commands") != std::string::npos);
   }
 }

@@ -58,9 +58,9 @@ TEST_CASE("the firmware's image says what it is, and is whole") {
 }
 
 TEST_CASE("a file that is no program for the chip's flash is refused with a sentence") {
-  CHECK(contains(message_of<NoImage>([] { read_image(std::span<const std::byte>(), "none.elf"); }), "no ELF"));
-  CHECK(contains(message_of<NoImage>([] { read_image("/nowhere/at/all.elf"); }), "no firmware"));
-  CHECK(contains(message_of<NoImage>([] { read_image("/tmp"); }), "no firmware"));
+  CHECK(contains(message_of<NoImage>([] { read_image(std::span<const std::byte>(), "none.elf"); }), "not an ELF"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/nowhere/at/all.elf"); }), "does not exist"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/tmp"); }), "does not exist"));
   CHECK(contains(message_of<NoImage>([] { read_image("/bin/sh"); }), "32-bit ARM"));
   const auto good = made_elf(made_segments(identity_of("omni_driver")));
   REQUIRE_NOTHROW(read_image(good, "made.elf"));
@@ -69,10 +69,10 @@ TEST_CASE("a file that is no program for the chip's flash is refused with a sent
   CHECK(contains(refusal_of({}), "vector table"));
   CHECK(contains(refusal_of({{0x0800'4000, std::vector<std::byte>(8)}}), "vector table"));
   CHECK(contains(refusal_of({{0x0800'0000, std::vector<std::byte>(8)}, {0x080F'FFFC, std::vector<std::byte>(8)}}),
-                 "no program for the flash"));
+                 "not a program for the flash"));
   CHECK(contains(refusal_of({{0x0800'0000, std::vector<std::byte>(8)}, {0x0800'0004, std::vector<std::byte>(8)}}),
-                 "no program for the flash"));
-  CHECK(contains(refusal_of({{0x2000'0000, std::vector<std::byte>(8)}}), "no program for the flash"));
+                 "not a program for the flash"));
+  CHECK(contains(refusal_of({{0x2000'0000, std::vector<std::byte>(8)}}), "not a program for the flash"));
 }
 
 TEST_CASE("an image is objected to for another board, another protocol, damage, and for saying nothing") {
@@ -92,13 +92,13 @@ TEST_CASE("an image is objected to for another board, another protocol, damage, 
   };
   CHECK(contains(only_objection(image_of(made_segments(identity_of("other_board")))), "other_board"));
   for (const int step : {-1, +1})
-    CHECK(contains(only_objection(image_of(made_segments(identity_of("omni_driver", step)))), "not work together"));
+    CHECK(contains(only_objection(image_of(made_segments(identity_of("omni_driver", step)))), "not compatible"));
   auto damaged = made_segments(identity_of("omni_driver"));
   damaged[1].bytes[5] ^= std::byte{1};
   CHECK(contains(only_objection(image_of(damaged)), "damaged"));
   auto nameless = made_segments(identity_of("omni_driver"));
   nameless[0].bytes[protocol::image_identity_offset] = std::byte{0};
-  CHECK(contains(only_objection(image_of(nameless)), "which board"));
+  CHECK(contains(only_objection(image_of(nameless)), "does not state its board"));
 }
 
 TEST_CASE("an image that is older than the firmware that is there needs consent to a downgrade") {
@@ -109,8 +109,8 @@ TEST_CASE("an image that is older than the firmware that is there needs consent 
   for (const auto& newer : {image_with(1, 2, 3), image_with(1, 2, 4), image_with(1, 10, 0), image_with(2, 0, 0)})
     CHECK_NOTHROW(insist(newer, there, Consent::none));
   for (const auto& older : {image_with(1, 2, 2), image_with(1, 1, 9), image_with(0, 255, 255)}) {
-    CHECK(
-        contains(message_of<Downgrade>([&] { insist(older, there, Consent::none); }), "older than the firmware 1.2.3"));
+    CHECK(contains(message_of<Downgrade>([&] { insist(older, there, Consent::none); }),
+                   "older than the installed firmware 1.2.3"));
     CHECK_NOTHROW(insist(older, there, Consent::to_downgrade));
     CHECK_NOTHROW(insist(older, there, Consent::to_everything));
     CHECK_NOTHROW(insist(older, {}, Consent::none));
@@ -201,12 +201,12 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
 
   std::ofstream(file, std::ios::binary) << "a text";
   CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
-                 "no flash of a virtual board"));
+                 "not a flash file of a virtual board"));
   CHECK(content() == "a text");
   CHECK_THROWS_AS(write_flash_file("/nowhere/board.flash", image, Consent::to_everything), device::Error);
   CHECK(
       contains(message_of<device::Error>([&] { write_flash_file(directory.file(""), image, Consent::to_everything); }),
-               "no flash of a virtual board"));
+               "not a flash file of a virtual board"));
 
   {
     const local::OwnedFile owned(file);  // as a running board owns its file
@@ -218,7 +218,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   const std::string pictures(protocol::flash_bytes, 'P');
   std::ofstream(file, std::ios::binary) << pictures;
   CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
-                 "no flash of a virtual board"));
+                 "not a flash file of a virtual board"));
   CHECK(content() == pictures);
 }
 

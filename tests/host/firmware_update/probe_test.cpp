@@ -152,8 +152,8 @@ TEST_CASE("an update by a probe counts as done only after openocd's report that 
   CHECK(said_after(reports_verified).empty());
   CHECK(contains(said_after("exit 0"), "without a report that the firmware was verified"));
   CHECK(contains(said_after("echo 'not so: " + std::string(verified_line) + "'"), "without a report"));
-  CHECK(contains(said_after(reports_verified + "; exit 1"), "Is the probe connected"));
-  CHECK(contains(said_after(reports_verified + "; kill -KILL $$"), "Is the probe connected"));
+  CHECK(contains(said_after(reports_verified + "; exit 1"), "the probe is connected"));
+  CHECK(contains(said_after(reports_verified + "; kill -KILL $$"), "the probe is connected"));
 }
 
 TEST_CASE("a probe replaces a newer firmware, or one that it cannot read, only with consent") {
@@ -164,12 +164,12 @@ TEST_CASE("a probe replaces a newer firmware, or one that it cannot read, only w
     CHECK(fs::exists(fake.noted("words")) == sentence.empty());
     return sentence;
   };
-  CHECK(contains(said(newer, Consent::none), "older than the firmware 2.0.0 that it would replace"));
+  CHECK(contains(said(newer, Consent::none), "older than the installed firmware 2.0.0"));
   CHECK(said(newer, Consent::to_downgrade).empty());
   CHECK(said(newer, Consent::to_everything).empty());
   CHECK(said(begin_of_flash(protocol::image_identity("omni_driver", 1, 2, 3)), Consent::none).empty());
   CHECK(contains(said(begin_of_flash(protocol::image_identity("bench_modules", 1, 2, 3)), Consent::to_downgrade),
-                 "is for the board omni_driver, and this one is bench_modules"));
+                 "is for the board omni_driver, but this board is bench_modules"));
   CHECK(contains(said("cut off", Consent::none), "could not read the board's firmware"));
   CHECK(said("cut off", Consent::to_everything).empty());
 }

@@ -181,7 +181,7 @@ TEST_CASE("an image that the board chose is named for going on, since the board 
   write_image(loader, other, {});
   fake.spoilt = protocol::image_begin + 0x1'0000;
   const auto given = message_of<Interrupted>([&] { write_image(loader, other, {}); });
-  CHECK(contains(given, "same command again: it goes on"));
+  CHECK(contains(given, "same command again: the command continues the update"));
 }
 
 TEST_CASE("a cable that is pulled leaves a board that says how to go on") {

@@ -121,13 +121,13 @@ TEST_CASE("a replay of a black box holds each value until the next is due") {
 }
 
 TEST_CASE("a black box without rows, or with damaged ones, is refused with a sentence") {
-  CHECK(contains(message_of<device::Error>([] { of_black_box(head(), {}, about()); }), "holds no signals"));
+  CHECK(contains(message_of<device::Error>([] { of_black_box(head(), {}, about()); }), "contains no signals"));
   auto kept = rows();
   std::swap(kept[1], kept[2]);
-  CHECK(contains(message_of<device::Error>([&] { of_black_box(head(), kept, about()); }), "order of time"));
+  CHECK(contains(message_of<device::Error>([&] { of_black_box(head(), kept, about()); }), "chronological order"));
   kept = rows();
   kept[5] = kept[4];
-  CHECK(contains(message_of<device::Error>([&] { of_black_box(head(), kept, about()); }), "order of time"));
+  CHECK(contains(message_of<device::Error>([&] { of_black_box(head(), kept, about()); }), "chronological order"));
 }
 
 TEST_CASE("a file of an earlier version, or one that lies, has a sample in each period") {

@@ -196,7 +196,7 @@ TEST_CASE("what cannot be drawn is said in a sentence") {
   const auto recording = wave(3000);
   CHECK(error_of(recording, {.quantities = {Signal::torque_1_Nm}}, directory / "a.png")
             .find("position_x_m, force_N, duty_1") != std::string::npos);
-  CHECK(error_of(recording, {.quantities = {}, .from_s = 5}, directory / "a.png").find("takes 0.150 s") !=
+  CHECK(error_of(recording, {.quantities = {}, .from_s = 5}, directory / "a.png").find("lasts 0.150 s") !=
         std::string::npos);
   CHECK(error_of(recording, {.quantities = {}, .from_s = 0.1, .to_s = 0.05}, directory / "a.png").find("no samples") !=
         std::string::npos);

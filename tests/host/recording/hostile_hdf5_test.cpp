@@ -254,7 +254,7 @@ TEST_CASE("a column must have one dimension, its class, and content in the file 
          for (const char* path : {"/signals/force_x_N", "/signals/force_y_N"}) extend(f, path);
          put_dataset(f, "/period", H5T_NATIVE_UINT32, column_of(1 << 30));
        },
-       "/period declares 1073741824 elements, but the file does not have them"},
+       "/period declares 1073741824 elements, but the file does not contain them"},
       {"one column as two",
        [](hid_t f) {
          const char* const path = "/signals/force_x_N";
@@ -266,7 +266,7 @@ TEST_CASE("a column must have one dimension, its class, and content in the file 
          H5Ldelete(f, "/signals/force_y_N", H5P_DEFAULT);
          H5Lcreate_hard(f, path, f, "/signals/force_y_N", H5P_DEFAULT, H5P_DEFAULT);
        },
-       "but the file does not have them"},
+       "but the file does not contain them"},
       {"2^30 texts of marks",
        [](hid_t f) {
          put_dataset(f, "/marks/period", H5T_NATIVE_UINT32, column_of(1 << 30));
@@ -295,20 +295,20 @@ TEST_CASE("values must lie in the file, in a form that needs no other library") 
     set(properties);
     return properties;
   };
-  const std::string form = std::string(signal) + " is stored in a form that no recording has";
+  const std::string form = std::string(signal) + " has a storage format that recordings do not use";
   check_each({
       {"a soft link",
        [&](hid_t f) {
          H5Ldelete(f, signal, H5P_DEFAULT);
          H5Lcreate_soft("/signals/force_y_N", f, signal, H5P_DEFAULT, H5P_DEFAULT);
        },
-       "/signals/force_x_N leads elsewhere"},
+       "/signals/force_x_N is a link to another object"},
       {"a link to another file's group",
        [&](hid_t f) {
          H5Ldelete(f, "/signals", H5P_DEFAULT);
          H5Lcreate_external(other.c_str(), "/signals", f, "/signals", H5P_DEFAULT, H5P_DEFAULT);
        },
-       "/signals leads elsewhere"},
+       "/signals is a link to another object"},
       {"values of another file",
        [&](hid_t f) {
          const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
@@ -354,7 +354,7 @@ TEST_CASE("a group must be one, with each name once and not too many of them") {
   for (auto at = bytes.find("force_y_N"); at != std::string::npos; at = bytes.find("force_y_N", at + 1))
     bytes.replace(at, 9, "force_x_N");
   std::ofstream(spoilt.file, std::ios::binary) << bytes;
-  CHECK(contains(message_of<device::Error>([&] { read(spoilt.file); }), "/signals has a name twice"));
+  CHECK(contains(message_of<device::Error>([&] { read(spoilt.file); }), "/signals contains a name twice"));
 }
 
 TEST_CASE("a recording that another program has written again is read") {
