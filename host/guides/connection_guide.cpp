@@ -15,7 +15,7 @@ class LookAtDevice final : public Step {
   explicit LookAtDevice(std::shared_ptr<Findings> findings) : findings_(std::move(findings)) {}
   std::string title() const override { return "Versions, supply and state"; }
   std::string text() const override {
-    return "The device is asked for its versions, its supply and its state. Nothing moves and no current flows.";
+    return "Versions, supply and state are read from the device. Nothing moves and no current flows.";
   }
   void begin(const Observation& now, DevicePort&) override { since_.start(*now.pose); }
 
@@ -61,7 +61,7 @@ class PressButton final : public Step {
  public:
   PressButton(std::shared_ptr<Findings> findings, int button) : findings_(std::move(findings)), button_(button) {}
   std::string title() const override { return fmt::format("Button {}", button_); }
-  std::string text() const override { return fmt::format("Press button {} of the stylus and let it go.", button_); }
+  std::string text() const override { return fmt::format("Press and release button {} of the stylus.", button_); }
   UserTask user_task() const override { return {UserTask::Kind::press_button, button_}; }
   void begin(const Observation& now, DevicePort&) override { since_.start(*now.pose); }
 
@@ -70,7 +70,7 @@ class PressButton final : public Step {
     const auto other = button_ == 1 ? protocol::Switch::button_2 : protocol::Switch::button_1;
     now_pressed_ = is_closed(now.pose->switches, wanted);
     if (is_closed(now.pose->switches, other) && !now_pressed_)
-      hint_ = "the other button is pressed; if it is the right one, the buttons' wires are swapped";
+      hint_ = "the other button is pressed. If you press the right button, the wires of the buttons are swapped";
     seen_ |= now_pressed_;
     if (since_.seconds(*now.pose) > user_limit_s)
       throw device::Error(fmt::format("Button {} was not pressed{}. Check its wiring and start the guide again.",

@@ -80,8 +80,8 @@ class IdentifyMotor final : public Step {
   std::string title() const override { return fmt::format("Identify motor {}", motor_); }
   std::string text() const override {
     return fmt::format(
-        "Motor {} gets {} pulses of {:.0f} ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
-        "arm may twitch. Leave the stylus in the inkwell and keep your hands off. The walls' force stays "
+        "Motor {} receives {} pulses of {:.0f} ms, first with {:.0f} V, then with at most {:.0f} V, forward and "
+        "backward. The arm may twitch. Leave the stylus in the inkwell and do not touch the arm. The wall force stays "
         "off.",
         motor_, 2 * (1 + pairs_of_pulses), 1e3f * voltage_pulse_s, first_voltage_V, largest_voltage_V);
   }
@@ -185,7 +185,7 @@ class IdentifyMotor final : public Step {
         motor_ohm ? fmt::format("{:.3f} ohm ({:.3f} ohm with the shunt)", *motor_ohm, circuit.resistance_ohm)
                   : fmt::format("{:.3f} ohm with the shunt", circuit.resistance_ohm);
     findings_->sentences.push_back(fmt::format(
-        "Motor {}: R = {}, L = {:.4f} mH, time constant {:.0f} us, dead time takes {:.2f} V, fit within {:.1f} mA.",
+        "Motor {}: R = {}, L = {:.4f} mH, time constant {:.0f} us, dead-time loss {:.2f} V, fit within {:.1f} mA.",
         motor_, resistance, 1e3 * circuit.inductance_H, 1e6 * circuit.inductance_H / circuit.resistance_ohm,
         circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
     findings_->details["motors"].push_back({{"motor", motor_},
@@ -216,12 +216,12 @@ class TryGains final : public Step {
     return suggested_ ? "Step response with the suggested gains" : "Step response now";
   }
   std::string text() const override {
-    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for {:.0f} ms",
+    const std::string pulses = fmt::format("Motor {} receives a current step of {:.1f} A for {:.0f} ms",
                                            fmt::join(tuning_->options.motors, ", then "), step_A, 1e3f * step_pulse_s);
-    if (!suggested_) return pulses + " with the gains that the device holds now. Leave the stylus in the inkwell.";
+    if (!suggested_) return pulses + " with the present gains of the device. Leave the stylus in the inkwell.";
     return pulses +
-           " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
-           "ones again until you apply the new ones. Leave the stylus in the inkwell.";
+           " with the suggested gains. The device uses these gains for this test only. It keeps its old gains until "
+           "you apply the suggested gains. Leave the stylus in the inkwell.";
   }
   bool asks_first() const override { return true; }
 
@@ -245,7 +245,7 @@ class TryGains final : public Step {
       if (!holds_suggested(*now.parameters)) {
         if (now.refusal) throw device::Error(*now.refusal);
         if (since_.seconds(*now.pose) > 3.0)
-          throw device::Error("The device did not take the suggested gains. Reset the board.");
+          throw device::Error("The device did not accept the suggested gains. Reset the board.");
         return false;
       }
       start_pulse(now, port);
@@ -376,14 +376,14 @@ class TryGains final : public Step {
     findings_->propose(old_, Parameter::current_integral_gain_V_per_As, tuning_->gains->integral_V_per_As, reason);
     if (tuning_->board == nullptr)
       findings_->sentences.push_back(fmt::format(
-          "{}, so the shunts are not known and no resistance is proposed. That of a motor is the measured one without "
-          "its shunt: set motor_resistance_1_ohm and those of the others yourself.",
-          tuning_->board_name.empty() ? std::string("The firmware does not say which board it is for")
+          "{}, so the shunts are unknown and no resistance is proposed. Subtract the shunt from each measured "
+          "resistance, and set motor_resistance_1_ohm and the resistances of the other motors yourself.",
+          tuning_->board_name.empty() ? std::string("The firmware does not report its board")
                                       : fmt::format("This companion does not know the board {}, but {}",
                                                     tuning_->board_name, board::names_of_boards())));
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
       if (const auto motor_ohm = tuning_->motor_ohm(tuning_->motors[i]))
-        findings_->propose(old_, resistance_of(i), to_four_digits(*motor_ohm), "by which the motor is watched");
+        findings_->propose(old_, resistance_of(i), to_four_digits(*motor_ohm), "used by the motor check");
   }
 
   std::shared_ptr<Tuning> tuning_;

@@ -28,9 +28,8 @@ class PulseMotor final : public Step {
   std::string title() const override { return fmt::format("Motor {}, {}", motor_, joint_name(motor_)); }
   std::string text() const override {
     return fmt::format(
-        "Hold the stylus loosely, a little out of the inkwell. Motor {} gets a pulse of at most {:.1f} A for "
-        "{:.0f} ms forward and another one back; {} will twitch by about a centimetre. The walls' force stays "
-        "off.",
+        "Hold the stylus loosely, just outside the inkwell. Motor {} receives a pulse of at most {:.1f} A for {:.0f} "
+        "ms forward, then the same pulse backward; {} twitches by about a centimeter. The wall force stays off.",
         motor_, pulse_A, 1e3f * pulse_s, joint_name(motor_));
   }
   bool asks_first() const override { return true; }
@@ -120,9 +119,9 @@ class PulseMotor final : public Step {
     const double difference_rad = turned_rad_[0] - turned_rad_[1];
     if (std::abs(difference_rad) < smallest_turn_rad)
       throw device::Error(
-          fmt::format("Joint {} did not turn. Hold the stylus more loosely, check that the cable of the "
-                      "transmission is on its capstan and that energy_reserve_J ({:.3f} J), at which a pulse ends, "
-                      "is not far below its default, and start the guide again.",
+          fmt::format("Joint {} did not turn. Hold the stylus more loosely. Check that the transmission cable is on "
+                      "its capstan, and that energy_reserve_J ({:.3f} J), which limits a pulse, is not far below its "
+                      "default. Then start the guide again.",
                       motor_, (*now.parameters)[Parameter::energy_reserve_J]));
     const auto place = static_cast<std::size_t>(motor_ - 1);
     const bool encoder_wrong = (*reversed_)[place].value_or(false);
@@ -133,7 +132,7 @@ class PulseMotor final : public Step {
     const bool right = forward != held_reversed;
     findings_->sentences.push_back(fmt::format("A positive current turns joint {} {}, {}.", motor_,
                                                forward ? "forward" : "backward",
-                                               right ? "as the parameters say" : "against what the parameters say"));
+                                               right ? "as the parameters state" : "which contradicts the parameters"));
     findings_->details["motors"].push_back({{"motor", motor_},
                                             {"turned_by_positive_current_rad", turned_rad_[0]},
                                             {"turned_by_negative_current_rad", turned_rad_[1]},
@@ -167,8 +166,8 @@ Plan plan_directions(const Choices&) {
 
 }  // namespace
 
-const Offer directions_guide{"check", "directions", "Directions",
-                             "Each encoder while you turn its joint, then each motor with a small pulse of current.",
-                             plan_directions};
+const Offer directions_guide{
+    "check", "directions", "Directions",
+    "Checks each encoder while you turn its joint, then each motor with a small current pulse.", plan_directions};
 
 }  // namespace inkwell::guides

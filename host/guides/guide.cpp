@@ -88,10 +88,10 @@ void Guide::advance(const Observation& now, DevicePort& port) {
 void Guide::run(const Observation& now, DevicePort& port) {
   if (!now.connected && made_safe_) {
     const bool lent = begun_ && !step().to_put_back().empty();
-    throw device::Disconnected(fmt::format(
-        "The device went away in the step \"{}\". No proposal was applied.{} Connect it again and start the guide "
-        "anew.",
-        step().title(), lent ? " Parameters that were on trial are still on it if it kept its power." : ""));
+    throw device::Disconnected(
+        fmt::format("The device was disconnected in the step \"{}\". No proposal was applied.{} Connect the device "
+                    "again and restart the guide.",
+                    step().title(), lent ? " If the device kept its power, it still has the trial parameters." : ""));
   }
   if (!now.connected || !now.pose || !now.parameters) return;  // the connection is not complete
   if (now.pose->state == protocol::State::fault)
@@ -115,7 +115,7 @@ void Guide::run(const Observation& now, DevicePort& port) {
   else
     end(Phase::finished,
         findings_->proposals.empty() ? "Finished. There is nothing to change."
-                                     : "Finished. The proposals wait to be applied.",
+                                     : "Finished. The proposals can now be applied.",
         port);
 }
 

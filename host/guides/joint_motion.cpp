@@ -96,9 +96,9 @@ std::string TurnJointForward::text() const {
   const std::string what = joint_ == 2 ? "the elbow" : "the stylus";
   if (direction_.empty())
     return fmt::format(
-        "Take the stylus out of the inkwell and turn joint {}, {}, as you will be told. No current flows.", joint_,
-        joint_name(joint_));
-  return fmt::format("Turn joint {}, {}, so that {} moves {}, by some 3 cm. No current flows.", joint_,
+        "Take the stylus out of the inkwell and turn joint {}, {}, as described in the next text. No current flows.",
+        joint_, joint_name(joint_));
+  return fmt::format("Turn joint {}, {}, so that {} moves {} by about 3 cm. No current flows.", joint_,
                      joint_name(joint_), what, direction_);
 }
 
@@ -121,7 +121,7 @@ bool TurnJointForward::advance(const Observation& now, DevicePort&) {
   const bool wrong = turned_rad_ < 0;
   (*reversed_)[static_cast<std::size_t>(joint_ - 1)] = wrong;
   findings_->sentences.push_back(fmt::format("Encoder {} counts {} when joint {} turns forward.", joint_,
-                                             wrong ? "down, which is wrong," : "up, as it should,", joint_));
+                                             wrong ? "down, which is wrong," : "up, as expected,", joint_));
   findings_->details["encoders"].push_back({{"encoder", joint_}, {"turned_rad", turned_rad_}, {"counts_up", !wrong}});
   if (wrong)
     findings_->propose(*now.parameters, parameter, (*now.parameters)[parameter] == 0.0f ? 1.0 : 0.0,

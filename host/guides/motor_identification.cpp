@@ -33,8 +33,8 @@ Segment find_segment(const VoltagePulse& pulse) {
   const auto last = static_cast<std::size_t>(end - voltage.begin());
   if (last - first < shortest + settled_after)
     throw device::Error(
-        "The voltage pulse is too short to identify the motor. If energy_reserve_J or force_limit_N is small it ends "
-        "before its time: raise them. Then start the guide again, and hold the stylus still.");
+        "The voltage pulse is too short to identify the motor. A small energy_reserve_J or force_limit_N shortens the "
+        "pulse: increase them. Then start the guide again, and hold the stylus still.");
   return {&pulse, first, first + settled_after, last};
 }
 
@@ -134,8 +134,11 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
     for (std::size_t k = segment.first; k < segment.last; ++k) measured[at++] = segment.pulse->current_A[k];
     const double current_A = mean_of_second_half(segment.pulse->current_A, segment);
     const double voltage_V = mean_of_second_half(segment.pulse->voltage_V, segment);
-    // The resistance exceeds 30 ohm, or the current opposes the voltage.
-    if (!(current_A / voltage_V > 1.0 / 30.0))
+    constexpr double least_A_per_V = 1.0 / 30.0;  // a larger resistance counts as an open circuit
+    if (current_A / voltage_V < -least_A_per_V)
+      throw device::Error(
+          "The measured motor current has the wrong sign. Check the wiring of the current sensor and of the bridge.");
+    if (!(current_A / voltage_V > least_A_per_V))
       throw device::Error("No current flows in the motor. Check its plug, its wiring and the supply of the bridges.");
     resistance += voltage_V / current_A / static_cast<double>(segments.size());
     unknowns[3 + static_cast<Eigen::Index>(s)] = segment.pulse->current_A[segment.first];
@@ -164,8 +167,8 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
                          time_constant_s < 100 * sample_period_s && circuit.residual_A < 0.1 * largest_A;
   if (!plausible)
     throw device::Error(
-        "The current does not rise as in a coil with a resistance. Check the motor's wiring and plug, "
-        "hold the arm still and start the guide again.");
+        "The current does not rise as in a coil with a resistance. Check the motor's wiring and plug, hold the arm "
+        "still, and start the guide again.");
   return circuit;
 }
 

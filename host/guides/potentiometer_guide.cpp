@@ -79,8 +79,8 @@ class TurnGimbal final : public UserMoves {
           "Turn the stylus' {} to {:.3f} rad, the middle of its range, hold it there and press button 1.",
           axis_name(axis_), (points_->range.minimum_rad + points_->range.maximum_rad) / 2);
     return fmt::format(
-        "Turn the stylus' {} to both its stops, at {:.3f} and {:.3f} rad, and hold it at each for a moment. "
-        "Press button 1 when both are done. No current flows.",
+        "Turn the stylus' {} to both its stops, at {:.3f} and {:.3f} rad, and hold it at each stop for a moment. Then "
+        "press button 1. No current flows.",
         axis_name(axis_), points_->range.minimum_rad, points_->range.maximum_rad);
   }
   UserTask user_task() const override {
@@ -129,7 +129,7 @@ class FitPotentiometers final : public Step {
   FitPotentiometers(std::shared_ptr<Findings> findings, std::vector<std::shared_ptr<AxisPoints>> axes, bool quadratic)
       : findings_(std::move(findings)), axes_(std::move(axes)), quadratic_(quadratic) {}
   std::string title() const override { return "Fit"; }
-  std::string text() const override { return "A curve is laid through the points of each potentiometer."; }
+  std::string text() const override { return "A curve is fitted to the points of each potentiometer."; }
 
   bool advance(const Observation& now, DevicePort&) override {
     for (int axis = 1; axis <= 3; ++axis) fit(*now.parameters, axis, *axes_[static_cast<std::size_t>(axis - 1)]);
@@ -154,10 +154,9 @@ class FitPotentiometers final : public Step {
     const bool agrees = largest_change_rad <= tolerance_rad;
     findings_->sentences.push_back(
         fmt::format("Gimbal {}, {}: wiper from {:.4f} to {:.4f} of its supply; angle = {:.4f} r^2 + {:.4f} r + {:.4f} "
-                    "rad, {:.3f} rad off what the "
-                    "device holds at most{}.",
+                    "rad, at most {:.3f} rad from the device's curve{}.",
                     axis, axis_name(axis), points.least_ratio, points.most_ratio, curve.square_rad, curve.slope_rad,
-                    curve.offset_rad, largest_change_rad, agrees ? ", so it is kept" : ""));
+                    curve.offset_rad, largest_change_rad, agrees ? ", so the device keeps its curve" : ""));
     findings_->details["potentiometers"].push_back({{"axis", axis},
                                                     {"ratio", {points.least_ratio, points.most_ratio}},
                                                     {"square_rad", curve.square_rad},

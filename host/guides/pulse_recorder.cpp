@@ -44,8 +44,8 @@ bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
   if (recording_.lost() > 0) {
     if (--attempts_left_ == 0)
       throw device::Error(
-          "Samples of the scope were lost again and again. Close other programs that load this "
-          "computer and start the guide again.");
+          "Samples of the scope were lost repeatedly. Close other programs that load this computer and start the guide "
+          "again.");
     rest_samples_ = std::max(samples_before, samples_of_pulse());
     start_over(pose);
   }
@@ -65,8 +65,8 @@ bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
   if (recording_.size() < begin + needed || begin == recording_.size()) {
     if (since_.seconds(pose) > pulse_limit_s + 2.0 * static_cast<double>(pulse_.duration_s))
       throw device::Error(
-          "The test pulse did not come. Check that no other program sends commands to the device, "
-          "reset the board and start the guide again.");
+          "The test pulse did not start. Check that no other program sends commands to the device, reset the board and "
+          "start the guide again.");
     return false;
   }
   // From shortly before the pulse to the end of the rest period after the pulse.

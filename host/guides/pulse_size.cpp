@@ -20,10 +20,10 @@ float allowed_pulse_A(const protocol::ParameterSet& set, int motor) {
   };
   const float allowed = allowed_A(settings.force_limit_N);
   if (allowed < least_A)
-    throw device::Error(fmt::format(
-        "force_limit_N is {:.2f} N, and test pulses make no more: {:.2f} A of motor {}, too little to measure "
-        "by. Set it to {:.1f} N or more, then start the guide again.",
-        settings.force_limit_N, allowed, motor, 0.1f + least_A / allowed_A(1.0f)));
+    throw device::Error(
+        fmt::format("force_limit_N is {:.2f} N and limits test pulses to {:.2f} A of motor {}, which is too small for "
+                    "a measurement. Set force_limit_N to {:.1f} N or more, then start the guide again.",
+                    settings.force_limit_N, allowed, motor, 0.1f + least_A / allowed_A(1.0f)));
   return allowed;
 }
 

@@ -30,9 +30,8 @@ class MoveJointToStops final : public UserMoves {
   std::string title() const override { return fmt::format("Stops of joint {}, {}", joint_, joint_name(joint_)); }
   std::string text() const override {
     return fmt::format(
-        "Move joint {}, {}, gently against its one stop, hold it there for half a second, and then against "
-        "the other. The other joints stay away from theirs. Press button 1 when both are done. No current "
-        "flows.",
+        "Move joint {}, {}, gently against one stop and hold it there for half a second. Do the same at the other "
+        "stop. Keep the other joints away from their stops. Then press button 1. No current flows.",
         joint_, joint_name(joint_));
   }
   UserTask user_task() const override { return {UserTask::Kind::move_joint_to_stops, joint_}; }
@@ -90,7 +89,7 @@ class CompareStops final : public Step {
   CompareStops(std::shared_ptr<Findings> findings, std::shared_ptr<StopsFound> found, StopsTrust trust)
       : findings_(std::move(findings)), found_(std::move(found)), trust_(trust) {}
   std::string title() const override { return "Comparison with the limits"; }
-  std::string text() const override { return "The stops that were found are compared with the arm's limits."; }
+  std::string text() const override { return "The measured stops are compared with the arm's limits."; }
 
   bool advance(const Observation& now, DevicePort&) override {
     const ParameterSet& set = *now.parameters;
@@ -131,7 +130,7 @@ class CompareStops final : public Step {
         fmt::format("Joint {}: stops at {:.3f} and {:.3f} rad, expected {:.3f} and {:.3f}: {}", joint, found.low_rad,
                     found.high_rad, expected.low_rad, expected.high_rad,
                     width_agrees && place_agrees ? "they agree."
-                    : width_agrees               ? "the travel agrees but lies elsewhere."
+                    : width_agrees               ? "the travel agrees, but its position differs."
                                                  : "the travel differs."));
     findings_->details["joints"].push_back({{"joint", joint},
                                             {"found_rad", {found.low_rad, found.high_rad}},
@@ -149,15 +148,14 @@ class CompareStops final : public Step {
       // An encoder has four counts per line. Compliant stops cause an error of about 1 %, so the encoder's data sheet
       // is more accurate.
       const double counts = value(set, Parameter::encoder_1_counts_per_turn, joint) / fit.scale;
-      findings_->propose(
-          set, of_number(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
-          fmt::format("the travel was found {:.2f} times as wide as it is; prefer the encoder's data sheet "
-                      "where it is near",
-                      1 / fit.scale));
+      findings_->propose(set, of_number(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
+                         fmt::format("the measured travel is {:.2f} times the expected travel; if the encoder's data "
+                                     "sheet has a similar value, prefer it",
+                                     1 / fit.scale));
     }
     if (std::abs(fit.inkwell_rad - inkwell_rad) > stops_tolerance_rad)
       findings_->propose(set, of_number(Parameter::inkwell_joint_1_rad, joint), fit.inkwell_rad,
-                         "then the stops lie at the limits");
+                         "moves the stops to the limits");
   }
 
   std::shared_ptr<Findings> findings_;

@@ -115,7 +115,7 @@ std::string pull_cable(Bench& bench) {
   if (with_force)
     bench.oracle.must_have_told(protocol::watch(Fault::usb_gone));
   else if (bench.oracle.has_told())
-    bench.oracle.complain(Complaint::false_trip, "there was no force to take");
+    bench.oracle.complain(Complaint::false_trip, "the force was already off");
   bench.go_on();
   return fmt::format("out for {:.3f} s, with the force {}", out_s, with_force ? "on" : "off");
 }
@@ -148,7 +148,7 @@ std::string kill_program(Bench& bench) {
   bench.device_may_go = false;
   bench.oracle.must_have_told(host_gone);
   bench.go_on();
-  return fmt::format("another one came after {:.3f} s", gone_s);
+  return fmt::format("another program connected after {:.3f} s", gone_s);
 }
 
 std::string reset_board(Bench& bench) {

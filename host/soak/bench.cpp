@@ -55,7 +55,7 @@ void Bench::pass(double time_s, bool gives_sign_of_life) {
     if (until_close_look_s_ <= 0) look_closely();
     if (is_over && is_over()) throw SittingOver();
     if (was_connected && !board.connected() && is_sound() && !device_may_go)
-      fail(Complaint::no_answer, "the device went away");
+      fail(Complaint::no_answer, "the device was disconnected");
   }
 }
 
@@ -94,7 +94,7 @@ void Bench::check_pose() {
   constexpr double allowed_m = 0.001, age_s = 0.003;
   const double error_m = std::sqrt(squares_m2);
   if (error_m > allowed_m + age_s * std::sqrt(squares_m2_per_s2))
-    oracle.complain(Complaint::wrong_pose, fmt::format("it is {:.1f} mm away from there", 1e3 * error_m));
+    oracle.complain(Complaint::wrong_pose, fmt::format("the true position differs by {:.1f} mm", 1e3 * error_m));
 }
 
 void Bench::disturb(Disturbance disturbance) {
@@ -105,7 +105,7 @@ void Bench::disturb(Disturbance disturbance) {
 void Bench::check_all() {
   look_closely();
   if (!board.connected()) fail(Complaint::no_answer, "there is no device at the end of the phase");
-  if (board.is(State::fault)) throw PhaseFailed("the fault was told");  // the next phase must start without a fault
+  if (board.is(State::fault)) throw PhaseFailed("a fault was reported");  // the next phase must start without a fault
   pass(look_s);
   check_pose();
   check_parameters();
@@ -146,11 +146,13 @@ void Bench::try_illegal() {
   } catch (const device::Refused& refused) {
     ++sitting.refused_transactions;
     if (refused.report.refusal != illegal.refusal)
-      fail(Complaint::wrong_answer, fmt::format("refused as {} what is {}", protocol::info(refused.report.refusal).name,
-                                                protocol::info(illegal.refusal).name));
+      fail(Complaint::wrong_answer,
+           fmt::format("the reason for the refusal is {} instead of {}", protocol::info(refused.report.refusal).name,
+                       protocol::info(illegal.refusal).name));
     return;
   }
-  fail(Complaint::wrong_answer, fmt::format("accepted what is {}", protocol::info(illegal.refusal).name));
+  fail(Complaint::wrong_answer,
+       fmt::format("a transaction was accepted although it is {}", protocol::info(illegal.refusal).name));
 }
 
 void Bench::restore_defaults() {
@@ -179,7 +181,7 @@ void Bench::hold(const protocol::ParameterSet& set) {
 
 void Bench::connect(double limit_s) {
   oracle.connected();
-  if (!board.connect(limit_s)) fail(Complaint::no_answer, "the device did not come back");
+  if (!board.connect(limit_s)) fail(Complaint::no_answer, "the device did not reconnect");
   pass(2 * look_s);
 }
 
@@ -248,7 +250,7 @@ void Bench::make_ready() {
   if (!board.connected()) connect();
   if (board.is(State::fault))
     fail(Complaint::no_answer,
-         fmt::format("the phase before left the fault {}", protocol::info(board.pose()->fault).name));
+         fmt::format("the previous phase left the fault {}", protocol::info(board.pose()->fault).name));
   if (board.force_is_on()) give_up_force();
   if (board.is(State::starting) || board.is(State::testing)) pass(0.3);
   if (board.is(State::unreferenced)) dock();
@@ -264,7 +266,7 @@ void Bench::make_active() {
     board.command(Command::enable_force);
     for (double waited_s = 0; waited_s < 0.1 && !(board.pose() && force_on(*board.pose())); waited_s += look_s)
       pass(look_s);
-    if (!board.force_is_on()) fail(Complaint::no_answer, "the force did not go on");
+    if (!board.force_is_on()) fail(Complaint::no_answer, "the force did not switch on");
   }
   pass(random.chance(0.5) ? static_cast<double>(accepted[Parameter::force_ramp_s]) : 0.02);
 }

@@ -63,7 +63,7 @@ void Oracle::see(const device::Pose& pose) {
   if (protocol::force_is_on(pose.state)) {
     if (!asked_ && now_s_ > may_drive_until_s_)
       complain(Complaint::unasked_force,
-               fmt::format("the state is {} without anybody having asked", protocol::info(pose.state).name));
+               fmt::format("the state is {} without a request", protocol::info(pose.state).name));
   } else if (protocol::force_is_on(before) && pose.state != State::fault && asked_ &&
              disturbance_ == Disturbance::none) {
     complain(Complaint::lost_force,
@@ -95,9 +95,8 @@ void Oracle::see(const Look& look) {
   if (std::exchange(force_may_be_on_, protocol::force_is_on(state_)) && !tested_itself) judge_force(look);
   if (disturbance_ != Disturbance::none) return;
   if (!asked_ && !may_test_itself_ && look.driven_until_s > may_drive_until_s_ + behind_s)
-    complain(Complaint::unasked_force,
-             fmt::format("a leg was at the supply at {:.4f} s; it may have been until {:.4f} s", look.driven_until_s,
-                         may_drive_until_s_));
+    complain(Complaint::unasked_force, fmt::format("a leg was driven high at {:.4f} s; this was allowed until {:.4f} s",
+                                                   look.driven_until_s, may_drive_until_s_));
 }
 
 void Oracle::note(Press& hardest, double force_N) const {
@@ -119,7 +118,7 @@ void Oracle::judge_force(const Look& look) {
   // Noise of the current sensors, which dominates for very small limits.
   constexpr double noise_N = 0.1;
   if (judged_N > force_tolerance * force_limit_N_ + noise_N)
-    complain(Complaint::too_much_force, fmt::format("the motors press with {:.2f} N{}, the limit is {:.2f} N", judged_N,
+    complain(Complaint::too_much_force, fmt::format("the motor force is {:.2f} N{}, the limit is {:.2f} N", judged_N,
                                                     is_sound ? "" : " over a millisecond", force_limit_N_));
 }
 
@@ -143,7 +142,7 @@ void Oracle::must_have_told(protocol::Watches faults) {
   std::vector<std::string_view> names;
   for (const protocol::Watch& row : protocol::watch_table)
     if ((faults & protocol::watch(row.fault)) != 0) names.push_back(protocol::info(row.fault).name);
-  complain(Complaint::missed_fault, fmt::format("{} was not told", fmt::join(names, " or ")));
+  complain(Complaint::missed_fault, fmt::format("{} was not reported", fmt::join(names, " or ")));
 }
 
 void Oracle::tell(Fault fault) {

@@ -105,39 +105,40 @@ std::string repeat_command(const Soak& soak, unsigned sitting) {
 
 std::string table_of(const Soak& soak) {
   std::string text = fmt::format("\nSimulation: {} boards, seed {}{}\n", soak.sittings.size(), soak.seed,
-                                 soak.stopped ? ", stopped before its time was over" : "");
+                                 soak.stopped ? ", stopped early" : "");
   text += row("board time, all boards together",
               fmt::format("{:.1f} s", sum<double>(soak, [](const auto& s) { return s.board_time_s; })));
   text += row("phases", std::to_string(sum<std::size_t>(soak, [](const auto& s) { return s.phases.size(); }))) +
           kinds_of(soak);
   text +=
-      row("faults put in", std::to_string(sum<unsigned>(soak, [](const auto& s) { return total(s.faults_put_in); })));
-  text += row("faults told", std::to_string(sum<unsigned>(soak, [](const auto& s) { return total(s.faults_told); }))) +
-          counts_of(
-              soak, [](const Sitting& s) -> const auto& { return s.faults_told; });
+      row("injected faults", std::to_string(sum<unsigned>(soak, [](const auto& s) { return total(s.faults_put_in); })));
+  text +=
+      row("reported faults", std::to_string(sum<unsigned>(soak, [](const auto& s) { return total(s.faults_told); }))) +
+      counts_of(
+          soak, [](const Sitting& s) -> const auto& { return s.faults_told; });
   text += row("false trips", std::to_string(false_trip_count(soak)));
-  text += row("restarts (wanted, or by what was put in)",
+  text += row("restarts (intended, or due to faults)",
               std::to_string(sum<unsigned>(soak, [](const auto& s) { return s.restarts; })));
   text += row("transactions of parameters",
               std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.transactions; })));
-  text += row("  illegal ones, refused whole",
+  text += row("  illegal transactions, all refused",
               std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.refused_transactions; })));
   text += row("peak force of the motors",
               fmt::format("{:.2f} N", largest(soak, [](const auto& s) { return s.peak_motor_force_N; })));
   text += rows_of_press(soak, &Sitting::hardest_press,
-                        fmt::format("  as a part of a limit of {} N or more", Oracle::telling_limit_N));
-  text += rows_of_press(soak, &Sitting::hardest_press_with_fault, "  the same with a fault put in");
-  text += rows_of_press(soak, &Sitting::hardest_press_with_fault_over_ms, "  that in the mean over a millisecond");
-  text += row("longest control interrupt, of its period",
+                        fmt::format("  relative to a limit of {} N or more", Oracle::telling_limit_N));
+  text += rows_of_press(soak, &Sitting::hardest_press_with_fault, "  the same with an injected fault");
+  text += rows_of_press(soak, &Sitting::hardest_press_with_fault_over_ms, "  the same, mean over a millisecond");
+  text += row("longest interrupt as a part of its period",
               fmt::format("{:.0f} %", 100 * largest(soak, [](const auto& s) { return s.longest_interrupt_part; })));
   const auto lost = [&](auto which) {
     return std::to_string(sum<unsigned long>(soak, [&](const auto& s) { return s.lost.*which; }));
   };
   text += row("poses read", std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.poses; })));
   text += row("  lost", lost(&Losses::poses));
-  text += row("  kept back by what was put in", lost(&Losses::poses_kept_back));
+  text += row("  missing due to injected faults", lost(&Losses::poses_kept_back));
   text += row("samples of the scope lost", lost(&Losses::scope_samples));
-  text += row("  of selections beyond the bus", lost(&Losses::wide_scope_samples));
+  text += row("  of selections above the bus capacity", lost(&Losses::wide_scope_samples));
   text += row("samples of recordings lost", lost(&Losses::recorded_samples));
   text += row("forces of programs lost", lost(&Losses::program_forces));
   text += row("findings", std::to_string(finding_count(soak)));

@@ -84,7 +84,7 @@ class Run {
       bench_.make_active();
       return true;
     } catch (const device::Error& error) {
-      bench_.oracle.complain(Complaint::no_way_back, fmt::format("after a phase that failed: {}", error.what()));
+      bench_.oracle.complain(Complaint::no_way_back, fmt::format("after a failed phase: {}", error.what()));
       return false;
     }
   }

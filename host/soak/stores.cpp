@@ -22,7 +22,7 @@ void expect(Bench& bench, Command command, StoreResult expected) {
   }
   if (result != expected)
     bench.fail(Complaint::no_answer,
-               fmt::format("the store came to \"{}\" instead of \"{}\"", info(result).name, info(expected).name));
+               fmt::format("the store reported \"{}\" instead of \"{}\"", info(result).name, info(expected).name));
 }
 
 /// The chip restarts during a write. The board then has the previous or the new stored parameters.

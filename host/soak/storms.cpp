@@ -31,7 +31,7 @@ std::string wide_storm(Bench& bench, double time_s) {
   bench.check_parameters();
   bench.pass(0.02);
   bench.go_on();
-  return fmt::format("{} transactions, {} illegal ones", changes, illegal);
+  return fmt::format("{} transactions, {} of them illegal", changes, illegal);
 }
 
 }  // namespace inkwell::soak

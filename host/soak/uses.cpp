@@ -197,7 +197,7 @@ void stop_scope(Bench& bench) {
   while (bench.board.device().read_scope(0ms)) {
   }
   if (const auto malformed = bench.board.device().malformed_scope_frames(); malformed > 0)
-    bench.fail(Complaint::lost_packets, fmt::format("{} frames of the scope are malformed", malformed));
+    bench.fail(Complaint::lost_packets, fmt::format("{} scope frames are malformed", malformed));
 }
 
 }  // namespace
@@ -261,7 +261,7 @@ std::string use_program(Bench& bench, double time_s) {
   bench.sitting.lost.program_forces += lost;
   if (lost > 0 || after.force_reports_refused != before.force_reports_refused)
     bench.oracle.complain(Complaint::lost_packets,
-                          fmt::format("{} forces of a program were lost, {} refused", lost,
+                          fmt::format("{} program forces were lost, {} refused", lost,
                                       after.force_reports_refused - before.force_reports_refused));
   return fmt::format("{} forces, shapes {} times", program.sent(), shapes);
 }
@@ -286,7 +286,7 @@ std::string use_scope(Bench& bench, double time_s) {
         note_lost(bench, signals, count.lost);
       });
   stop_scope(bench);
-  if (samples == 0) bench.fail(Complaint::no_answer, "the scope gave no sample");
+  if (samples == 0) bench.fail(Complaint::no_answer, "the scope returned no samples");
   return fmt::format("{} selections, {} samples", selections, samples);
 }
 
@@ -322,7 +322,7 @@ std::string use_recording(Bench& bench, double time_s) {
   bench.sitting.lost.recorded_samples += samples - read_back.size();
   if (read_back.size() != samples || !read_back.complete)
     bench.oracle.complain(Complaint::lost_packets,
-                          fmt::format("of {} samples {} are in the recording.", samples, read_back.size()));
+                          fmt::format("of {} samples, {} are in the recording.", samples, read_back.size()));
   return fmt::format("{} samples of {} signals", samples, signals.size());
 }
 
@@ -345,7 +345,7 @@ std::string live_storm(Bench& bench, double time_s) {
         ++changes;
       });
   bench.restore_defaults();
-  return fmt::format("{} transactions under the hand, {} illegal ones", changes, illegal);
+  return fmt::format("{} transactions with the force on, {} of them illegal", changes, illegal);
 }
 
 }  // namespace inkwell::soak

@@ -146,7 +146,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   CHECK(powered);
   INFO("output: ", result->out, result->err);
   CHECK(result->exit_code == 1);
-  CHECK(result->err.find("went away in the step") != std::string::npos);
+  CHECK(result->err.find("was disconnected in the step") != std::string::npos);
   const auto json = nlohmann::json::parse(result->out);
   CHECK(json.at("result") == "failed");
   CHECK(json.at("applied") == false);
@@ -158,7 +158,7 @@ TEST_CASE("without consent nothing is powered") {
   const auto result = run_program("inkwell", {"tune", "current-loop", "--virtual", "--json"});
   CHECK(result.exit_code == 2);
   CHECK(result.err.find("--yes") != std::string::npos);
-  CHECK(result.err.find("Motor 1 gets 8 pulses") != std::string::npos);
+  CHECK(result.err.find("Motor 1 receives 8 pulses") != std::string::npos);
 }
 
 TEST_CASE("a range that is none is wrong usage") {

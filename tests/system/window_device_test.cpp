@@ -134,7 +134,7 @@ TEST_CASE("a guide whose device is unplugged says so, and the parameters on tria
     return now.applied_at_periods() != before;
   });
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("The device went away in the step"); });
+  rig.look_until("it says so", [](const Sight& now) { return now.says("The device was disconnected in the step"); });
   plug_in(rig);
   rig.look_until("they are put back", [](const Sight& now) { return now.applied_at_periods() != 0; });
   rig.click("guides/Back");

@@ -55,7 +55,7 @@ TEST_CASE("nothing is powered before the user agrees, and the text says how much
   CHECK(guide.step_index() == identify_step);
   CHECK(no_current_was_asked(arm));
   CHECK(arm.transactions.empty());
-  CHECK(guide.step().text().find("Motor 2 gets 8 pulses of 10 ms") != std::string::npos);
+  CHECK(guide.step().text().find("Motor 2 receives 8 pulses of 10 ms") != std::string::npos);
 }
 
 TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one transaction") {
@@ -103,7 +103,7 @@ TEST_CASE("the shunt is that of the board that is there; of an unknown board no 
   }
   SUBCASE("one that does not say") {
     arm.board_name() = "";
-    sentence = "The firmware does not say which board it is for";
+    sentence = "The firmware does not report its board";
   }
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, true);
@@ -172,9 +172,10 @@ TEST_CASE("a device that goes away ends the guide with a sentence; what was on t
   arm.unplug();
   arm.pass_millisecond(guide);
   REQUIRE(guide.phase() == Phase::failed);
-  CHECK(guide.outcome().find("went away in the step \"Step response with the suggested gains\"") != std::string::npos);
-  CHECK(guide.outcome().find("on trial") != std::string::npos);
-  CHECK(guide.outcome().find("Connect it again") != std::string::npos);
+  CHECK(guide.outcome().find("was disconnected in the step \"Step response with the suggested gains\"") !=
+        std::string::npos);
+  CHECK(guide.outcome().find("trial parameters") != std::string::npos);
+  CHECK(guide.outcome().find("Connect the device again") != std::string::npos);
   REQUIRE(arm.transactions.size() == 2);  // queued until the reconnection
   CHECK(arm.transactions[1][0].second == protocol::default_parameters()[Parameter::current_proportional_gain_V_per_A]);
 }

@@ -90,6 +90,10 @@ TEST_CASE("an unplugged motor, no pulse and nonsense are named") {
   VoltagePulse wild = pulse_of({2.26, 0.238e-3}, 2.0, random);
   for (std::size_t i = 0; i < wild.current_A.size(); ++i) wild.current_A[i] += i % 3 == 0 ? 1.5 : 0.0;
   CHECK_THROWS_AS(guides::identify({wild}, period_s, ripple_A), device::Error);
+  VoltagePulse reversed = pulse_of({2.26, 0.238e-3}, 2.0, random);
+  for (double& current_A : reversed.current_A) current_A = -current_A;
+  CHECK_THROWS_WITH_AS(guides::identify({reversed}, period_s, ripple_A), doctest::Contains("has the wrong sign"),
+                       device::Error);
   CHECK_THROWS_AS(guides::identify({}, period_s, ripple_A), device::Error);
 }
 

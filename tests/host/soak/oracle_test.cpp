@@ -170,7 +170,7 @@ TEST_CASE("a fault whose cause was there is missed when nothing or another one i
   cable.oracle.begin(2, Kind::cable);
   cable.oracle.must_have_told(soak::host_gone);
   cable.check_only(Complaint::missed_fault);
-  CHECK(cable.oracle.findings().at(0).text == "usb_gone or host_silent was not told");
+  CHECK(cable.oracle.findings().at(0).text == "usb_gone or host_silent was not reported");
 }
 
 TEST_CASE("force that goes off by itself is a finding, in a phase without anything put in") {

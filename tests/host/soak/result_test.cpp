@@ -41,8 +41,8 @@ TEST_CASE("the table sums what the boards did, and names each finding with the w
   CHECK(has(table, "supply_low"));
   CHECK(has(table, "3.40 N"));
   CHECK(has(table, "1.020\n    1.02 of 1.00 N in 2.1 (walls) at 2.250 s\n"));
-  CHECK(has(table, "the same with a fault put in                       -\n"));
-  CHECK(has(table, "kept back by what was put in                      71\n"));
+  CHECK(has(table, "the same with an injected fault                    -\n"));
+  CHECK(has(table, "missing due to injected faults                    71\n"));
   CHECK(has(table, "false_trip in phase 1 (walls) at 3.250 s: over_current"));
   CHECK(has(table, "inkwell soak --seed 42 --sitting 2 --sitting-seconds 300 --use-seconds 4"));
   CHECK(false_trip_count(some_soak()) == 1);
@@ -66,7 +66,7 @@ TEST_CASE("a soak that was stopped says so") {
   CHECK_FALSE(has(table_of(soak), "stopped"));
   CHECK(nlohmann::json::parse(json_of(soak)).at("stopped") == false);
   soak.stopped = true;
-  CHECK(has(table_of(soak), "stopped before its time was over"));
+  CHECK(has(table_of(soak), "stopped early"));
   CHECK(nlohmann::json::parse(json_of(soak)).at("stopped") == true);
 }
 

@@ -17,20 +17,23 @@ namespace inkwell::soak {
 
 // clang-format off
 /// X(name, meaning)
-#define INKWELL_SOAK_COMPLAINTS(X)                                                                             \
-  X(false_trip, "A fault was told that nothing had caused.")                                                   \
-  X(missed_fault, "A fault was not told although its cause was there.")                                        \
-  X(unasked_force, "The force was on although nobody had asked for it since it was off.")                      \
-  X(lost_force, "The force went off although nobody had asked for that and no fault was told.")                \
-  X(too_much_force, "The motors pressed with more than the force limit and 5 % in a control period, or, with a fault put in, in the mean over a millisecond.") \
-  X(restart, "The chip started anew although nothing had caused it.")                                          \
-  X(broken_rule, "The firmware did what silicon would not bear.")                                              \
-  X(wrong_parameters, "The parameters that the board holds are not those that it accepted last.")              \
-  X(wrong_answer, "A transaction was accepted that is illegal, or refused that is legal, or for another reason.") \
-  X(wrong_pose, "The board believes the probe to be elsewhere than it is.")                                    \
-  X(lost_packets, "Poses, samples of a scope that the bus carries, forces of a program or parts of a recording were lost.") \
-  X(no_answer, "The board did not answer, or did not do what it was asked for.")                               \
-  X(no_way_back, "A fault was healed, but the user's way back did not lead to force, or only by a reset.")
+#define INKWELL_SOAK_COMPLAINTS(X) \
+  X(false_trip, "The board reported a fault without a cause.") \
+  X(missed_fault, "The board did not report a fault although its cause was present.") \
+  X(unasked_force, "The force switched on without a request.") \
+  X(lost_force, "The force switched off without a request and without a reported fault.") \
+  X(too_much_force, \
+    "The motor force exceeded the force limit by more than 5 % in a control period, or, with an injected " \
+    "fault, in the mean over a millisecond.") \
+  X(restart, "The chip restarted without a cause.") \
+  X(broken_rule, "The firmware violated a rule of the chip.") \
+  X(wrong_parameters, "The board's parameters differ from the parameters that it accepted last.") \
+  X(wrong_answer, \
+    "An illegal transaction was accepted, a legal transaction was refused, or the reason for a refusal was wrong.") \
+  X(wrong_pose, "The reported position of the probe differs from its true position.") \
+  X(lost_packets, "Poses, scope samples within the bus capacity, program forces or parts of a recording were lost.") \
+  X(no_answer, "The board did not answer, or did not execute a command.") \
+  X(no_way_back, "After a fault was removed, the user could not restore the force, or needed a reset.")
 // clang-format on
 
 enum class Complaint : std::uint8_t {

@@ -32,24 +32,26 @@ inline constexpr protocol::Watches host_gone =
 
 // clang-format off
 /// X(name, cards in a deck, faults that may be reported, description)
-#define INKWELL_SOAK_KINDS(X)                                                                                          \
-  X(docking, 1, 0, "The stylus is put into the inkwell and taken out again, then the force is switched on.")            \
-  X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.")                       \
-  X(walls, 2, 0, "The hand presses into walls and slides along them, with up to the force limit.")                     \
-  X(fast, 1, 0, "The hand moves fast, below the speed limit.")                                                         \
-  X(program, 2, 0, "A program sends forces in every mode and places shapes.")                                          \
-  X(scope, 1, 0, "The scope runs and changes its signals.")                                                            \
-  X(recording, 1, 0, "The scope is recorded into a file that is read again.")                                          \
-  X(live_storm, 2, 0, "Parameters change under the hand, legal ones and illegal ones.")                                \
+#define INKWELL_SOAK_KINDS(X) \
+  X(docking, 1, 0, "The stylus is put into the inkwell and removed, then the force is switched on.") \
+  X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.") \
+  X(walls, 2, 0, "The hand presses into walls and slides along them, with up to the force limit.") \
+  X(fast, 1, 0, "The hand moves fast, below the speed limit.") \
+  X(program, 2, 0, "A program sends forces in every mode and places shapes.") \
+  X(scope, 1, 0, "The scope runs and changes its signals.") \
+  X(recording, 1, 0, "The scope is recorded into a file, and the file is read.") \
+  X(live_storm, 2, 0, "Legal and illegal parameter changes are sent with the force on.") \
   X(wide_storm, 1, lost_counts, \
-    "Any legal values of all parameters, and illegal ones, with the force off; stops and scales of the joints among them.") \
-  X(store, 1, 0, "Parameters are stored, restored and forgotten; the board starts anew with them, and while it stores.") \
-  X(cable, 1, host_gone, "The cable is pulled and put back.")                      \
-  X(silence, 1, protocol::watch(protocol::Fault::host_silent), "The host is silent, shorter and longer than it may.")  \
-  X(killed, 1, host_gone, "The program is killed while the force is on.")          \
-  X(reset, 1, 0, "The board is reset at any time.")                                                                    \
-  X(too_fast, 1, protocol::watch(protocol::Fault::over_speed), "The hand is faster than a speed limit that was lowered.") \
-  X(fault, 4, ~protocol::Watches{0}, "A fault of the table is put in and healed.")
+    "Legal and illegal values of all parameters are sent with the force off, including joint stops and scales.") \
+  X(store, 1, 0, "Parameters are stored, restored and erased. The board also restarts, even during a write.") \
+  X(cable, 1, host_gone, "The cable is unplugged and plugged in again.") \
+  X(silence, 1, protocol::watch(protocol::Fault::host_silent), \
+    "The host is silent for shorter and longer than the time-out.") \
+  X(killed, 1, host_gone, "The program is killed while the force is on.") \
+  X(reset, 1, 0, "The board is reset at any time.") \
+  X(too_fast, 1, protocol::watch(protocol::Fault::over_speed), \
+    "The hand is faster than a speed limit that was lowered.") \
+  X(fault, 4, ~protocol::Watches{0}, "A fault from the table is injected and removed.")
 // clang-format on
 
 enum class Kind : std::uint8_t {
