@@ -12,7 +12,7 @@ struct ParameterRequests {
   bool restore_defaults = false;
   std::vector<ParameterChange> changes;  ///< each parameter once, as a transaction requires
 
-  /// A later value of a parameter replaces the earlier one.
+  /// A later value of a parameter replaces the earlier value.
   void add(const std::vector<ParameterChange>& later);
   /// Inserts unsent requests before these newer requests.
   void put_before(ParameterRequests unsent);

@@ -35,7 +35,7 @@ class UsbHandle {
   std::vector<process::OwnDescriptor> own_;  ///< otherwise a forked child would keep the interfaces claimed
 };
 
-/// Serial numbers of the connected devices. Throws NoPermission or InUse if one of them cannot be opened.
+/// Serial numbers of the connected devices. Throws NoPermission or InUse if one of these devices cannot be opened.
 std::vector<std::string> usb_serial_numbers(std::uint16_t vendor_id, std::uint16_t product_id);
 
 }  // namespace inkwell::device

@@ -220,7 +220,7 @@ class UsbTransport : public Transport {
     return reinterpret_cast<const unsigned char*>(bytes.data());
   }
 
-  /// Windows requires a buffer of the largest feature report size; other systems accept it.
+  /// Windows requires a buffer of the largest feature report size; other systems accept this size.
   HidHandle::Result request_feature(std::uint8_t id, std::span<std::byte> buffer) {
     buffer[0] = std::byte{id};
     return features_.call(

@@ -47,11 +47,11 @@ class UsbipConnection {
   std::uint32_t submit_in(std::uint8_t endpoint, std::uint32_t length, OnCompletion on_completion);
   std::uint32_t submit_out(std::uint8_t endpoint, std::span<const std::byte> data, OnCompletion on_completion);
 
-  /// Control transfers are synchronous. They throw Stalled, Disconnected, or Error on time-out.
+  /// Control transfers are synchronous. Control transfers throw Stalled, Disconnected, or Error on time-out.
   std::vector<std::byte> control_in(const Setup& setup);
   void control_out(const Setup& setup, std::span<const std::byte> data);
 
-  /// Cancels the transfer. It completes with -ECONNRESET, or with its answer if that arrives first.
+  /// Cancels the transfer. The transfer completes with -ECONNRESET, or with its answer if the answer arrives first.
   void unlink(std::uint32_t sequence);
 
   /// Closes the connection and stops the receiving thread. Open transfers are dropped.

@@ -118,7 +118,7 @@ class UsbipTransport : public Transport {
   }
 
   /// The server releases the scope when a transfer was canceled and no transfer is pending. Completed transfers alone
-  /// do not release it.
+  /// do not release the scope.
   void release_scope() override {
     std::unique_lock lock(bulk_mutex_);
     if (!std::exchange(scope_claimed_, false)) return;

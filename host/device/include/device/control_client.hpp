@@ -50,8 +50,8 @@ struct PutInFault {
 /// The injected faults of a virtual board at one instant.
 struct Injections {
   double board_time_s = 0;
-  /// The newest control period, counted from 0 since the last reset, and its board time. It equals the firmware's
-  /// `time_periods` unless the core missed a control interrupt.
+  /// The newest control period, counted from 0 since the last reset, and its board time. The period equals the
+  /// firmware's `time_periods` unless the core missed a control interrupt.
   std::uint64_t period = 0;
   double period_at_s = 0;
   std::vector<PutInFault> faults;  ///< active faults, then scheduled faults
@@ -69,8 +69,8 @@ struct MeterReading {
   double energy_J = 0;  ///< energy delivered to the hand; energy from the hand is not subtracted
   double travel_m = 0;  ///< largest distance from the start position
   double lag_m = 0;     ///< largest distance from the hand's target
-  /// Force on the probe from the torques of all motors, averaged over a control period. It is measured while a bridge
-  /// drives and the arm is not singular.
+  /// Force on the probe from the torques of all motors, averaged over a control period. The force is measured while a
+  /// bridge drives and the arm is not singular.
   double peak_motor_force_N = 0;
   double peak_motor_force_over_ms_N = 0;  ///< the same, averaged over a millisecond
 };

@@ -8,8 +8,8 @@
 
 namespace inkwell::device {
 
-/// Base class of all errors of this library. `what()` states the problem and the remedy. It may quote a file, a device
-/// or another program, and is safe to print.
+/// Base class of all errors of this library. `what()` states the problem and the remedy. The text may quote a file, a
+/// device or another program, and is safe to print.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}

@@ -1,4 +1,4 @@
-// Finds the intended name of a misspelled one.
+// Finds the intended name for a misspelled name.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class UnknownName : public Error {
 /// `most` + 1.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
-/// Whether the user probably meant `name`. This is true if `name` contains the typed text, or if few edits change the
+/// Whether the user probably meant `name`. Returns true if `name` contains the typed text, or if few edits change the
 /// typed text to `name` or to its beginning.
 bool is_near(std::string_view name, std::string_view typed);
 

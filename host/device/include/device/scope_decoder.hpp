@@ -40,11 +40,11 @@ class ScopeDecoder {
   /// The samples of one frame. None if the frame is malformed (counted) or does not belong to the newest selection.
   /// `first_period` is not widened.
   ///
-  /// `lost_before` counts the control periods between the previously decoded frame and this one. If the first frames of
-  /// a selection are missing, their sample counts are unknown; each missing frame then counts as one period.
+  /// `lost_before` counts the control periods between the previously decoded frame and this frame. If the first frames
+  /// of a selection are missing, their sample counts are unknown; each missing frame then counts as one period.
   ///
   /// A program that releases the scope cancels its transfers, possibly in the middle of a frame. The device sends the
-  /// rest of that frame to the next reader. One transfer without a header is therefore not counted as malformed if it
+  /// rest of the frame to the next reader. One transfer without a header is therefore not counted as malformed if it
   /// arrives before the first frame after the scope was stopped.
   std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
 

@@ -76,7 +76,7 @@ class Session {
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
 
-  /// Queues a takeover of the arm from the program that drives it.
+  /// Queues a takeover of the arm from its current driver.
   void take_over();
 
   /// The current parameters of the device; `parameters_revision` increases with each connection, transaction and
@@ -94,7 +94,7 @@ class Session {
   /// The newest reconnection while the device is connected. None before the first reconnection, or if the connected
   /// device is not the lost device.
   std::optional<Reconnection> reconnection() const;
-  /// The refusal of the newest transaction; empty after an accepted one.
+  /// The refusal of the newest transaction; empty after an accepted transaction.
   std::optional<std::string> refusal() const;
 
   /// The events since the last call; if there are too many, only the newest events.

@@ -1,4 +1,4 @@
-// The connection to one USB device: through hidapi and libusb to a real one, through USB/IP to a virtual one.
+// The connection to one USB device: through hidapi and libusb to a real device, through USB/IP to a virtual device.
 #pragma once
 
 #include <chrono>
@@ -66,9 +66,9 @@ class Transport {
   /// `report[0]` is the report id. Returns the received length.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
   virtual void set_feature(std::span<const std::byte> report) = 0;
-  /// Reserves the scope's bulk stream for this program. Throws InUse if another program has reserved it.
+  /// Reserves the scope's bulk stream for this program. Throws InUse if another program has reserved the stream.
   virtual void claim_scope() = 0;
-  /// Releases the stream for other programs. It has no effect if this program has not reserved it.
+  /// Releases the stream for other programs. Has no effect if this program has not reserved the stream.
   virtual void release_scope() = 0;
   /// Waits for one bulk transfer of the scope, which must be claimed. Returns its length, or 0 on time-out. Enough
   /// transfers are pending that no data is lost if the reader is 100 ms late.

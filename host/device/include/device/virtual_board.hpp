@@ -56,7 +56,7 @@ class VirtualBoard {
   VirtualBoard(const VirtualBoard&) = delete;
   VirtualBoard& operator=(const VirtualBoard&) = delete;
 
-  /// Unix sockets in a private folder, so no other user can connect. They are removed with the board.
+  /// Unix sockets in a private folder, so no other user can connect. The sockets are removed with the board.
   const SocketAddress& usbip() const;
   const SocketAddress& control_socket() const;
 
