@@ -34,8 +34,8 @@ double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
 }
 
-/// Rotation vector from one attitude to the next, about a millisecond later. Its axis is in the antisymmetric part of
-/// the rotation matrix.
+/// Rotation vector from one attitude to the next, about a millisecond later. The rotation axis is in the antisymmetric
+/// part of the rotation matrix.
 Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
   const auto turn = [&](int row, int column) {
     double sum = 0;
@@ -199,8 +199,8 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports a lost link or a fault with its specific code. This error shows the program that there is no
-  // force.
+  // The next frame reports a lost link or a fault with its specific code. FORCE_ERROR shows the program that there is
+  // no force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_told_lost_;
   is_force_told_lost_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;

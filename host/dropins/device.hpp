@@ -82,7 +82,7 @@ class Device {
   Capabilities capabilities;
   Settings settings;
 
-  /// `tick`: the scheduler's tick number if the scheduler calls this.
+  /// `tick`: the scheduler's tick number if the scheduler calls this function.
   void begin_frame(std::optional<std::uint64_t> tick);
   void end_frame();
   bool in_frame() const { return in_frame_; }
@@ -94,7 +94,7 @@ class Device {
   /// Switches the force on or off as the program requests, also after a loss.
   void follow_force_output();
   /// Returns once the board has confirmed that the force is off, or the program requests the force again. Raises
-  /// COMM_ERROR if the board does not confirm it. Called without the lock of Devices.
+  /// COMM_ERROR if the board does not confirm that the force is off. Called without the lock of Devices.
   void wait_until_force_is_off();
   /// Called after each tick: repeats the force of the last frame if the tick had no frame.
   void renew_force();
