@@ -10,8 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Step of board time. It is short compared to the host time-out and to the 100 ms of scope data that the link can
-// buffer.
+// Step of board time, short compared to the host time-out and to the 100 ms of scope data that the link can buffer.
 constexpr std::chrono::nanoseconds slice = 5ms;
 constexpr double slice_s = std::chrono::duration<double>(slice).count();
 constexpr unsigned slices_per_sign_of_life = 2;

@@ -55,7 +55,7 @@ struct WallResult {
   std::optional<SteadyHold> steady_hold;
   std::optional<Interval> contact;
 };
-/// `hold`: interval in which the hand was steady. Without it, find_steady_hold() is used.
+/// `hold`: interval in which the hand was steady. Without `hold`, find_steady_hold() is used.
 WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, BoxWall wall,
                     std::optional<Interval> hold);
 
