@@ -80,7 +80,7 @@ std::size_t PulseRecorder::samples_of_pulse() const {
   return static_cast<std::size_t>(std::lround(pulse_.duration_s * protocol::servo_rate_Hz));
 }
 
-// A repeated recording may start during the previous pulse or the rest after it, when the board refuses pulses.
+// A repeated recording may start during the previous pulse or the rest after this pulse, when the board refuses pulses.
 bool PulseRecorder::is_at_rest() const {
   const auto& seen = recording_.column(seen_in_);
   if (seen.size() < rest_samples_) return false;

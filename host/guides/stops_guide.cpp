@@ -93,7 +93,7 @@ class CompareStops final : public Step {
 
   bool advance(const Observation& now, DevicePort&) override {
     const ParameterSet& set = *now.parameters;
-    // Joint 3 of a parallelogram is absolute. Its stops move with joint 2, which is corrected first.
+    // Joint 3 of a parallelogram is absolute. The stops of joint 3 move with joint 2, which is corrected first.
     for (int joint = 1; joint <= 3; ++joint) {
       const auto place = static_cast<std::size_t>(joint - 1);
       const bool relative = joint == 3 && set[Parameter::transmission] == 1.0f;

@@ -1,5 +1,5 @@
-// A guide leads the user through steps. It announces each motion, measures, and finishes with a result and proposed
-// changes.
+// A guide leads the user through steps. The guide announces each motion, measures, and finishes with a result and
+// proposed changes.
 //
 //   phase     | left by
 //   ----------+------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ struct Check {
 /// Formats a value with four digits and its unit: "0.1234 rad".
 std::string measured_text(const Check& check);
 
-/// A proposed parameter change. It is not sent before Guide::apply.
+/// A proposed parameter change. The proposal is not sent before Guide::apply.
 struct Proposal {
   protocol::Parameter parameter;
   float held;  ///< value of the device at the time of the measurement
