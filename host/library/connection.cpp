@@ -88,7 +88,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       read_poses([this, is_first = true](const ReadPose& read) mutable {
         if (!std::exchange(is_first, false)) return;
         poses_.let_program_decide();
-        // The program must learn of the loss before it switches the force on again.
+        // The loss must be reported to the program before it switches the force on again.
         if (read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
           arm_.device->send(protocol::Command::disable_force);
       });

@@ -42,7 +42,7 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
   device::ForceRequest request;
   request.pose_sequence = pose_sequence;
   for (std::size_t i = 0; i < 3; ++i) {
-    // A value beyond the float range is replaced by a huge one, which the board limits.
+    // A value beyond the float range is replaced by a huge value, which the board limits.
     constexpr double largest_N = 1e30;
     if (!std::isfinite(force_N[i]))
       throw BadArgument("The force is not a finite number on one axis. Give finite numbers.");

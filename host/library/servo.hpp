@@ -34,7 +34,7 @@ class Servo {
   /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
   void stop();
   bool is_running() const;
-  /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. It does not throw if the
+  /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. Does not throw if the
   /// program or the function stopped the servo.
   void throw_what_ended_it() const;
   bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }

@@ -58,10 +58,10 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm, which the destructor closes. Each function calls the C function of the same name. It throws Failure if
-/// the C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo moves with its
-/// arm. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do not destroy an arm in its own
-/// servo: the library cannot close the arm there, and it stays open.
+/// An open arm, which the destructor closes. Each function calls the C function of the same name. The C++ function
+/// throws Failure if the C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo
+/// moves with its arm. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do not destroy an arm
+/// in its own servo: the library cannot close the arm there, and it stays open.
 class Arm {
  public:
   /// Returns the force on the hand. An exception stops the servo, and stop_servo() throws it. Any other cause that has
