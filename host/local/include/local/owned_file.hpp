@@ -21,7 +21,7 @@ class FileInUse : public std::runtime_error {
 };
 
 /// The lock is on the file itself (flock). The lock applies to every name and link of the file, and ends with the
-/// process in any case. Child processes do not inherit it.
+/// process in any case. Child processes do not inherit the lock.
 class OwnedFile {
  public:
   using Flock = int (*)(int descriptor, int operation);

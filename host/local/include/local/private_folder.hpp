@@ -8,8 +8,8 @@
 
 namespace inkwell::local {
 
-/// The folder has mode 0700 and is removed with its files when the object is destroyed. Both functions throw
-/// std::runtime_error with a sentence.
+/// The folder has mode 0700 and is removed with its files when the object is destroyed. for_files() and for_sockets()
+/// throw std::runtime_error with a sentence.
 class PrivateFolder {
  public:
   /// In the folder for temporary files.
