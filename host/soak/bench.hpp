@@ -15,7 +15,7 @@
 
 namespace inkwell::soak {
 
-/// The board does not follow a command, so the phase cannot continue. The finding is already recorded.
+/// The board has not executed a command, so the phase cannot continue. The finding is already recorded.
 struct PhaseFailed : device::Error {
   using Error::Error;
 };

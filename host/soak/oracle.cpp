@@ -112,8 +112,8 @@ void Oracle::judge_force(const Look& look) {
   else
     note(hardest_press_with_fault_over_ms_, look.peak_motor_force_over_ms_N);
   if (disturbance_ == Disturbance::program) return;
-  // Until the bridges are off, a fault may increase the force of a motor for a few periods. This is too short to move
-  // the arm.
+  // Until the bridges are off, a fault may increase the force of a motor for a few periods. This increase is too short
+  // to move the arm.
   const double judged_N = is_sound ? look.peak_motor_force_N : look.peak_motor_force_over_ms_N;
   // Noise of the current sensors, which dominates for very small limits.
   constexpr double noise_N = 0.1;

@@ -10,7 +10,7 @@
 namespace inkwell::soak {
 namespace {
 
-/// Longer than any sitting. With this option a locked-up processor does not stop board time.
+/// Longer than any sitting. With this time limit, a locked-up processor does not stop board time.
 constexpr double board_lives_s = 1e6;
 
 class Run {
