@@ -30,7 +30,7 @@ class ForceOutput : private TurnPart {
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
   /// Stops the force, which then fades out.
   void let_go();
-  /// No force is sent after this returns.
+  /// No force is sent after this function returns.
   void stop();
 
  private:

@@ -198,7 +198,7 @@ void check_can_be_created(const std::filesystem::path& file, Existing existing) 
 
 namespace {
 
-/// Creates a new file. If this fails, no file remains.
+/// Creates a new file. If the creation fails, no file remains.
 std::unique_ptr<Writer> create_new(const std::filesystem::path& file, const Information& information,
                                    const std::string& name) {
   try {

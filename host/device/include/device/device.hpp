@@ -138,7 +138,7 @@ class Device {
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
   /// Waits until the board has received every command and force that was sent; false on time-out. A force that is sent
-  /// afterwards does not queue and arrives in the next bus frame.
+  /// afterwards is not queued and arrives in the next bus frame.
   bool wait_until_written(std::chrono::milliseconds timeout);
   /// Sets the force until the next request or its expiry. Every request is a sign of life. Throws Error if the board
   /// would refuse the request.
