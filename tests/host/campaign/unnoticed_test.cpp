@@ -204,10 +204,10 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
   const std::string shared = section_of({seen("wire_open:button_1", "ready", 1), seen("wire_open:supply", "ready", 1),
                                          seen("wire_open:button_2", "ready", 1), seen("wire_low:button_2", "rest", 1),
                                          seen("wire_high:button_2", "testing", 1)});
-  CHECK(shared.find("| `wire_open:button_1`, `wire_open:button_2` | ready | A switch that is open") !=
+  CHECK(shared.find("| `wire_open:button_1`, `wire_open:button_2` | ready | An open or closed wire") !=
         std::string::npos);
   CHECK(shared.find("| `wire_open:supply` | ready | ") != std::string::npos);
-  CHECK(shared.find("| `wire_high:button_2` | testing | A switch that is open") != std::string::npos);
+  CHECK(shared.find("| `wire_high:button_2` | testing | An open or closed wire") != std::string::npos);
   CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
 }
 
@@ -239,11 +239,11 @@ TEST_CASE(
     return std::string();
   };
   for (const char* exception : {"exception_lost:14", "exception_late:14"})
-    CHECK(row_of(exception, "rest").find("as the main loop hangs only") != std::string::npos);
+    CHECK(row_of(exception, "rest").find("only if the main loop hangs") != std::string::npos);
   for (const char* exception : {"exception_lost:17", "exception_late:17"})
-    CHECK(row_of(exception, "rest").find("the brown-out reset stands behind it") != std::string::npos);
+    CHECK(row_of(exception, "rest").find("the brown-out reset follows") != std::string::npos);
   CHECK(row_of("exception_lost:34", "rest").find("None is known") != std::string::npos);
-  CHECK(row_of("exception_late:34", "rest").find("Late by less") != std::string::npos);
+  CHECK(row_of("exception_late:34", "rest").find("late by less") != std::string::npos);
   for (const char* fault : {"leg_slow:2A", "motor_open:2", "shunt_frozen:2", "wire_open:motor_current[1]",
                             "wires_shorted:bridges[1].leg_a+bridges[1].leg_b"}) {
     CAPTURE(fault);
@@ -304,61 +304,62 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
   struct Row {
     const char *fault, *situation, *reason;
   };
-  for (const Row& row : {Row{"wire_low:inkwell_switch", "unreferenced", "Before there is a reference it looks like"},
-                         {"wire_open:inkwell_switch", "unreferenced", "A switch that is open"},
-                         {"wire_low:bridge_fault_tim8", "ready", "This pin is seen by the break input of TIM8"},
-                         {"wire_open:bridge_fault_tim8", "ready", "It stands as with sound bridges."},
-                         {"wire_spikes:bridge_fault_tim8", "ready", "This pin is seen"},
-                         {"wire_spikes:inkwell_switch", "ready", "The inputs' filters"},
-                         {"wire_open:bridges[1].leg_a", "ready", "It is low, as a leg has to be"},
-                         {"wire_frozen:bridge_enable", "ready", "The chip's own pin is as it has to be."},
-                         {"wire_open:bridge_heartbeat", "ready", "It is low, as it has to be"},
-                         {"wire_frozen:motor_current[1]", "ready", "No current flows"},
-                         {"wire_open:encoders[1].a", "ready", "The hand holds the joint still"},
-                         {"wire_open:usb_supply", "ready", "That USB is gone is told while"},
-                         {"wire_low:usb_supply", "landing", "The force was switched off already"},
-                         {"wire_high:usb_supply", "ready", "It stands as with the cable in."},
-                         {"wire_low:bridge_hold", "ready", "It is low, as it has to be"},
-                         {"wire_high:bridge_hold", "wall", "It stands as with the bridges on."},
-                         {"wire_low:bridge_heartbeat", "rest", "None is known"},
-                         {"wire_open:supply", "rest", "None is known"},
-                         {"crystal_drift", "ready", "That USB is gone is told while"},
-                         {"crystal_drift", "landing", "The force was switched off already"},
-                         {"usb_cut", "ready", "That USB is gone is told while"},
-                         {"usb_cut", "landing", "The force was switched off already"},
-                         {"usb_cut", "rest", "None is known: what takes the bridges off is told."},
-                         {"bus_suspended", "ready", "That USB is gone is told while"},
-                         {"bus_suspended", "landing", "The force was switched off already"},
-                         {"bus_suspended", "rest", "None is known: what takes the bridges off is told."},
-                         {"host_silent", "ready", "A host is missed while the force is on only."},
-                         {"host_silent", "rest", "Nobody asks"},
-                         {"core_halted", "ready", "A core that stands tells nothing; it goes on"},
-                         {"wires_shorted:encoders[1].a+encoders[1].b", "ready", "The two agree while"},
-                         {"host_silent", "landing", "A force that falls by itself"},
-                         {"encoder_lost_counts:2=0.1", "ready", "The hand holds the joint still, so that no count"},
-                         {"encoder_stuck:2", "ready", "The hand holds the joint still, and no motor"},
-                         {"shunt_gain:2", "ready", "No current flows, and it reads none"},
-                         {"motor_hot:2", "ready", "A motor that is 100 K hotter passes the self-test, and"},
-                         {"leg_open:2A", "ready", "The bridges are off and no current flows"},
-                         {"leg_high:2A", "ready", "The bridge trips when"},
-                         {"supply_spike+0.005", "fault", "While another fault is told, and in the boot loader"},
-                         {"logic_sag", "starting", "The chip stands"},
-                         {"core_stalled", "starting", "A core that does not take its first instruction"},
-                         {"core_stalled", "ready", "None is known: the heartbeat stops with the core"},
-                         {"main_loop_stalled", "fault", "None is known: the control interrupt misses it."},
-                         {"logic_sag", "ready", "The voltage is above 2.9 V"},
-                         {"supply_spike+0.005", "ready", "The capacitors bear it"},
-                         {"program_astray", "ready",
-                          "The code that it came to returned to the main loop, and had changed nothing that is "
-                          "checked. |"},
-                         {"main_loop_stalled=0.012", "fault", "Before the main loop runs, while another fault"},
-                         {"main_loop_stalled", "starting", "A core that does not take its first instruction"},
-                         {"program_astray", "starting",
-                          "The code that it came to returned to the main loop, and had "
-                          "changed nothing that is checked; or it came before"},
-                         {"wire_low:inkwell_switch", "fault", "Before there is a reference it looks like"},
-                         {"fast_hand", "ready", "A hand may be as fast as it likes"},
-                         {"bridge_fault", "rest", "None is known: what takes the bridges off is told."}}) {
+  for (const Row& row :
+       {Row{"wire_low:inkwell_switch", "unreferenced", "Before there is a reference it looks like"},
+        {"wire_open:inkwell_switch", "unreferenced", "An open or closed wire"},
+        {"wire_low:bridge_fault_tim8", "ready", "Only the break input of TIM8 reads this pin"},
+        {"wire_open:bridge_fault_tim8", "ready", "The level is that of healthy bridges."},
+        {"wire_spikes:bridge_fault_tim8", "ready", "Only the break input"},
+        {"wire_spikes:inkwell_switch", "ready", "The input filters"},
+        {"wire_open:bridges[1].leg_a", "ready", "The leg is low, as it has to be"},
+        {"wire_frozen:bridge_enable", "ready", "The level of the chip's pin is correct."},
+        {"wire_open:bridge_heartbeat", "ready", "The level is low, as it has to be"},
+        {"wire_frozen:motor_current[1]", "ready", "No current flows"},
+        {"wire_open:encoders[1].a", "ready", "The hand holds the joint still"},
+        {"wire_open:usb_supply", "ready", "A lost USB connection is reported only while"},
+        {"wire_low:usb_supply", "landing", "The force was switched off already"},
+        {"wire_high:usb_supply", "ready", "The level is that of a plugged-in cable."},
+        {"wire_low:bridge_hold", "ready", "The level is low, as it has to be"},
+        {"wire_high:bridge_hold", "wall", "The level is that of the bridges switched on."},
+        {"wire_low:bridge_heartbeat", "rest", "None is known"},
+        {"wire_open:supply", "rest", "None is known"},
+        {"crystal_drift", "ready", "A lost USB connection is reported only while"},
+        {"crystal_drift", "landing", "The force was switched off already"},
+        {"usb_cut", "ready", "A lost USB connection is reported only while"},
+        {"usb_cut", "landing", "The force was switched off already"},
+        {"usb_cut", "rest", "None is known: every cause that switches the bridges off is reported."},
+        {"bus_suspended", "ready", "A lost USB connection is reported only while"},
+        {"bus_suspended", "landing", "The force was switched off already"},
+        {"bus_suspended", "rest", "None is known: every cause that switches the bridges off is reported."},
+        {"host_silent", "ready", "A silent host is detected only while the force is on."},
+        {"host_silent", "rest", "No host requests a report"},
+        {"core_halted", "ready", "A core that stands tells nothing; it goes on"},
+        {"wires_shorted:encoders[1].a+encoders[1].b", "ready", "The two levels are equal while"},
+        {"host_silent", "landing", "A force that falls by itself"},
+        {"encoder_lost_counts:2=0.1", "ready", "The hand holds the joint still, so that no count"},
+        {"encoder_stuck:2", "ready", "The hand holds the joint still, and no motor"},
+        {"shunt_gain:2", "ready", "No current flows, and the reading is zero"},
+        {"motor_hot:2", "ready", "A motor that is 100 K hotter passes the self-test, and"},
+        {"leg_open:2A", "ready", "The bridges are off and no current flows"},
+        {"leg_high:2A", "ready", "The bridge trips when"},
+        {"supply_spike+0.005", "fault", "While another fault is told, and in the boot loader"},
+        {"logic_sag", "starting", "The chip is in reset"},
+        {"core_stalled", "starting", "A core that does not take its first instruction"},
+        {"core_stalled", "ready", "None is known: the heartbeat stops with the core"},
+        {"main_loop_stalled", "fault", "None is known: the control interrupt misses it."},
+        {"logic_sag", "ready", "The voltage is above 2.9 V"},
+        {"supply_spike+0.005", "ready", "The capacitors maintain the supply"},
+        {"program_astray", "ready",
+         "The code that it came to returned to the main loop, and had changed nothing that is "
+         "checked. |"},
+        {"main_loop_stalled=0.012", "fault", "The main loop is not monitored before it runs"},
+        {"main_loop_stalled", "starting", "A core that does not take its first instruction"},
+        {"program_astray", "starting",
+         "The code that it came to returned to the main loop, and had "
+         "changed nothing that is checked; or it came before"},
+        {"wire_low:inkwell_switch", "fault", "Before there is a reference it looks like"},
+        {"fast_hand", "ready", "The speed of the hand is not limited"},
+        {"bridge_fault", "rest", "None is known: every cause that switches the bridges off is reported."}}) {
     CAPTURE(row.fault);
     CAPTURE(row.situation);
     Result result = seen(row.fault, row.situation, 1);
