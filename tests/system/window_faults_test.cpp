@@ -22,6 +22,24 @@ void wait_for_keyboard(WindowRig& rig, const std::string& field) {
   rig.look_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
+/// The control that receives the keys; empty if no control does.
+std::string focused_control(const Sight& sight) {
+  for (const auto& each : sight.all.at("items").items())
+    if (each.value().at("active")) return each.key();
+  return sight.with_keyboard();
+}
+
+/// ImGui 1.90 also stops at the buttons before the field.
+void go_by_tab(WindowRig& rig, const std::string& field) {
+  constexpr int most_stops = 5;
+  for (int stop = 0; stop < most_stops && !rig.look().is_active(field); ++stop) {
+    const std::string before = focused_control(rig.look());
+    rig.type("\t");  // in one event, because a held Tab key repeats
+    rig.look_until("Tab leaves " + before, [&](const Sight& now) { return focused_control(now) != before; });
+  }
+  wait_for_keyboard(rig, field);
+}
+
 /// ImGui generates the name of a popup list.
 void click_in_list(WindowRig& rig, const std::string& name) {
   std::string item;
@@ -81,8 +99,7 @@ TEST_CASE("the pane is worked by the keyboard alone") {
   rig.press_key("Return");
   wait_for_keyboard(rig, "faults/place");
   rig.type("3");
-  rig.type("\t");  // in one event, because a held Tab key repeats
-  wait_for_keyboard(rig, "faults/amount");
+  go_by_tab(rig, "faults/amount");
   rig.type("-250");
   rig.press_key("Return");
   look_for(rig, "motor 3, -250 counts");
