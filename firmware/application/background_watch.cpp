@@ -4,44 +4,44 @@
 
 namespace inkwell::application {
 
+using protocol::condition;
 using protocol::Fault;
 using protocol::Signal;
-using protocol::watch;
 
 bool BackgroundWatch::start() {
   analog_supply_ = control::analog_supply(drivers::AnalogInputs::calibrated_reference_counts());
-  const bool memory_sound = memory_check_.start();
-  tell(watch(Fault::memory_damaged, !memory_sound));
-  return memory_sound;
+  const bool memory_intact = memory_check_.start();
+  report(condition(Fault::memory_damaged, !memory_intact));
+  return memory_intact;
 }
 
 // The memory check runs one small step in every round of the main loop. All other checks run in every third round,
 // every 0.15 ms. If these checks ran in every round, they would use a tenth of the main loop's time and displace main
 // loop code from the flash cache. Each result is stored for three rounds, so the control interrupt always reads the
 // result.
-void BackgroundWatch::look() {
-  const bool memory_sound = memory_check_.step();
-  if (++rounds_ < rounds_per_look) return;
+void BackgroundWatch::check() {
+  const bool memory_intact = memory_check_.step();
+  if (++rounds_ < rounds_per_check) return;
   rounds_ = 0;
-  tell(watch(Fault::memory_damaged, !memory_sound) | found_of_supplies() | found_of_encoders() | found_of_bridges());
+  report(condition(Fault::memory_damaged, !memory_intact) | supply_faults() | encoder_faults() | bridge_faults());
 }
 
-void BackgroundWatch::tell(protocol::Watches found) { host_link.found_in_main_loop.store(found); }
+void BackgroundWatch::report(protocol::Conditions found) { host_link.found_in_main_loop.store(found); }
 
-protocol::Watches BackgroundWatch::found_of_supplies() {
+protocol::Conditions BackgroundWatch::supply_faults() {
   const bool swings = ripples(supply_ripple_, analog_inputs.supply_counts(), completed_periods.load());
-  return watch(Fault::logic_supply_low, logic_supply.is_low()) |
-         watch(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
-         watch(Fault::supply_ripple, swings);
+  return condition(Fault::logic_supply_low, logic_supply.is_low()) |
+         condition(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
+         condition(Fault::supply_ripple, swings);
 }
 
-protocol::Watches BackgroundWatch::found_of_encoders() {
+protocol::Conditions BackgroundWatch::encoder_faults() {
   const std::uint32_t now_periods = completed_periods.load();
   const auto timer_counts = encoders.read();
   bool dead = false;
   for (std::size_t i = 0; i < timer_counts.size(); ++i)
     dead |= is_dead(encoder_wires_[i], timer_counts[i], now_periods);
-  return watch(Fault::encoder_wire, dead) | watch(Fault::encoder_implausible, an_encoder_is_stuck());
+  return condition(Fault::encoder_wire, dead) | condition(Fault::encoder_implausible, an_encoder_is_stuck());
 }
 
 bool BackgroundWatch::an_encoder_is_stuck() {
@@ -61,14 +61,14 @@ bool BackgroundWatch::an_encoder_is_stuck() {
   return stuck;
 }
 
-protocol::Watches BackgroundWatch::found_of_bridges() {
+protocol::Conditions BackgroundWatch::bridge_faults() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};
   // The levels are ignored if a control interrupt occurred while they were read, because the interrupt may have
   // switched the bridges.
-  if (completed_periods.load() == periods_before) look_at(bridge_wire_, pins);
-  return watch(Fault::bridge_wire, touches(bridge_wire_));
+  if (completed_periods.load() == periods_before) update_wire_check(bridge_wire_, pins);
+  return condition(Fault::bridge_wire, is_shorted(bridge_wire_));
 }
 
 }  // namespace inkwell::application

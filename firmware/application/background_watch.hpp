@@ -27,22 +27,22 @@ class BackgroundWatch {
 
   /// Call this function in each round of the main loop, at most once per control period. The control interrupt reads
   /// the results.
-  void look();
+  void check();
 
   const control::AnalogSupply& analog_supply() const { return analog_supply_; }
 
  private:
-  static constexpr unsigned rounds_per_look = 3;
+  static constexpr unsigned rounds_per_check = 3;
 
-  void tell(protocol::Watches found);
-  protocol::Watches found_of_supplies();
-  protocol::Watches found_of_encoders();
+  void report(protocol::Conditions found);
+  protocol::Conditions supply_faults();
+  protocol::Conditions encoder_faults();
   bool an_encoder_is_stuck();
-  protocol::Watches found_of_bridges();
+  protocol::Conditions bridge_faults();
 
   MemoryCheck memory_check_;
   control::SupplyRipple supply_ripple_{
-      .bearable_counts = static_cast<std::int32_t>(protocol::supply_ripple_V / board::facts.supply_step_V())};
+      .tolerance_counts = static_cast<std::int32_t>(protocol::supply_ripple_V / board::facts.supply_step_V())};
   control::AnalogSupply analog_supply_;
   std::array<control::EncoderWire, 3> encoder_wires_{};
   std::array<control::StuckEncoder, 3> stuck_encoders_{};

@@ -12,8 +12,8 @@
 namespace inkwell::application {
 namespace {
 
+using protocol::condition;
 using protocol::Fault;
-using protocol::watch;
 
 INKWELL_CORE_COUPLED drivers::CycleCounter clock;
 INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
@@ -57,29 +57,29 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
 
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t begin_cycles = clock.begin();
-  const bool bridges_were_let_go = bridges.begin_period();
+  const bool bridges_were_released = bridges.begin_period();
   bridges.write_neutral();  // if the interrupt does not finish in time, the motors get no voltage
 
   const std::uint32_t period = controller.periods();
   const control::Samples samples = read_samples();
-  if (host_link.parameters.take(period)) controller.settings_changed();
+  if (host_link.parameters.apply_offered(period)) controller.settings_changed();
   const control::Settings& settings = host_link.parameters.settings();
   if (host_link.commands.take_sign_of_life()) controller.host_alive();
-  if (const auto* command = host_link.commands.take()) {
+  if (const auto* command = host_link.commands.pop()) {
     controller.carry_out(*command);
     if (host_link.commands.is_of_gone_host(*command)) controller.raise(Fault::usb_gone);
   }
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
-  if (host_link.update_asked.load()) controller.leave_for_update();
-  const std::uint32_t came_round_at_periods = main_loop_periods.load();
-  const std::uint32_t missed_periods = period - came_round_at_periods;
+  if (host_link.update_requested.load()) controller.leave_for_update();
+  const std::uint32_t last_round_periods = main_loop_periods.load();
+  const std::uint32_t missed_periods = period - last_round_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
   // The hang record is requested once per stall, and not during start-up.
-  if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != first_period) [[unlikely]]
-    drivers::CallBehindInterrupts::ask();  // calls hang_handler()
-  controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
-                   watch(Fault::heartbeat_missed, bridges_were_let_go));
+  if (missed_periods == main_loop_stalled_periods + 1 && last_round_periods != first_period) [[unlikely]]
+    drivers::CallAfterInterrupts::request();  // calls hang_handler()
+  controller.raise(host_link.found_in_main_loop.load() | condition(Fault::main_loop_stalled, main_loop_stalls) |
+                   condition(Fault::heartbeat_missed, bridges_were_released));
 
   write_bridges(controller.step(samples, settings, clock));
   if (controller.state() == protocol::State::testing) [[unlikely]]

@@ -49,8 +49,9 @@ bool is_behind_call(std::uint32_t address) {
   };
   if (address % 2 != 0) return false;
   if (!lies_in(code_begin, image_check) && !lies_in(interrupt_text_begin, interrupt_text_end)) return false;
-  const auto* behind = reinterpret_cast<const std::uint16_t*>(address);
-  return ((behind[-2] & 0xF800) == 0xF000 && (behind[-1] & 0xD000) == 0xD000) || (behind[-1] & 0xFF87) == 0x4780;
+  const auto* after_call = reinterpret_cast<const std::uint16_t*>(address);
+  return ((after_call[-2] & 0xF800) == 0xF000 && (after_call[-1] & 0xD000) == 0xD000) ||
+         (after_call[-1] & 0xFF87) == 0x4780;
 }
 
 /// Without frame pointers, valid return addresses on the stack cannot be distinguished from old return addresses. The
@@ -118,7 +119,7 @@ extern "C" [[gnu::naked]] void fault_handler() {
 }
 
 extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {
-  crash_record.leave(facts_of(frame, saved));
+  crash_record.store(facts_of(frame, saved));
   drivers::reset_chip();
 }
 
@@ -137,7 +138,7 @@ extern "C" [[gnu::naked]] void hang_handler() {
 }
 
 extern "C" [[gnu::used]] void record_hang(const ExceptionFrame* frame, const SavedRegisters* saved) {
-  crash_record.leave(facts_of(frame, saved));
+  crash_record.store(facts_of(frame, saved));
 }
 
 }  // namespace inkwell::application

@@ -8,7 +8,7 @@ extern "C" {
 [[noreturn]] void reset_handler();
 /// Handles all faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void fault_handler();
-/// PendSV handler, which runs after all other interrupts. drivers::CallBehindInterrupts requests this handler. Records
+/// PendSV handler, which runs after all other interrupts. drivers::CallAfterInterrupts requests this handler. Records
 /// the code location of the main loop.
 void hang_handler();
 /// Runs once per control period, at the end of the injected conversions.

@@ -29,7 +29,7 @@ void blink_while(std::uint32_t processor_Hz, Condition lasts) {
     drivers::wait(processor_Hz / 20);
   }
 }
-void give_up() {
+void stop_forever() {
   blink_while(board::processor_Hz, [] { return true; });
 }
 
@@ -37,14 +37,15 @@ void give_up() {
 /// can report this failure.
 bool start_clocks() {
   if (drivers::start_clocks()) return true;
-  if (!drivers::crystal_swings()) report_no_crystal();
-  blink_while(drivers::internal_oscillator_Hz, [] { return !drivers::crystal_swings() || !drivers::start_clocks(); });
+  if (!drivers::crystal_oscillates()) report_no_crystal();
+  blink_while(drivers::internal_oscillator_Hz,
+              [] { return !drivers::crystal_oscillates() || !drivers::start_clocks(); });
   return false;
 }
 
 /// Returns the crash record if a crash caused the last reset.
-std::optional<protocol::CrashFacts> take_crash(const drivers::ResetCause& cause) {
-  const auto crash = crash_record.take();
+std::optional<protocol::CrashFacts> read_crash(const drivers::ResetCause& cause) {
+  const auto crash = crash_record.load_and_erase();
   if (crash && is_hang(*crash) && !cause.watchdog()) return std::nullopt;
   return crash;
 }
@@ -67,14 +68,14 @@ int main() {
   drivers::CycleCounter::start();
   const WatchdogTrial watchdog_trial = try_watchdog(drivers::take_reset_cause());
   const drivers::ResetCause reset_cause = watchdog_trial.cause;
-  const auto crash = take_crash(reset_cause);
+  const auto crash = read_crash(reset_cause);
 
   drivers::start_pins();
   status_led.start();
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
   logic_supply.start();
-  if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
+  if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_retains_pattern());
 
   // The stored parameters are loaded before any parameter is used. A flash erase is harmless at this point, because
   // watchdog, bridges, interrupts and USB do not run yet.
@@ -83,7 +84,7 @@ int main() {
 
   // The converter clocks must start before TIM1 triggers the converters (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();
-  drivers::CallBehindInterrupts::start();
+  drivers::CallAfterInterrupts::start();
   bridges.start();
   encoders.start();
   switches.start();
@@ -96,7 +97,7 @@ int main() {
   host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
 
   // Directly after an update event, nearly a whole period is available to arm all three converters.
-  if (!bridges.wait_for_update()) give_up();
+  if (!bridges.wait_for_update()) stop_forever();
   analog_inputs.arm();
   logic_supply.arm();
 
@@ -106,11 +107,11 @@ int main() {
                                .processor_clock_Hz = board::processor_Hz,
                                .reset_cause = reset_cause.flags >> 24};
   usb::Device usb_device{usb_port, host_link, identity};
-  if (!usb_port.start()) give_up();
+  if (!usb_port.start()) stop_forever();
   host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start() && watchdog_trial.is_passed,
-                           watchdog_trial.bitten_after_ms);
+                           watchdog_trial.expired_after_ms);
 
-  prove_that_it_runs();  // from here on a hang is detected, even in the first round
+  feed_watchdogs();  // from here on a hang is detected, even in the first round
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
@@ -120,10 +121,10 @@ int main() {
       drivers::start_boot_loader();
     host_link.scope.pack();
     host_link.black_box.follow();
-    background_watch.look();
+    background_watch.check();
     follow_self_test(background_watch);
     keep_motor_heat();
-    prove_that_it_runs();
+    feed_watchdogs();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });
   }

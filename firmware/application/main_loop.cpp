@@ -33,8 +33,8 @@ bool floats(protocol::SelfTestItem wire) {
 
 }  // namespace
 
-void take_motor_heat(bool power_has_come) {
-  if (const auto warmth = motor_heat_keeper.start(power_has_come)) controller.start_warm(*warmth);
+void take_motor_heat(bool after_power_on) {
+  if (const auto warmth = motor_heat_keeper.start(after_power_on)) controller.start_warm(*warmth);
 }
 
 // The motor heat is stored only when it changes. Storing the heat in every round would use a third of the main loop's
@@ -45,7 +45,7 @@ void keep_motor_heat() {
   const std::uint32_t periods = completed_periods.load();
   if (periods - kept_at_periods < control::MotorHeat::periods_per_update) return;
   kept_at_periods = periods;
-  motor_heat_keeper.leave(controller.warmth());
+  motor_heat_keeper.store(controller.warmth());
 }
 
 void follow_self_test(const BackgroundWatch& background_watch) {
@@ -60,14 +60,14 @@ void follow_self_test(const BackgroundWatch& background_watch) {
   if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
 }
 
-void prove_that_it_runs() {
+void feed_watchdogs() {
   static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
   // Half of the bound is used, because the control interrupt may have advanced since `periods` was read.
   const bool may_be_noted = periods - main_loop_periods.load() > main_loop_stalled_periods / 2;
   main_loop_periods.store(periods);
-  if (may_be_noted) crash_record.forget();  // the main loop runs again, and no hang is recorded after the store
+  if (may_be_noted) crash_record.erase();  // the main loop runs again, and no hang is recorded after the store
   if (periods != fed_at_periods) watchdog.feed();
   fed_at_periods = periods;
 }

@@ -11,14 +11,14 @@ inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(p
 /// Call this function once per round of the main loop. This function feeds the watchdog only if the control interrupt
 /// has also run since the previous call. The watchdog therefore expires if the main loop or the control interrupt
 /// hangs. The control interrupt detects missing rounds sooner than the watchdog.
-void prove_that_it_runs();
+void feed_watchdogs();
 
 /// Continues a self-test that is in progress.
 void follow_self_test(const BackgroundWatch& background_watch);
 
 /// Restores the motor heat of the previous run, except after power-on. Call this function before the control interrupt
 /// is enabled.
-void take_motor_heat(bool power_has_come);
+void take_motor_heat(bool after_power_on);
 
 /// Stores the motor heat for the next boot.
 void keep_motor_heat();

@@ -34,19 +34,19 @@ bool MemoryCheck::start() {
   checksum.start();
   begin_round();
   do static_cast<void>(step());
-  while (sound_ && !(part_ == 0 && next_ == copied_begin));
-  return sound_;
+  while (intact_ && !(part_ == 0 && next_ == copied_begin));
+  return intact_;
 }
 
 bool MemoryCheck::step() {
-  if (!sound_) return false;
+  if (!intact_) return false;
   if (part_ == 0)
     check_flash();
   else if (part_ <= copies().size())
     check_copy();
   else
     check_parameters();
-  return sound_;
+  return intact_;
 }
 
 void MemoryCheck::begin_round() {
@@ -63,7 +63,7 @@ void MemoryCheck::check_flash() {
   next_ = is_copied && end == copied_end ? code_begin : end;  // the parameter store is between the copied code and the
                                                               // other code
   if (next_ != image_check) return;
-  sound_ = checksum.value() == *image_check;
+  intact_ = checksum.value() == *image_check;
   next_ = copies()[0].begin;
   ++part_;
 }
@@ -72,7 +72,7 @@ void MemoryCheck::check_copy() {
   const Copy& copy = copies()[part_ - 1];
   const auto* const image = static_cast<const std::uint32_t*>(copy.image);
   const std::uint32_t* const end = next_ + std::min(words_per_step, copy.end - next_);
-  for (; next_ != end; ++next_) sound_ &= *next_ == image[next_ - copy.begin];
+  for (; next_ != end; ++next_) intact_ &= *next_ == image[next_ - copy.begin];
   if (next_ != copy.end) return;
   if (part_ < copies().size()) next_ = copies()[part_].begin;
   ++part_;
@@ -81,9 +81,9 @@ void MemoryCheck::check_copy() {
 // Each step checks only one checksum, because a step must be short.
 void MemoryCheck::check_parameters() {
   switch (part_++ - copies().size()) {
-    case 1: sound_ = host_link.parameters.settings_are_intact(); break;
-    case 2: sound_ = host_link.parameters.values_are_intact(); break;
-    default: sound_ = host_link.stored.is_intact(); begin_round();
+    case 1: intact_ = host_link.parameters.settings_are_intact(); break;
+    case 2: intact_ = host_link.parameters.values_are_intact(); break;
+    default: intact_ = host_link.stored.is_intact(); begin_round();
   }
 }
 

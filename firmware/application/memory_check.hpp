@@ -26,7 +26,7 @@ class MemoryCheck {
   void check_parameters();
   void begin_round();
 
-  bool sound_ = true;
+  bool intact_ = true;
   std::size_t part_ = 0;  ///< part of the round: flash, each copy, settings, parameters, stored parameters
   const std::uint32_t* next_ = nullptr;  ///< next word of this part
 };

@@ -19,15 +19,15 @@ std::span<volatile std::uint32_t> between(std::uint32_t* begin, std::uint32_t* e
 
 }  // namespace
 
-bool ram_keeps_pattern() {
+bool ram_retains_pattern() {
   std::array<std::uint32_t, 128> room;
   std::uint32_t* stack = room.data();
   asm("" : "+r"(stack));  // hides from the compiler that memory below the array is used
-  bool is_sound = link::keeps_pattern(std::span<volatile std::uint32_t>(room));
-  is_sound &= link::keeps_pattern(between(stack_bottom, stack - words_of_callees), std::span(room));
-  is_sound &= link::keeps_pattern(between(stack_top, core_coupled_end), std::span(room));
-  is_sound &= link::keeps_pattern(between(ram_begin, ram_end), std::span(room));
-  return is_sound;
+  bool is_intact = link::retains_pattern(std::span<volatile std::uint32_t>(room));
+  is_intact &= link::retains_pattern(between(stack_bottom, stack - words_of_callees), std::span(room));
+  is_intact &= link::retains_pattern(between(stack_top, core_coupled_end), std::span(room));
+  is_intact &= link::retains_pattern(between(ram_begin, ram_end), std::span(room));
+  return is_intact;
 }
 
 }  // namespace inkwell::application

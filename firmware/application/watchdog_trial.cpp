@@ -9,7 +9,7 @@
 namespace inkwell::application {
 namespace {
 
-enum class Outcome : std::uint32_t { open, bitten, none };
+enum class Outcome : std::uint32_t { open, expired, none };
 
 struct Course {
   std::uint32_t reset_flags;  ///< reset flags of the power-on that started the trial
@@ -26,7 +26,7 @@ struct Course {
 constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
 
 /// Returns only if the watchdog does not expire.
-void wait_for_bite() {
+void wait_for_reset() {
   constexpr std::uint32_t cycles_per_us = drivers::internal_oscillator_Hz / 1'000'000;
   static_cast<void>(watchdog.start());  // main() repeats the start and checks the result
   const std::uint32_t from_cycles = drivers::CycleCounter::now();
@@ -40,25 +40,25 @@ void wait_for_bite() {
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
   // If BOOT0 is still high, the watchdog reset would start the boot loader instead of the firmware.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
-    kept_course.leave({cause.flags, Outcome::open});
-    wait_for_bite();
-    kept_course.leave({cause.flags, Outcome::none});
+    kept_course.store({cause.flags, Outcome::open});
+    wait_for_reset();
+    kept_course.store({cause.flags, Outcome::none});
   }
-  auto course = kept_course.take();
+  auto course = kept_course.load_and_erase();
   if (!course) return {cause, true, 0.0f};
   WatchdogTrial trial{cause, course->outcome != Outcome::none, 0.0f};
   if (course->outcome == Outcome::open && cause.watchdog()) {
     trial.cause = {course->reset_flags};
-    course->outcome = Outcome::bitten;
+    course->outcome = Outcome::expired;
   }
   // A reset with another cause leaves the trial undecided. In this case nothing is stored, because the next watchdog
   // reset does not belong to the trial.
   if (course->outcome == Outcome::open) return trial;
-  if (course->outcome == Outcome::bitten) {
+  if (course->outcome == Outcome::expired) {
     trial.is_passed = waited_us > earliest_us && waited_us < latest_us;
-    trial.bitten_after_ms = 1e-3f * static_cast<float>(waited_us);
+    trial.expired_after_ms = 1e-3f * static_cast<float>(waited_us);
   }
-  kept_course.leave(*course);
+  kept_course.store(*course);
   return trial;
 }
 

@@ -9,7 +9,7 @@ namespace inkwell::application {
 struct WatchdogTrial {
   drivers::ResetCause cause;  ///< cause of this boot; the reset of the trial does not count
   bool is_passed;             ///< expired in time, or was not tried since power-on
-  float bitten_after_ms;      ///< 0 if the watchdog did not expire
+  float expired_after_ms;     ///< 0 if the watchdog did not expire
 };
 
 /// At power-on the watchdog expires in this function after 14 to 38 ms, and the call in the next boot returns the

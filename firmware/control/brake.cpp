@@ -6,12 +6,12 @@ namespace inkwell::control {
 
 namespace {
 
-constexpr protocol::Watches gentle =
-    protocol::watches([](const auto& row) { return row.off == protocol::Off::brake_gently; });
+constexpr protocol::Conditions gentle =
+    protocol::conditions([](const auto& row) { return row.off == protocol::Off::brake_gently; });
 
 }  // namespace
 
-void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found) {
+void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions found) {
   if (!brake.is_on()) return;
   // A speed that is not a number does not count as fast.
   const bool is_fast = speed_squared_m2_per_s2 > Brake::speed_m_per_s * Brake::speed_m_per_s;

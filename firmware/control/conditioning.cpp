@@ -31,14 +31,15 @@ void filter_supply(SupplyFilter& filter, float sample_V) {
 }
 
 void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn) {
-  constexpr std::uint8_t settle_looks = (SwitchFilter::settle_periods + SwitchFilter::count - 1) / SwitchFilter::count;
+  constexpr std::uint8_t settle_readings =
+      (SwitchFilter::settle_periods + SwitchFilter::count - 1) / SwitchFilter::count;
   const unsigned changed = (unsigned{switches} ^ filter.closed) & 1u << turn;
-  std::uint8_t& looks = filter.looks[turn];
+  std::uint8_t& changed_readings = filter.changed_readings[turn];
   if (changed == 0) {
-    looks = 0;
-  } else if (++looks == settle_looks) {
+    changed_readings = 0;
+  } else if (++changed_readings == settle_readings) {
     filter.closed = static_cast<std::uint8_t>(filter.closed ^ changed);
-    looks = 0;
+    changed_readings = 0;
   }
 }
 

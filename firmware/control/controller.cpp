@@ -11,6 +11,7 @@ namespace inkwell::control {
 namespace {
 
 using protocol::Command;
+using protocol::condition;
 using protocol::Event;
 using protocol::events;
 using protocol::Fault;
@@ -19,7 +20,6 @@ using protocol::ForceSource;
 using protocol::Limit;
 using protocol::Signal;
 using protocol::State;
-using protocol::watch;
 
 std::uint8_t bit(ForceSource source, bool is_felt) {
   return is_felt ? static_cast<std::uint8_t>(source) : std::uint8_t{0};
@@ -64,17 +64,17 @@ void put(protocol::SignalValues& signals, Rows rows, const Vector3& vector) {
 void Controller::carry_out(const protocol::CommandReport& command) {
   host_alive();
   switch (command.command) {
-    case Command::enable_force: asked_.events |= events(Event::enable); break;
+    case Command::enable_force: pending_.events |= events(Event::enable); break;
     case Command::disable_force:
-      asked_.events |= events(Event::disable);
+      pending_.events |= events(Event::disable);
       test_.end();
       break;
     case Command::stop:  // also sent when the host disconnects
-      asked_.events |= events(Event::stop);
+      pending_.events |= events(Event::stop);
       test_.end();
       break;
-    case Command::clear_fault: asked_.events |= events(Event::clear); break;
-    case Command::self_test: asked_.events |= events(Event::self_test); break;
+    case Command::clear_fault: pending_.events |= events(Event::clear); break;
+    case Command::self_test: pending_.events |= events(Event::self_test); break;
     case Command::test_current:
     case Command::test_voltage:
       if (supervisor_.state == State::ready && !test_.runs())
@@ -89,12 +89,12 @@ void Controller::carry_out(const protocol::CommandReport& command) {
 }
 
 void Controller::pass_self_test(const MeasuredMotors& measured) {
-  asked_.events |= lasting_events_ = events(Event::tested);
+  pending_.events |= lasting_events_ = events(Event::tested);
   measured_ = measured;
 }
 
 void Controller::drive(const ForceTarget& target, const Settings& settings) {
-  if (head_for(program_, target, settings.program_force)) ++late_force_reports_;
+  if (set_target(program_, target, settings.program_force)) ++late_force_reports_;
 }
 
 void Controller::replace_shapes(const Shapes& shapes) {
@@ -117,7 +117,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   const auto take = [&](std::size_t i) { return replace(current_A_[i], samples.current_A[i] - offsets_.offset_A[i]); };
   const float first_A = take(0), second_A = take(1), third_A = take(2);
   if (is_large(first_A, second_A, third_A)) [[unlikely]]
-    look_for_jump({first_A, second_A, third_A}, settings);
+    check_for_jumps({first_A, second_A, third_A}, settings);
   const float ratio = samples.gimbal_ratio[turn_];
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
@@ -129,7 +129,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
 
 /// Runs before the pose and the current errors of this period are computed, because a current change depends on the
 /// previous speed and the previous errors.
-void Controller::look_for_jump(const Triple& change_A, const Settings& settings) {
+void Controller::check_for_jumps(const Triple& change_A, const Settings& settings) {
   // Currents change quickly during braking and directly after the bridges are switched off.
   if (!drive_.enabled) return;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -161,20 +161,20 @@ void Controller::render_force(const Settings& settings) {
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
   const bool law_is_felt = force_is_on() && law_rendered;
-  if (!law_is_felt) law_.rest();
+  if (!law_is_felt) law_.reset();
   if (!force_is_on()) {
     force_ = {};
     limits_ = 0;
     force_gain_ = 0.0f;
     force_limit_N_ = settings.force_limit_N;
-    touched_N_ = {};
+    rendered_N_ = {};
     transition_ = {};
     reserve_ = {settings.energy.reserve_J, probe_.position_m};
     return;
   }
   force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
                    bit(ForceSource::program, program_.is_driven());
-  Vector3 touched_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
+  Vector3 rendered_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
   if (law_is_felt) {
     probe_.wall = settings.wall;
     probe_.switches = switches_.closed;
@@ -182,58 +182,59 @@ void Controller::render_force(const Settings& settings) {
     // The squared force must also be finite, because the direction of the limited force is computed from it. If the
     // inputs are not finite, the force law did not cause the fault.
     if (is_finite(dot(law_N, law_N))) [[likely]]
-      touched_N = touched_N + law_N;
+      rendered_N = rendered_N + law_N;
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
       raise(Fault::force_law);
   }
   // The transition starts from the limited force, because only the limited force acted on the hand.
   if (world_changed || law_changed)
-    transition_ = over(bounded(touched_N_, force_limit_N_).force_N - touched_N, settings.recovery_N_per_period);
-  touched_N_ = touched_N + transition_.force_N();
+    transition_ =
+        start_transition(bounded(rendered_N_, force_limit_N_).force_N - rendered_N, settings.recovery_N_per_period);
+  rendered_N_ = rendered_N + transition_.force_N();
   advance(transition_);
   force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
                                                     : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
   // A lowered limit applies immediately.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
-  const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
+  const Force force = bounded(rendered_N_ + program_.force_N, force_limit_N_);
   limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f);
-  give(scaled(force, force_gain_), settings);
+  limit_and_apply_force(scaled(force, force_gain_), settings);
 }
 
 /// Applies a force to the hand and limits the energy, the speed and the rate of change of the force.
-void Controller::give(Force asked, const Settings& settings) {
-  account(reserve_, force_.force_N, probe_.position_m, settings.energy);
-  const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
+void Controller::limit_and_apply_force(Force requested, const Settings& settings) {
+  update_energy(reserve_, force_.force_N, probe_.position_m, settings.energy);
+  const float power_W = dot(requested.force_N, probe_.velocity_m_per_s);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
   if (power_W > 0.0f && (is_low(reserve_, settings.energy) || is_near(speed_squared_m2_per_s2, settings.speed)))
       [[unlikely]]
-    asked = less_driving(asked, power_W, settings);
-  const Vector3 change_N = asked.force_N - force_.force_N;
+    requested = reduce_driving_part(requested, power_W, settings);
+  const Vector3 change_N = requested.force_N - force_.force_N;
   const float squared_N2 = dot(change_N, change_N);
   if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
     const float part = settings.change_squared_N2 * reciprocal_square_root(settings.change_squared_N2 * squared_N2);
     // A lowered force limit applies immediately, even if the previous force was larger.
-    asked = bounded(force_.force_N + part * change_N, force_limit_N_);
+    requested = bounded(force_.force_N + part * change_N, force_limit_N_);
     limits_ |= bit(Limit::change, true);
   }
-  force_ = asked;
+  force_ = requested;
 }
 
-Force Controller::less_driving(const Force& asked, float power_W, const Settings& settings) {
-  const float for_energy = gives_way(reserve_, settings.energy);
-  const float for_speed = gives_way(dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s), settings.speed);
+Force Controller::reduce_driving_part(const Force& requested, float power_W, const Settings& settings) {
+  const float for_energy = driving_reduction(reserve_, settings.energy);
+  const float for_speed = driving_reduction(dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s), settings.speed);
   limits_ |= bit(Limit::energy, for_energy > 0.0f);
   limits_ |= bit(Limit::speed, for_speed > 0.0f);
-  return bounded(
-      without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, for_energy > for_speed ? for_energy : for_speed),
-      force_limit_N_);
+  return bounded(without_drive(requested.force_N, power_W, probe_.velocity_m_per_s,
+                               for_energy > for_speed ? for_energy : for_speed),
+                 force_limit_N_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
   // If one link motor is not used, the torque of the other link motor alone would produce a different and possibly
   // larger force.
-  if (settings.motors.idle != 0) leave_out(settings.motors.idle, torque_Nm_, jacobian_);
+  if (settings.motors.idle != 0) remove_idle_torque(settings.motors.idle, torque_Nm_, jacobian_);
   const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
   limits_ |= bit(Limit::current, references.held_by_current);
@@ -244,7 +245,7 @@ void Controller::find_current_references(const Settings& settings) {
 }
 
 /// Updates the assumed resistance of this period's motor from the measured resistance and the present heat.
-void Controller::know_resistance(const Settings& settings) {
+void Controller::update_resistance(const Settings& settings) {
   resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
                                        settings.motor_model.resistance_ohm[turn_]);
 }
@@ -252,14 +253,14 @@ void Controller::know_resistance(const Settings& settings) {
 void Controller::watch_motors(const Settings& settings) {
   // With the force on, the resistance changes only with the heat, so the resistance is updated only together with the
   // heat.
-  if (!force_is_on() || heat_.readings == 0) know_resistance(settings);
+  if (!force_is_on() || heat_.readings == 0) update_resistance(settings);
   if (!force_is_on()) {
-    rest(motor_watch_);
+    reset(motor_watch_);
     watch_idle_currents();
     return;
   }
-  if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_, settings.motor_model.back_emf_Vs_per_rad))
-      [[unlikely]]
+  if (!update_motor_check(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_,
+                          settings.motor_model.back_emf_Vs_per_rad)) [[unlikely]]
     raise(Fault::motor_implausible);
   // The duty cycles of the previous period remain active until the next period.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
@@ -320,8 +321,8 @@ void Controller::regulate_currents(const Settings& settings) {
 
 /// The energy, speed and change limits of the rendered force do not apply to a motor test. The test stops if the arm is
 /// too fast or the host is silent. The test pulse also stops when the exchanged energy exceeds the energy reserve.
-void Controller::follow_test(protocol::Watches found, const Settings& settings) {
-  constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
+void Controller::follow_test(protocol::Conditions found, const Settings& settings) {
+  constexpr protocol::Conditions ends = condition(Fault::over_speed) | condition(Fault::host_silent);
   if ((found & ends) != 0) {
     test_.end();
     drive_ = {};
@@ -332,7 +333,7 @@ void Controller::follow_test(protocol::Watches found, const Settings& settings) 
   // motor and encoder may still be wrong. Test pulses are used to determine these signs.
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
   test_.moved_J += std::fabs(back_emf_V * current_A_[test_.motor]) * protocol::servo_period_s;
-  if (test_.moved_J > settings.energy.reserve_J) test_.rest();
+  if (test_.moved_J > settings.energy.reserve_J) test_.end_pulse();
 }
 
 /// Compares the angle of this period's joint with the joint angle in the inkwell. If the arm is not referenced, the
@@ -369,7 +370,7 @@ void Controller::drive_pulses(const Settings& settings) {
   for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
     // The over-current bound exceeds the pulse current even if the motor limit is lower.
-    over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
+    over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::maximum_A), known_A(i));
   }
   over_current_for_A_ = {};                       // restarts follow_over_current()
   over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() subtracts this step in this period
@@ -386,13 +387,13 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   // Force and torques need no separate check, because the current references of all motors in use depend on them.
   const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
-  protocol::Watches found =
-      asked_.found | watch(Fault::bridge_fault, samples.bridge_fault) | watch(Fault::motor_hot, heat_.too_hot);
-  protocol::Events now = asked_.events;
+  protocol::Conditions found = pending_.found | condition(Fault::bridge_fault, samples.bridge_fault) |
+                               condition(Fault::motor_hot, heat_.too_hot);
+  protocol::Events now = pending_.events;
   // Branches are cheaper: an unconditional bit operation would double the cost of each check.
   const auto find = [&found](Fault fault, bool is_there) {
     if (is_there) [[unlikely]]
-      found |= watch(fault);
+      found |= condition(fault);
   };
   const auto note = [&now](Event event, bool is_so) {
     if (is_so) now |= events(event);
@@ -417,11 +418,11 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::held_back, limits_ != 0);
   // These faults void the reference even while another fault is active. Clearing the other fault does not restore the
   // reference.
-  if ((found & protocol::voiding_watches) != 0 && reference_.valid) [[unlikely]]
-    forget(reference_, (found & watch(Fault::inkwell_implausible)) != 0);
-  if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
+  if ((found & protocol::voiding_conditions) != 0 && reference_.valid) [[unlikely]]
+    forget(reference_, (found & condition(Fault::inkwell_implausible)) != 0);
+  if (!stays_unchanged(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
-  asked_ = {.events = lasting_events_};
+  pending_ = {.events = lasting_events_};
   if (test_.runs()) [[unlikely]]
     follow_test(found, settings);
   if (brake_.is_on()) [[unlikely]] {

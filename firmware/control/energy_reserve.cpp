@@ -4,10 +4,11 @@
 
 namespace inkwell::control {
 
-void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits) {
-  const float given_J = dot(felt_N, position_m - reserve.position_m);
+void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
+                   const EnergyLimits& limits) {
+  const float delivered_J = dot(felt_N, position_m - reserve.position_m);
   reserve.position_m = position_m;
-  reserve.left_J = clamp(reserve.left_J + limits.given_J_per_period - given_J, 0.0f, limits.reserve_J);
+  reserve.left_J = clamp(reserve.left_J + limits.refill_J_per_period - delivered_J, 0.0f, limits.reserve_J);
 }
 
 Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part) {

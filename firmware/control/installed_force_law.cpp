@@ -88,7 +88,7 @@ constexpr bool is_name(std::string_view name) {
 }
 
 template <class Rows, class Table>
-constexpr bool have_names_of_their_own(const Rows& rows, const Table& table) {
+constexpr bool have_unique_names(const Rows& rows, const Table& table) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!is_name(rows[i].name)) return false;
     for (const auto& row : table)
@@ -100,7 +100,7 @@ constexpr bool have_names_of_their_own(const Rows& rows, const Table& table) {
 }
 
 template <class Rows>
-constexpr bool have_sound_ranges(const Rows& rows) {
+constexpr bool have_valid_ranges(const Rows& rows) {
   for (const auto& row : rows)
     if (!(row.minimum <= row.default_value && row.default_value <= row.maximum)) return false;
   return true;
@@ -115,23 +115,24 @@ struct NoLaw {
   static Vector3 force_N(const Probe&, const Parameters&, State&, Signals&) { return {}; }
 };
 
-using Given = force_laws::INKWELL_FORCE_LAW;
+using ChosenLaw = force_laws::INKWELL_FORCE_LAW;
 
-static_assert(IsDefined<Given>,
+static_assert(IsDefined<ChosenLaw>,
               "the file of the force law must define a struct named like the file, in namespace inkwell::force_laws");
 static_assert(
-    !IsDefined<Given> || HasParts<Given>,
+    !IsDefined<ChosenLaw> || HasParts<ChosenLaw>,
     "the force law lacks one of its structs: Parameters, Signals, State; those it does not need may be empty");
-static_assert(!IsDefined<Given> || HasHelp<Given>,
+static_assert(!IsDefined<ChosenLaw> || HasHelp<ChosenLaw>,
               "the force law lacks a sentence on what it is: static constexpr std::string_view help");
 static_assert(
-    !HasParts<Given> || HasFunction<Given>,
+    !HasParts<ChosenLaw> || HasFunction<ChosenLaw>,
     "the force law lacks its function: static Vector3 force_N(const Probe&, const Parameters&, State&, Signals&)");
-static_assert(!HasParts<Given> || HasSmallState<Given>,
+static_assert(!HasParts<ChosenLaw> || HasSmallState<ChosenLaw>,
               "the State of the force law must be made of plain numbers with initial values, no larger than "
               "ForceLawMemory::state_bytes");
 
-using Law = std::conditional_t<HasFunction<Given> && HasSmallState<Given> && HasHelp<Given>, Given, NoLaw>;
+using Law =
+    std::conditional_t<HasFunction<ChosenLaw> && HasSmallState<ChosenLaw> && HasHelp<ChosenLaw>, ChosenLaw, NoLaw>;
 using Parameters = Law::Parameters;
 using State = Law::State;
 using Signals = Law::Signals;
@@ -147,11 +148,11 @@ static_assert(parameters.size() <= protocol::force_law_parameters_maximum,
               "the force law has more parameters than protocol::force_law_parameters_maximum");
 static_assert(signals.size() <= protocol::force_law_signals_maximum,
               "the force law has more signals than protocol::force_law_signals_maximum");
-static_assert(have_sound_ranges(parameters), "the default of a force law's parameter is outside of its range");
+static_assert(have_valid_ranges(parameters), "the default of a force law's parameter is outside of its range");
 static_assert(
-    have_names_of_their_own(parameters, protocol::parameter_table),
+    have_unique_names(parameters, protocol::parameter_table),
     "names of a force law's parameters are letters, digits and _, at most 40, and no other parameter has them");
-static_assert(have_names_of_their_own(signals, protocol::signal_table),
+static_assert(have_unique_names(signals, protocol::signal_table),
               "names of a force law's signals are letters, digits and _, at most 40, and no other signal has them");
 
 // ---- the report ---------------------------------------------------------------------------------------

@@ -67,7 +67,7 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N) {
   return {dot(jacobian.column[0], force_N), dot(jacobian.column[1], force_N), dot(jacobian.column[2], force_N)};
 }
 
-void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian) {
+void remove_idle_torque(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian) {
   constexpr float no_lever_m2_per_rad2 = 1e-12f;  // prevents a division by 0
   const std::size_t other = 3 - idle;
   const Vector3& lever = jacobian.column[idle];

@@ -16,12 +16,12 @@ void warm(MotorHeat& motors, std::size_t motor, const HeatScale& scale) {
 }
 
 void hold_back(MotorHeat& motors, std::size_t motor) {
-  const float beyond = motors.heat[motor] - protocol::motor_heat_holds_back_from;
+  const float beyond = motors.heat[motor] - protocol::motor_heat_limits_from;
   motors.beyond[motor] = beyond > 0.0f ? beyond : 0.0f;
 }
 
 void judge(MotorHeat& motors) {
-  const float bound = motors.too_hot ? protocol::motor_heat_holds_back_from : protocol::motor_heat_fault;
+  const float bound = motors.too_hot ? protocol::motor_heat_limits_from : protocol::motor_heat_fault;
   motors.too_hot = motors.heat[0] > bound || motors.heat[1] > bound || motors.heat[2] > bound;
 }
 

@@ -21,7 +21,7 @@ void fade(ProgramForce& program) {
 
 }  // namespace
 
-bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits) {
+bool set_target(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits) {
   const bool late = program.is_driven() && program.age_periods > program.interval_periods + millisecond_periods;
   program.age_periods = 0;
   program.interval_periods = target.interval_periods;

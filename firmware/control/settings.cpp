@@ -83,7 +83,7 @@ Motors motors(const ParameterSet& set) {
     motors.ampere_per_Nm[i] = 1.0f / joint[i];
     motors.ampere_per_N[i] = longer_link_m(set) * std::fabs(motors.ampere_per_Nm[i]);
     const float more_A = motors.current_limit_A[i] - continuous_A[i];
-    motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
+    motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_limits_from) : 0.0f;
   }
   const bool idle_2 = motors.current_limit_A[1] == 0.0f, idle_3 = motors.current_limit_A[2] == 0.0f;
   if (idle_2 != idle_3) motors.idle = idle_2 ? 1 : 2;
@@ -166,8 +166,8 @@ EnergyLimits energy(const ParameterSet& set) {
 }
 
 SpeedLimit speed(const ParameterSet& set) {
-  const float from_squared = squared(protocol::speed_holds_back_from * set[Parameter::speed_limit_m_per_s]);
-  const float whole_squared = squared(protocol::speed_drives_no_more_from * set[Parameter::speed_limit_m_per_s]);
+  const float from_squared = squared(protocol::speed_limits_from * set[Parameter::speed_limit_m_per_s]);
+  const float whole_squared = squared(protocol::speed_stops_driving_from * set[Parameter::speed_limit_m_per_s]);
   return {from_squared, 1.0f / (whole_squared - from_squared)};
 }
 

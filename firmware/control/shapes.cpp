@@ -79,19 +79,19 @@ Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_p
   const Vector3 probe_m = probe;  // local copy that stays in registers during stores
   // Most planes are not touched. The loop collects the signs without branches, and touched planes are processed
   // afterwards.
-  std::uint32_t behind = 0;
+  std::uint32_t planes_below = 0;
   for (std::size_t i = 0; i < planes_.size(); ++i)
-    behind |= std::bit_cast<std::uint32_t>(height_m(planes_[i], probe_m)) >> 31 << i;
+    planes_below |= std::bit_cast<std::uint32_t>(height_m(planes_[i], probe_m)) >> 31 << i;
   Vector3 force_N;
   std::uint32_t touched = 0;
-  const auto touch = [&](std::size_t number, const Vector3& normal, float depth_m) {
+  const auto add_contact = [&](std::size_t number, const Vector3& normal, float depth_m) {
     const bool is_new = (touched_ >> number & 1u) == 0;
     force_N = force_N + surface_force_N(shapes_->surfaces[number], normal, depth_m, probe_m, velocity_m_per_s,
                                         grips_[number], is_new);
     touched |= 1u << number;
   };
-  for (std::size_t i = 0; behind != 0 && i < planes_.size(); ++i)
-    if ((behind >> i & 1u) != 0) touch(1 + i, planes_[i].normal, -height_m(planes_[i], probe_m));
+  for (std::size_t i = 0; planes_below != 0 && i < planes_.size(); ++i)
+    if ((planes_below >> i & 1u) != 0) add_contact(1 + i, planes_[i].normal, -height_m(planes_[i], probe_m));
   if (sphere_lives_) {
     const Sphere& sphere = shapes_->sphere;
     const Vector3 out_m = probe_m - sphere.centre_m;
@@ -100,7 +100,7 @@ Vector3 TouchedShapes::force_N(const Vector3& probe, const Vector3& velocity_m_p
     constexpr float smallest_squared_m2 = 1e-14f;
     if (squared_m2 < sphere.radius_squared_m2 && squared_m2 > smallest_squared_m2) {
       const float per_distance = reciprocal_square_root(squared_m2);
-      touch(0, per_distance * out_m, sphere.radius_m - squared_m2 * per_distance);
+      add_contact(0, per_distance * out_m, sphere.radius_m - squared_m2 * per_distance);
     }
   }
   touched_ = touched;

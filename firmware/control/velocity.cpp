@@ -87,12 +87,12 @@ void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, 
     decay(estimate, period - estimate.head.period);
   } else {
     const std::int32_t direction = counts > before ? 1 : -1;
-    const bool starts_anew = estimate.remembered == 0 || direction != estimate.direction;
+    const bool restarts = estimate.remembered == 0 || direction != estimate.direction;
     estimate.counts = counts;
     estimate.direction = direction;
     estimate.head = {period, direction > 0 ? counts : counts + 1};
-    estimate.head_waits = !starts_anew;
-    if (starts_anew) {
+    estimate.head_waits = !restarts;
+    if (restarts) {
       estimate.remembered = 0;
       estimate.counts_per_period = 0.0f;
       remember(estimate, estimate.head);

@@ -182,9 +182,9 @@ bool Bridges::a_leg_is_high() const {
 INKWELL_INTERRUPT bool Bridges::begin_period() {
   clear_update();
   if (!enabled_) return false;
-  const bool were_let_go = !Hold::is_high();
+  const bool were_released = !Hold::is_high();
   Heartbeat::set_high();
-  return were_let_go;
+  return were_released;
 }
 
 INKWELL_INTERRUPT void Bridges::end_period() { Heartbeat::set_low(); }

@@ -72,6 +72,6 @@ bool start_clocks() {
   return true;
 }
 
-bool crystal_swings() { return RCC::CR::HSERDY::is_set(); }
+bool crystal_oscillates() { return RCC::CR::HSERDY::is_set(); }
 
 }  // namespace inkwell::drivers

@@ -35,7 +35,7 @@ std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
   return hash_words(hash_basis ^ number, &row, sizeof row);
 }
 
-bool is_sound(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
+bool is_intact(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
 
 /// Number of the first row from the fault on. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
@@ -74,15 +74,15 @@ std::uint32_t hash_of_tables(std::size_t before, std::size_t from_fault) {
 
 void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
   tables_hash_ = hash_of_tables(ring_.size(), line_.size());
-  if (notes_.tables_hash != tables_hash_) return begin_anew();
+  if (notes_.tables_hash != tables_hash_) return restart_recording();
   const bool is_kept = notes_.cause.check == check_of(notes_.cause);
-  if (!is_kept && raised == Fault::none) return begin_anew();
+  if (!is_kept && raised == Fault::none) return restart_recording();
 
   // A reset may have interrupted any write. Only consecutive valid rows count: the newest rows before the fault, and
   // the first rows from the fault on.
   while (rows_before_ < std::min<std::size_t>(ring_.size(), notes_.rows_written)) {
     const std::uint32_t number = notes_.rows_written - 1 - rows_before_;
-    if (!is_sound(before(number), number)) break;
+    if (!is_intact(before(number), number)) break;
     ++rows_before_;
   }
   // The signals of the first fault are retained, together with the newest crash record.
@@ -93,10 +93,10 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
   }
   if (!is_kept) {
     notes_.rows_added = 0;
-    keep(raised, rows_before_ != 0 ? before(notes_.rows_written - 1).row.time_periods : 0, true, crash);
+    start_fault_record(raised, rows_before_ != 0 ? before(notes_.rows_written - 1).row.time_periods : 0, true, crash);
   }
   while (rows_from_fault_ < std::min<std::size_t>(line_.size(), notes_.rows_added) &&
-         is_sound(line_[rows_from_fault_], first_number_from_fault + rows_from_fault_))
+         is_intact(line_[rows_from_fault_], first_number_from_fault + rows_from_fault_))
     ++rows_from_fault_;
   phase_ = Phase::complete;
 }
@@ -104,17 +104,17 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
 void BlackBox::follow() {
   const std::uint32_t recorded = samples_.recorded();
   if (recorded - followed_ > SampleRing::readable) followed_ = recorded - SampleRing::readable;
-  for (; followed_ != recorded; ++followed_) take(samples_[followed_]);
+  for (; followed_ != recorded; ++followed_) record_sample(samples_[followed_]);
 }
 
-void BlackBox::take(const Sample& sample) {
+void BlackBox::record_sample(const Sample& sample) {
   const std::uint32_t period = sample.summary.periods;
-  if (phase_ != Phase::recording && protocol::force_is_on(sample.summary.state)) begin_anew();
+  if (phase_ != Phase::recording && protocol::force_is_on(sample.summary.state)) restart_recording();
   switch (phase_) {
     case Phase::recording:
       if (sample.summary.state == State::fault) {
         rows_before_ = std::min(notes_.rows_written, static_cast<std::uint32_t>(ring_.size()));
-        keep(sample.summary.fault, period, false, {});
+        start_fault_record(sample.summary.fault, period, false, {});
         add_after_fault(sample);
       } else if (period % protocol::black_box_step_periods == 0) {
         write(before(notes_.rows_written), notes_.rows_written, sample);
@@ -126,7 +126,7 @@ void BlackBox::take(const Sample& sample) {
   }
 }
 
-void BlackBox::begin_anew() {
+void BlackBox::restart_recording() {
   phase_ = Phase::recording;
   rows_before_ = rows_from_fault_ = 0;
   notes_.tables_hash = ~tables_hash_;
@@ -137,7 +137,8 @@ void BlackBox::begin_anew() {
   notes_.tables_hash = tables_hash_;
 }
 
-void BlackBox::keep(Fault fault, std::uint32_t period, bool is_restart, const protocol::CrashFacts& crash) {
+void BlackBox::start_fault_record(Fault fault, std::uint32_t period, bool is_restart,
+                                  const protocol::CrashFacts& crash) {
   phase_ = Phase::fault_seen;
   notes_.cause = {.fault = static_cast<std::uint32_t>(fault),
                   .period = period,

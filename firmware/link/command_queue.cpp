@@ -12,7 +12,7 @@ namespace {
 
 using protocol::Command;
 
-bool sound(const protocol::SignalSelection& selection) {
+bool is_valid(const protocol::SignalSelection& selection) {
   if (selection.count > protocol::scope_signals_maximum) return false;
   const std::size_t signals = protocol::signal_count + control::installed_force_law.signal_count;
   for (std::size_t i = 0; i < selection.count; ++i)
@@ -20,7 +20,7 @@ bool sound(const protocol::SignalSelection& selection) {
   return true;
 }
 
-bool sound(const protocol::TestPulse& test) {
+bool is_valid(const protocol::TestPulse& test) {
   const float amplitude = test.amplitude;
   const float duration_s = test.duration_s;
   return test.motor >= 1 && test.motor <= 3 && std::isfinite(amplitude) && duration_s >= 0.0f &&
@@ -48,9 +48,9 @@ bool is_valid(const protocol::CommandReport& command) {
     case Command::self_test:
     case Command::store_parameters:
     case Command::factory_reset: return true;
-    case Command::select_signals: return sound(command.selection);
+    case Command::select_signals: return is_valid(command.selection);
     case Command::test_current:
-    case Command::test_voltage: return sound(command.test);
+    case Command::test_voltage: return is_valid(command.test);
   }
   return false;
 }
@@ -83,7 +83,7 @@ void CommandQueue::host_gone() {
   host_gone_.store(true);
 }
 
-INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::take() {
+INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::pop() {
   const std::uint32_t taken = taken_.load();
   if (host_gone_.load()) {
     host_gone_.store(false);

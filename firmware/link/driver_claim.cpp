@@ -19,10 +19,10 @@ bool DriverClaim::accept(std::span<const std::byte> report, std::uint32_t now_pe
   std::memcpy(&request, report.data(), sizeof request);
   if (request.version != protocol::protocol_version || request.claim == 0) return false;
   const bool is_held = claim_ != 0;
-  const bool is_own = request.claim == claim_;
+  const bool is_same = request.claim == claim_;
   switch (request.operation) {
     case ClaimOperation::claim:
-      if (is_own) {
+      if (is_same) {
         renew(now_periods);
       } else if (is_held) {
         ++refused_;
@@ -31,14 +31,14 @@ bool DriverClaim::accept(std::span<const std::byte> report, std::uint32_t now_pe
       }
       return false;
     case ClaimOperation::take_over:
-      if (is_own)
+      if (is_same)
         renew(now_periods);
       else
         begin(request, now_periods);
-      return is_held && !is_own;
+      return is_held && !is_same;
     case ClaimOperation::release:
-      if (is_own) end();
-      return is_own;
+      if (is_same) end();
+      return is_same;
   }
   return false;
 }

@@ -20,26 +20,26 @@ control::Triple within_range(control::Triple heat) {
 
 }  // namespace
 
-bool MotorHeatKeeper::is_sound(const Place& place) {
-  return place.check == ~sum_of(place.left) && is_plausible(place.left.warmth.heat) &&
-         is_plausible(place.left.warmth.housing);
+bool MotorHeatKeeper::is_valid(const Slot& slot) {
+  return slot.check == ~sum_of(slot.record) && is_plausible(slot.record.warmth.heat) &&
+         is_plausible(slot.record.warmth.housing);
 }
 
-std::optional<control::Warmth> MotorHeatKeeper::start(bool power_has_come) {
-  const Place* newest = nullptr;
-  for (Place& place : places_) {
-    if (power_has_come) place.check = sum_of(place.left);  // invalidates the slot for later starts
-    if (is_sound(place) && (newest == nullptr || place.left.number - newest->left.number < 0x8000'0000))
-      newest = &place;
+std::optional<control::Warmth> MotorHeatKeeper::start(bool after_power_on) {
+  const Slot* newest = nullptr;
+  for (Slot& slot : slots_) {
+    if (after_power_on) slot.check = sum_of(slot.record);  // invalidates the slot for later starts
+    if (is_valid(slot) && (newest == nullptr || slot.record.number - newest->record.number < 0x8000'0000))
+      newest = &slot;
   }
-  next_number_ = newest != nullptr ? newest->left.number + 1 : 0;
-  return newest != nullptr ? std::optional(newest->left.warmth) : std::nullopt;
+  next_number_ = newest != nullptr ? newest->record.number + 1 : 0;
+  return newest != nullptr ? std::optional(newest->record.warmth) : std::nullopt;
 }
 
-void MotorHeatKeeper::leave(const control::Warmth& warmth) {
-  Place& place = places_[next_number_ % 2];
-  place.left = {{within_range(warmth.heat), within_range(warmth.housing), warmth.too_hot}, next_number_++};
-  place.check = ~sum_of(place.left);
+void MotorHeatKeeper::store(const control::Warmth& warmth) {
+  Slot& slot = slots_[next_number_ % 2];
+  slot.record = {{within_range(warmth.heat), within_range(warmth.housing), warmth.too_hot}, next_number_++};
+  slot.check = ~sum_of(slot.record);
 }
 
 }  // namespace inkwell::link

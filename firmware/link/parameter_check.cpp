@@ -90,18 +90,18 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
   return Refusal::accepted;
 }
 
-using Given = std::array<bool, parameter_count + protocol::force_law_parameters_maximum>;
+using Written = std::array<bool, parameter_count + protocol::force_law_parameters_maximum>;
 
 /// Returns the parameter of the transaction that caused the contradiction.
-Parameter blamed(const Bounds& pair, const Given& given) {
-  if (given[static_cast<std::size_t>(pair.lower)]) return pair.lower;
-  if (given[static_cast<std::size_t>(pair.upper)]) return pair.upper;
+Parameter find_cause(const Bounds& pair, const Written& written) {
+  if (written[static_cast<std::size_t>(pair.lower)]) return pair.lower;
+  if (written[static_cast<std::size_t>(pair.upper)]) return pair.upper;
   return Parameter::sphere_radius_m;  // the previous set had no contradiction
 }
 
-ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
+ParameterCheck check_whole(const ParameterSet& set, const Written& written) {
   if (const Bounds* pair = find_contradiction(set)) {
-    const Parameter parameter = blamed(*pair, given);
+    const Parameter parameter = find_cause(*pair, written);
     return refuse(Refusal::inconsistent, id_of(static_cast<std::size_t>(parameter)), set[parameter]);
   }
   return {Refusal::accepted, 0, 0.0f, set};
@@ -184,18 +184,18 @@ ParameterCheck check_transaction(std::span<const std::byte> report, const Parame
   if (header.operation != protocol::ParameterOperation::set) return refuse(Refusal::unknown_operation);
 
   ParameterSet set = current;
-  Given given{};
+  Written written{};
   for (std::size_t i = 0; i < header.count; ++i) {
     const protocol::ParameterEntry entry = entry_at(report, i);
     const std::optional<std::size_t> index = find(entry.id);
     if (!index) return refuse(Refusal::unknown_parameter, entry.id, entry.value);
-    if (given[*index]) return refuse(Refusal::given_twice, entry.id, entry.value);
+    if (written[*index]) return refuse(Refusal::given_twice, entry.id, entry.value);
     const Refusal refusal = check_value(*index, entry.value, current.values[*index], force_is_on);
     if (refusal != Refusal::accepted) return refuse(refusal, entry.id, entry.value);
-    given[*index] = true;
+    written[*index] = true;
     set.values[*index] = entry.value;
   }
-  return check_whole(set, given);
+  return check_whole(set, written);
 }
 
 }  // namespace inkwell::link

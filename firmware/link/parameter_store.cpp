@@ -23,7 +23,7 @@ void ParameterStore::offer(control::Settings& place, const protocol::ParameterSe
 
 void ParameterStore::start_with(const protocol::ParameterSet& set) {
   offer(*settings_.next(), set);
-  settings_.take();
+  settings_.swap_if_offered();
 }
 
 bool ParameterStore::restore_defaults() {

@@ -48,9 +48,9 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   return true;
 }
 
-bool PoseRecorder::take(protocol::PoseReport& report) {
+bool PoseRecorder::read_for_report(protocol::PoseReport& report) {
   if (!read(report)) return false;
-  note_taken();
+  note_sent();
   return true;
 }
 

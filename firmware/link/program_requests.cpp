@@ -17,7 +17,7 @@ using protocol::Parameter;
 /// False for NaN.
 bool within(float value, float low, float high) { return value >= low && value <= high; }
 
-bool sound(const float (&coordinates)[3], float limit) {
+bool is_valid(const float (&coordinates)[3], float limit) {
   return within(coordinates[0], -limit, limit) && within(coordinates[1], -limit, limit) &&
          within(coordinates[2], -limit, limit);
 }
@@ -40,13 +40,13 @@ bool decode_surface(const protocol::SurfaceEntry& entry, control::Surface& surfa
   life_periods = 0;
   if (entry.life_s == 0.0f) return true;  // no shape; other members are ignored
   const bool lasts = std::isinf(entry.life_s) && entry.life_s > 0.0f;
-  const bool is_sound = entry.stiffness_N_per_m > 0.0f &&
+  const bool is_valid = entry.stiffness_N_per_m > 0.0f &&
                         entry.stiffness_N_per_m <= info(Parameter::wall_stiffness_N_per_m).maximum &&
                         within(entry.damping_Ns_per_m, 0.0f, info(Parameter::wall_damping_Ns_per_m).maximum) &&
                         within(entry.static_friction, 0.0f, protocol::friction_maximum) &&
                         within(entry.dynamic_friction, 0.0f, entry.static_friction) &&
                         (within(entry.life_s, 0.0f, protocol::shape_life_maximum_s) || lasts);
-  if (!is_sound) return false;
+  if (!is_valid) return false;
   surface = {entry.stiffness_N_per_m, 1.0f / entry.stiffness_N_per_m, entry.damping_Ns_per_m, entry.static_friction,
              entry.dynamic_friction};
   life_periods = lasts ? control::Shapes::lasting
@@ -56,7 +56,7 @@ bool decode_surface(const protocol::SurfaceEntry& entry, control::Surface& surfa
 
 bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
   const float limit = protocol::shape_distance_maximum_m;
-  if (!sound(entry.point_m, limit) || !sound(entry.normal, limit)) return false;
+  if (!is_valid(entry.point_m, limit) || !is_valid(entry.normal, limit)) return false;
   const Vector3 direction = vector_of(entry.normal);
   const float squared = control::dot(direction, direction);
   constexpr float shortest_squared = 1e-12f;
@@ -68,7 +68,7 @@ bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
 
 bool decode_sphere(const protocol::SphereEntry& entry, control::Sphere& sphere) {
   const float limit = protocol::shape_distance_maximum_m;
-  if (!sound(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
+  if (!is_valid(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
   sphere = {vector_of(entry.centre_m), entry.radius_m, entry.radius_m * entry.radius_m};
   return true;
 }
@@ -85,11 +85,11 @@ std::optional<control::ForceTarget> decode_force(std::span<const std::byte> repo
   protocol::ForceReport force;
   if (report.size() < sizeof force || report.size() > longest_output_report) return std::nullopt;
   std::memcpy(&force, report.data(), sizeof force);
-  const bool is_sound = force.version == protocol::protocol_version && force.mode <= ForceMode::instead_of_walls &&
+  const bool is_valid = force.version == protocol::protocol_version && force.mode <= ForceMode::instead_of_walls &&
                         force.interval_ms >= 1 && force.interval_ms <= protocol::force_interval_maximum_ms &&
                         std::isfinite(force.force_N[0]) && std::isfinite(force.force_N[1]) &&
                         std::isfinite(force.force_N[2]);
-  if (!is_sound) return std::nullopt;
+  if (!is_valid) return std::nullopt;
   const std::uint32_t interval_periods = force.interval_ms * (protocol::servo_rate_Hz / 1000);
   return control::ForceTarget{shortened(vector_of(force.force_N)), force.mode, interval_periods,
                               1.0f / static_cast<float>(interval_periods)};

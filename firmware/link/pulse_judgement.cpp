@@ -72,8 +72,8 @@ Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expecte
   for (std::size_t i = 0; i < 3; ++i)
     if (i != own) foreign_A = std::max(foreign_A, 0.5f * std::fabs(motor.current_A[1][i] - motor.current_A[2][i]));
   const float own_A = (motor.high_V - expected.dead_V) / expected.resistance_ohm;
-  const bool is_sound = foreign_A < PulseJudgement::foreign_part * own_A;
-  return {is_sound ? Result::passed : failed_or_moved(motor, expected), foreign_A};
+  const bool is_insulated = foreign_A < PulseJudgement::foreign_part * own_A;
+  return {is_insulated ? Result::passed : failed_or_moved(motor, expected), foreign_A};
 }
 
 /// Combines two results of one item. A failure has precedence, then `moved`, then the larger figure.

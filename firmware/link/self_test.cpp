@@ -9,9 +9,9 @@ using Item = protocol::SelfTestItem;
 using Result = protocol::SelfTestResult;
 
 /// Wires in test order.
-constexpr Item looked_at_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,      Item::encoder_2_a,
-                                    Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
-                                    Item::bridge_fault_tim1, Item::bridge_fault_tim8};
+constexpr Item tested_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,      Item::encoder_2_a,
+                                 Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
+                                 Item::bridge_fault_tim1, Item::bridge_fault_tim8};
 
 /// First item that every self-test repeats. Earlier items are tested only at start-up.
 constexpr Item first_of_each_test = Item::current_offsets;
@@ -27,14 +27,14 @@ void SelfTest::note(Item item, Result result, float figure) {
 
 std::optional<Item> SelfTest::wanted_wire() const {
   if (phase_ != Phase::wires) return std::nullopt;
-  return looked_at_wires[wire_];
+  return tested_wires[wire_];
 }
 
 void SelfTest::note_wire(bool follows) {
-  if (follows && ++looks_ < wire_looks) return;
-  note(looked_at_wires[wire_], !follows);
-  looks_ = 0;
-  if (++wire_ < std::size(looked_at_wires)) return;
+  if (follows && ++following_readings_ < wire_readings) return;
+  note(tested_wires[wire_], !follows);
+  following_readings_ = 0;
+  if (++wire_ < std::size(tested_wires)) return;
   begin_round();
 }
 
@@ -63,7 +63,7 @@ void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) 
     note(of_axis(Item::gimbal_1, i), ratio > gimbal_rail_part && ratio < 1.0f - gimbal_rail_part, ratio);
   }
   wire_ = 0;
-  looks_ = rounds_ = failures_ = 0;
+  following_readings_ = rounds_ = failures_ = 0;
   phase_ = Phase::wires;
 }
 
@@ -105,7 +105,7 @@ void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const contro
   }
   if (rests) {
     phase_ = Phase::pulses;
-    give(Order::pulses);
+    send_order(Order::pulses);
   } else if (samples_.recorded() - waits_since_ > rest_patience_periods) {
     end_round(PulseJudgement::moved(), signals);
   }
@@ -113,11 +113,11 @@ void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const contro
 
 void SelfTest::end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
   note_pulses(judgement);
-  keep(judgement, signals);
+  store_measurements(judgement, signals);
   if (judgement.any(Result::failed)) ++failures_;
-  const bool is_told = !judgement.any(Result::failed) && !judgement.any(Result::moved);
-  if (is_told || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
-    give_verdict();
+  const bool is_conclusive = !judgement.any(Result::failed) && !judgement.any(Result::moved);
+  if (is_conclusive || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
+    finish_test();
   else
     begin_round();
 }
@@ -131,7 +131,7 @@ void SelfTest::note_pulses(const PulseJudgement& judgement) {
 }
 
 /// Stores the new measurements. Values without a new measurement do not change.
-void SelfTest::keep(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
+void SelfTest::store_measurements(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (judgement.bridges[i].result == Result::passed) measured_.bridge_loss_part[i] = judgement.bridge_loss_part[i];
     if (judgement.resistance_ohm[i] == 0.0f) continue;
@@ -140,13 +140,13 @@ void SelfTest::keep(const PulseJudgement& judgement, const protocol::SignalValue
   }
 }
 
-void SelfTest::give_verdict() {
+void SelfTest::finish_test() {
   ++tests_ended_;
   phase_ = Phase::verdict;
-  give(protocol::takes_force(report()) ? Order::fail : Order::pass);
+  send_order(protocol::takes_force(report()) ? Order::fail : Order::pass);
 }
 
-void SelfTest::give(Order order) {
+void SelfTest::send_order(Order order) {
   round_is_over_.store(false);
   order_.store(test_ * orders + static_cast<std::uint32_t>(order));
 }
@@ -161,10 +161,10 @@ protocol::SelfTestReport SelfTest::report() const {
   const Sample* const newest = samples_.newest();
   if (newest == nullptr) return report;
   // A fault from continuous monitoring has precedence over the result of a single test.
-  const protocol::Fault told = newest->summary.fault;
+  const protocol::Fault reported = newest->summary.fault;
   const auto fail = [&report](Item item) { report.entries[static_cast<std::size_t>(item)].result = Result::failed; };
-  if (told == protocol::Fault::current_sensor) fail(Item::current_offsets);
-  if (told == protocol::Fault::memory_damaged) fail(Item::flash);
+  if (reported == protocol::Fault::current_sensor) fail(Item::current_offsets);
+  if (reported == protocol::Fault::memory_damaged) fail(Item::flash);
   return report;
 }
 

@@ -17,7 +17,7 @@ using protocol::StoreResult;
 namespace {
 
 /// In the force law report, the name of the force law follows the header.
-std::uint32_t own_force_law_hash() {
+std::uint32_t installed_force_law_hash() {
   const auto* name =
       reinterpret_cast<const char*>(control::installed_force_law.report) + sizeof(protocol::ForceLawReport);
   return protocol::force_law_name_hash(name);
@@ -68,7 +68,7 @@ void StoredParameters::load(ParameterStore& parameters) {
   at_start_.contents_at_start = contents_;
   if (!has_parameters()) return;
 
-  const bool same_law = head.force_law_hash == own_force_law_hash();
+  const bool same_law = head.force_law_hash == installed_force_law_hash();
   at_start_.entries = static_cast<std::uint16_t>(record->payload.size() / 2);
   StoredSet stored;
   for (std::size_t i = 0; i < at_start_.entries; ++i) {
@@ -150,7 +150,7 @@ RecordHead StoredParameters::head(RecordKind kind) const {
           .kind = static_cast<std::uint16_t>(kind),
           .firmware_version = firmware_version_,
           .parameter_table_hash = protocol::parameter_table_hash,
-          .force_law_hash = own_force_law_hash()};
+          .force_law_hash = installed_force_law_hash()};
 }
 
 /// Writes the parameters of this image, followed by the unknown entries of the newest record. Entries of another force

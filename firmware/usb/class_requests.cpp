@@ -172,12 +172,12 @@ bool Device::may_store() const {
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
   constexpr std::byte no_error{0}, vendor_error{0x0B};
-  const std::byte state = detach_asked_ ? application_detach : application_idle;
+  const std::byte state = detach_requested_ ? application_detach : application_idle;
   if (setup.request_type == class_interface_out && setup.request == detach_request && setup.length == 0) {
-    detach_was_refused_ = !detach_asked_ && force_is_on();
+    detach_was_refused_ = !detach_requested_ && force_is_on();
     if (!detach_was_refused_) {
-      detach_asked_ = true;
-      link_.update_asked.store(true);
+      detach_requested_ = true;
+      link_.update_requested.store(true);
     }
     return Answer::done();
   }

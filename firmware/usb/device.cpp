@@ -94,10 +94,10 @@ void Device::handle(const Event& event) {
     case Event::Kind::sent:
       if (event.endpoint == 0) {
         control_.sent();
-        leaves_for_update_ = detach_asked_;
+        leaves_for_update_ = detach_requested_;
       } else if (Endpoint* endpoint = find_endpoint(0x80u | event.endpoint)) {
         endpoint->busy = false;
-        if (endpoint == &endpoints_[hid_in]) note_pose_taken();
+        if (endpoint == &endpoints_[hid_in]) note_pose_sent();
         if (endpoint == &endpoints_[controller_in]) controller_taken_at_ = pose_sequence_;
       }
       break;
@@ -109,8 +109,8 @@ void Device::bus_reset() {
   scope_frame_open_ = scope_wants_end_ = false;
   configuration_ = 0;  // set before host_gone(), because only endpoint 0 is open
   idle_rates_ = {};
-  detach_asked_ = detach_was_refused_ = false;
-  link_.update_asked.store(false);
+  detach_requested_ = detach_was_refused_ = false;
+  link_.update_requested.store(false);
   suspended_ = false;
   control_.reset();
   host_gone();
@@ -216,12 +216,12 @@ void Device::send_pose() {
   if (endpoint.busy) {
     endpoint.busy = false;
     if (!port_.cancel(endpoint.address))
-      note_pose_taken();
+      note_pose_sent();
     else if (!replaces_spare)
       ++poses_replaced_;
     if (replaces_spare && !spare_waits_) return;
   }
-  if (!(is_spare ? link_.poses.read(pose_) : link_.poses.take(pose_))) return;
+  if (!(is_spare ? link_.poses.read(pose_) : link_.poses.read_for_report(pose_))) return;
   pose_.sequence = pose_sequence_ = sequence;
   pose_.driver_parity = driver_parity();
   spare_waits_ = is_spare;
@@ -240,11 +240,11 @@ void Device::offer_controller_report() {
   send(endpoint, controller_);
 }
 
-void Device::note_pose_taken() {
+void Device::note_pose_sent() {
   if (poses_replaced_ < replaced_unheard) poses_dropped_ += poses_replaced_;
   poses_replaced_ = 0;
   if (!std::exchange(spare_waits_, false)) return;
-  link_.poses.note_taken();
+  link_.poses.note_sent();
   offer_controller_report();
 }
 

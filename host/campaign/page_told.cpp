@@ -98,7 +98,7 @@ std::string told_by_none(std::span<const Result> results) {
                                       &result.told_once_cleared, &result.noticed_in_use_as})
         told.insert(*name);
   std::string rows;
-  for (const protocol::Watch& row : protocol::watch_table)
+  for (const protocol::Condition& row : protocol::condition_table)
     if (const std::string_view name = protocol::info(row.fault).name; !told.contains(name))
       rows += fmt::format("| `{}` | {} |\n", name, reason_untold(row.fault));
   const std::string_view heading =

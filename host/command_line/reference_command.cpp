@@ -104,9 +104,9 @@ void print_supervision() {
       "In every control period the supervisor follows the first open transition. A detected fault has precedence.\n\n"
       "| from | to | needs | unless |\n"
       "| --- | --- | --- | --- |\n");
-  for (const auto& way : protocol::way_table)
-    fmt::print("| {} | {} | {} | {} |\n", info(way.from).name, info(way.to).name, names_of(way.needs),
-               names_of(way.unless));
+  for (const auto& transition : protocol::transition_table)
+    fmt::print("| {} | {} | {} | {} |\n", info(transition.from).name, info(transition.to).name,
+               names_of(transition.needs), names_of(transition.unless));
   fmt::print("\n| event | meaning |\n| --- | --- |\n");
   for (const auto& row : protocol::event_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
   fmt::print(
@@ -119,8 +119,8 @@ void print_supervision() {
       "\n"
       "| fault | monitored in | can be cleared | moving arm |\n"
       "| --- | --- | --- | --- |\n");
-  for (const auto& row : protocol::watch_table)
-    fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
+  for (const auto& row : protocol::condition_table)
+    fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.monitored_in), text(row.clearing),
                row.voids_reference ? ", and the arm must be referenced again" : "", text(row.off));
 }
 

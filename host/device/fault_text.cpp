@@ -25,9 +25,9 @@ std::string with_figures(std::string_view text) {
                      fmt::arg("samples_stale_ms", 1e3f * protocol::samples_stale_s),
                      fmt::arg("main_loop_stalled_ms", 1e3f * protocol::main_loop_stalled_s),
                      fmt::arg("supply_ripple_V", protocol::supply_ripple_V),
-                     fmt::arg("analog_supply_percent", percent(protocol::analog_supply_bearable)),
+                     fmt::arg("analog_supply_percent", percent(protocol::analog_supply_tolerance)),
                      fmt::arg("motor_heat_beyond_percent", percent(protocol::motor_heat_fault - 1.0f)),
-                     fmt::arg("motor_heat_holds_back_percent", percent(protocol::motor_heat_holds_back_from)));
+                     fmt::arg("motor_heat_holds_back_percent", percent(protocol::motor_heat_limits_from)));
 }
 
 }  // namespace

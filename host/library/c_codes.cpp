@@ -88,7 +88,7 @@ static_assert(std::ranges::equal(tests, protocol::self_test_result_table, [](con
   return &row - protocol::self_test_result_table.data() == c.value && is_capital_of(c.name, "TEST_", row.name);
 }));
 
-static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_from);
+static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_limits_from);
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
 static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
 

@@ -74,7 +74,8 @@ bool regains(Bench& bench) {
 bool reset_is_the_way(Bench& bench) {
   if (bench.board.is_locked_up()) return true;
   return bench.board.is(State::fault) &&
-         protocol::watch_table[protocol::place_of(bench.board.pose()->fault)].clearing == protocol::Clearing::by_reset;
+         protocol::condition_table[protocol::place_of(bench.board.pose()->fault)].clearing ==
+             protocol::Clearing::by_reset;
 }
 
 /// Returns the action that restored the force.
@@ -113,7 +114,7 @@ std::string pull_cable(Bench& bench) {
   bench.connect();
   bench.device_may_go = false;
   if (with_force)
-    bench.oracle.must_have_told(protocol::watch(Fault::usb_gone));
+    bench.oracle.must_have_told(protocol::condition(Fault::usb_gone));
   else if (bench.oracle.has_told())
     bench.oracle.complain(Complaint::false_trip, "the force was already off");
   bench.go_on();
@@ -130,7 +131,7 @@ std::string be_silent(Bench& bench) {
     bench.oracle.complain(Complaint::false_trip, fmt::format("after {:.0f} ms of silence", 1e3 * short_s));
   const double long_s = host_timeout_s(bench) + bench.random.from(0.02, 0.4);
   bench.pass(long_s, false);
-  bench.oracle.must_have_told(protocol::watch(Fault::host_silent));
+  bench.oracle.must_have_told(protocol::condition(Fault::host_silent));
   bench.go_on();
   return fmt::format("for {:.0f} and {:.0f} ms", 1e3 * short_s, 1e3 * long_s);
 }
@@ -174,7 +175,7 @@ std::string be_too_fast(Bench& bench) {
   // 0.1 m in 0.1 s: at most 1.9 m/s.
   bench.board.control().hand_path({{0.3, there_m}, {0.4, back_m}, {0.5, there_m}});
   bench.pass(0.6);
-  bench.oracle.must_have_told(protocol::watch(Fault::over_speed));
+  bench.oracle.must_have_told(protocol::condition(Fault::over_speed));
   bench.set({Parameter::speed_limit_m_per_s, bench.defaults[Parameter::speed_limit_m_per_s]});
   bench.pass(0.2);
   bench.go_on();

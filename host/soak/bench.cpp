@@ -223,7 +223,7 @@ void Bench::dock() {
     if (board.is(State::fault)) {
       rested_s = 0;
       const protocol::Fault told = board.pose()->fault;
-      if ((lost_counts & protocol::watch(told)) == 0) continue;
+      if ((lost_counts & protocol::condition(told)) == 0) continue;
       board.command(Command::clear_fault);
       // To clear this fault, the inkwell switch must also be open once.
       if (told == protocol::Fault::inkwell_implausible) {

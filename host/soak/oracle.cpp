@@ -137,18 +137,18 @@ bool Oracle::see_counts(unsigned restarts, unsigned long broken_rules, const std
   return restarted;
 }
 
-void Oracle::must_have_told(protocol::Watches faults) {
-  if (std::ranges::any_of(told_, [&](Fault fault) { return (faults & protocol::watch(fault)) != 0; })) return;
+void Oracle::must_have_told(protocol::Conditions faults) {
+  if (std::ranges::any_of(told_, [&](Fault fault) { return (faults & protocol::condition(fault)) != 0; })) return;
   std::vector<std::string_view> names;
-  for (const protocol::Watch& row : protocol::watch_table)
-    if ((faults & protocol::watch(row.fault)) != 0) names.push_back(protocol::info(row.fault).name);
+  for (const protocol::Condition& row : protocol::condition_table)
+    if ((faults & protocol::condition(row.fault)) != 0) names.push_back(protocol::info(row.fault).name);
   complain(Complaint::missed_fault, fmt::format("{} was not reported", fmt::join(names, " or ")));
 }
 
 void Oracle::tell(Fault fault) {
   told_.push_back(fault);
   ++faults_told_[std::string(protocol::info(fault).name)];
-  if ((may_tell_ & protocol::watch(fault)) == 0)
+  if ((may_tell_ & protocol::condition(fault)) == 0)
     complain(Complaint::false_trip, fmt::format("{}", protocol::info(fault).name));
 }
 

@@ -224,7 +224,9 @@ TEST_CASE("a parameter table with a default out of range, ids that do not rise o
   CHECK(id_rises([](auto& rows) { rows[0].id = 0; }, 0));
   CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[6].id; }, 7));
   CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[8].id; }, 8));
-  const auto stands = [&](auto change, std::size_t row) { return detail::stands_with_its_group(changed(change), row); };
+  const auto stands = [&](auto change, std::size_t row) {
+    return detail::is_contiguous_with_its_group(changed(change), row);
+  };
   REQUIRE(parameter_table[0].group != parameter_table[7].group);
   CHECK(stands([](auto&) {}, 0));
   CHECK(stands([](auto& rows) { rows[7].group = "of its own"; }, 7));

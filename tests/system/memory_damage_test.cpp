@@ -60,7 +60,7 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
   // Locations that are neither read nor executed in this state, so that each error is detected before it has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
-                                  firmware_symbol("leave_out"), firmware_symbol("nowhere")};
+                                  firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};
   for (const std::uint32_t address : places) {
     CAPTURE(address);
     check_found_and_written_anew({address}, 7);

@@ -39,9 +39,9 @@ class WatchedRig : public BoardRig {
     const protocol::SelfTestReport test = device->self_test();
     for (std::size_t i = 0; i < 3; ++i) {
       const auto entry = [&test, i](protocol::SelfTestItem first) {
-        const auto& told = test.entries[static_cast<std::size_t>(of_axis(first, i))];
-        REQUIRE(told.result == protocol::SelfTestResult::passed);
-        return told.figure;
+        const auto& result = test.entries[static_cast<std::size_t>(of_axis(first, i))];
+        REQUIRE(result.result == protocol::SelfTestResult::passed);
+        return result.figure;
       };
       measured_.bridge_loss_part[i] = entry(protocol::SelfTestItem::bridge_1) / board::supply_nominal_V;
       measured_.resistance_ohm[i] = entry(protocol::SelfTestItem::motor_1);
@@ -64,7 +64,7 @@ class WatchedRig : public BoardRig {
 
   void start_anew() {
     watch_ = {};
-    told_V_.clear();
+    previous_V_.clear();
     nearest_V = largest_left_V = largest_beyond_V = fastest_rad_per_s = strongest_N = 0.0f;
     before_.clear();
     largest_change_A = largest_sudden_A = 0.0f;
@@ -91,7 +91,7 @@ class WatchedRig : public BoardRig {
     }
   }
 
-  /// Largest sum, relative to the fault threshold MotorWatch::bearable_sum_V.
+  /// Largest sum, relative to the fault threshold MotorWatch::tolerance_sum_V.
   float nearest_V = 0.0f;
   /// Single check: the voltage that resistance and speed do not explain, and the excess of this voltage over the
   /// tolerance.
@@ -99,7 +99,7 @@ class WatchedRig : public BoardRig {
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
   /// Largest current change per control period, and the share that current loop and speed do not explain. The fault
-  /// threshold is CurrentJump::bearable_A.
+  /// threshold is CurrentJump::tolerance_A.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:
@@ -119,26 +119,26 @@ class WatchedRig : public BoardRig {
     for (std::size_t row = 0; row < samples.count; ++row, ++period_) {
       const float* value = &samples.values[row * width];
       look_for_jumps({value, width});
-      told_V_.push_back({value[0] * value[9], value[1] * value[9], value[2] * value[9]});
-      if (told_V_.size() < 3) continue;
+      previous_V_.push_back({value[0] * value[9], value[1] * value[9], value[2] * value[9]});
+      if (previous_V_.size() < 3) continue;
       const std::size_t motor = period_ % 3;
       fastest_rad_per_s = std::max(fastest_rad_per_s, std::fabs(value[6 + motor]));
-      const float told_V = told_V_.front()[motor];
-      told_V_.pop_front();
+      const float previous_V = previous_V_.front()[motor];
+      previous_V_.pop_front();
       const float dead_part = board::omni_driver.bridge_dead_time_part();
       const control::BridgeLoss loss{std::min(measured_.bridge_loss_part[motor], dead_part) * value[9],
                                      dead_part * value[9]};
       const control::MotorModel& model = settings_.motor_model;
       const auto resistance =
           control::Resistance::of(measured_.resistance_ohm[motor], value[10 + motor], model.resistance_ohm[motor]);
-      turn_to(watch_, motor, told_V, loss);
-      fits(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]}, {resistance, resistance, resistance},
-           model.back_emf_Vs_per_rad);
+      turn_to(watch_, motor, previous_V, loss);
+      update_motor_check(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]},
+                         {resistance, resistance, resistance}, model.back_emf_Vs_per_rad);
       nearest_V = std::max(nearest_V, watch_.beyond_V[motor]);
-      const auto look = control::unexplained(told_V, loss, value[3 + motor], value[6 + motor], resistance,
-                                             model.back_emf_Vs_per_rad[motor]);
-      largest_left_V = std::max(largest_left_V, look.voltage_V);
-      largest_beyond_V = std::max(largest_beyond_V, look.voltage_V - look.bearable_V);
+      const auto deviation = control::unexplained(previous_V, loss, value[3 + motor], value[6 + motor], resistance,
+                                                  model.back_emf_Vs_per_rad[motor]);
+      largest_left_V = std::max(largest_left_V, deviation.voltage_V);
+      largest_beyond_V = std::max(largest_beyond_V, deviation.voltage_V - deviation.tolerance_V);
     }
   }
 
@@ -157,20 +157,20 @@ class WatchedRig : public BoardRig {
   std::vector<float> before_;         ///< values of the previous period
   control::MeasuredMotors measured_;  ///< from the self-test; the firmware assumes cold motors there
   MotorWatch watch_;
-  std::deque<control::Triple> told_V_;
+  std::deque<control::Triple> previous_V_;
   std::size_t period_ = 0;
 };
 
 void check(WatchedRig& rig, const std::string& what) {
   MESSAGE("simulation, ", what, ": at ", rig.fastest_rad_per_s, " rad/s of a joint and ", rig.strongest_N,
-          " N a motor came to ", rig.nearest_V, " of ", MotorWatch::bearable_sum_V, " V; a look left ",
+          " N a motor came to ", rig.nearest_V, " of ", MotorWatch::tolerance_sum_V, " V; a look left ",
           rig.largest_left_V, " V, at most ", rig.largest_beyond_V, " V more than is bearable; a current changed by ",
           rig.largest_change_A, " A in a period, by ", rig.largest_sudden_A, " A without a reason");
   CHECK(rig.force_is_on);
   CHECK(rig.largest_left_V > 0.1f);  // the check was active
   CHECK(rig.largest_change_A > 0.01f);
-  CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::bearable_A);
-  CHECK(rig.nearest_V < 0.2f * MotorWatch::bearable_sum_V);
+  CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::tolerance_A);
+  CHECK(rig.nearest_V < 0.2f * MotorWatch::tolerance_sum_V);
   rig.start_anew();
 }
 

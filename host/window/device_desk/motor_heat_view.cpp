@@ -5,7 +5,7 @@
 namespace inkwell::window {
 
 namespace {
-constexpr float warm_from = protocol::motor_heat_holds_back_from;
+constexpr float warm_from = protocol::motor_heat_limits_from;
 constexpr float hot_from = 1.0f;
 }  // namespace
 
@@ -28,7 +28,7 @@ std::string heat_advice(const MotorHeatView& heat) {
       return fmt::format(
           "Above {:.0f} % motor heat, the current of motor {} is reduced, and the force may be weaker. Push less or "
           "pause.",
-          100.0f * protocol::motor_heat_holds_back_from, heat.motor);
+          100.0f * protocol::motor_heat_limits_from, heat.motor);
     case HeatLevel::hot:
       return fmt::format(
           "Motor {} has reached its heat limit, and its current is limited to the continuous current. Switch the force "

@@ -9,8 +9,8 @@
 //    - firmware/application/background_watch.cpp, if a delay of about 0.15 ms is acceptable;
 //    - firmware/application/control_interrupt.cpp, for a late interrupt, a stalled main loop or a lost USB
 //      connection.
-// 3. Add a row to watch_table in protocol/supervision.hpp and a separate row to
-//    tests/firmware/control/supervisor_test.cpp. The row of watch_table sets the monitored states, the clearing,
+// 3. Add a row to condition_table in protocol/supervision.hpp and a separate row to
+//    tests/firmware/control/supervisor_test.cpp. The row of condition_table sets the monitored states, the clearing,
 //    the motor switch-off and the loss of the reference.
 // 4. Add an enumerator to host/library/include/inkwell/inkwell.h and a line to host/library/c_codes.cpp. The compiler
 //    reports a missing line.
@@ -31,7 +31,7 @@ inline constexpr float main_loop_stalled_s = 0.01f;
 /// Largest deviation of the bridge supply from its mean, in either direction (control/supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
 /// Largest relative deviation of the converter reference from its nominal value (control/analog_supply.hpp).
-inline constexpr float analog_supply_bearable = 0.05f;
+inline constexpr float analog_supply_tolerance = 0.05f;
 
 // clang-format off
 /// X(code, name, cause, remedy). device::fault_text() replaces a name in braces with its value.

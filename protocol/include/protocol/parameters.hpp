@@ -267,7 +267,7 @@ constexpr bool default_is_in_range(const Table& table, std::size_t row) {
   return table[row].minimum <= table[row].default_value && table[row].default_value <= table[row].maximum;
 }
 template <class Table>
-constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
+constexpr bool is_contiguous_with_its_group(const Table& table, std::size_t row) {
   if (row == 0 || table[row - 1].group == table[row].group) return true;
   for (std::size_t earlier = 0; earlier < row; ++earlier)
     if (table[earlier].group == table[row].group) return false;
@@ -280,7 +280,7 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
                 #name ": the id must be greater than the id of the previous row");                                  \
   static_assert(detail::default_is_in_range(parameter_table, static_cast<std::size_t>(Parameter::name)),            \
                 #name ": the default is outside the range");                                                        \
-  static_assert(detail::stands_with_its_group(parameter_table, static_cast<std::size_t>(Parameter::name)),          \
+  static_assert(detail::is_contiguous_with_its_group(parameter_table, static_cast<std::size_t>(Parameter::name)),   \
                 #name ": the row must follow the other rows of its group, with an id of that group");               \
   static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
                 #name ": the default belongs to another row");                                                      \

@@ -263,14 +263,14 @@ struct ForceReport {
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
 /// Heat above which the current limit of a motor falls. At heat 1 the limit equals the continuous current.
-inline constexpr float motor_heat_holds_back_from = 0.85f;
+inline constexpr float motor_heat_limits_from = 0.85f;
 /// Heat at which a fault switches the force off. The reduced current limit normally prevents this heat.
 inline constexpr float motor_heat_fault = 1.25f;
 
 /// Fraction of speed_limit_m_per_s above which the force component along the motion is reduced.
-inline constexpr float speed_holds_back_from = 0.8f;
+inline constexpr float speed_limits_from = 0.8f;
 /// Fraction of speed_limit_m_per_s above which the force component along the motion is zero.
-inline constexpr float speed_drives_no_more_from = 0.9f;
+inline constexpr float speed_stops_driving_from = 0.9f;
 
 /// Longest board name. A board has the name of its folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;
@@ -279,9 +279,9 @@ inline constexpr std::size_t board_name_maximum = 31;
 /// zero or a character that is not printable.
 constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1]) {
   const std::string_view name(field, std::find(field, std::end(field), '\0'));
-  const bool is_sound = name.size() <= board_name_maximum &&
+  const bool is_valid = name.size() <= board_name_maximum &&
                         std::ranges::all_of(name, [](char letter) { return letter > ' ' && letter <= '~'; });
-  return is_sound ? name : std::string_view{};
+  return is_valid ? name : std::string_view{};
 }
 
 /// First protocol version in which the device reports its board name.

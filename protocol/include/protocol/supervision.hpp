@@ -104,7 +104,7 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(1024, landed, "the force has fallen to zero") \
   X(2048, tested, "the self-test has ended without a failure that prevents the force") \
   X(4096, self_test, "the command self_test was received") \
-  X(8192, told, "an earlier fault has not been cleared")
+  X(8192, raised, "an earlier fault has not been cleared")
 // clang-format on
 
 /// Inputs of the supervisor's decisions.
@@ -135,7 +135,7 @@ constexpr Events events(More... some) {
 constexpr Events when(Event event, bool is_so) { return is_so ? static_cast<Events>(event) : 0u; }
 
 /// State transition. A transition is open if all events of `needs` and no event of `unless` are present.
-struct Way {
+struct StateTransition {
   State from;
   State to;
   Events needs;
@@ -145,7 +145,7 @@ struct Way {
 
 /// Rows with the same `from` are consecutive, and the supervisor follows the first open transition among them. A fault
 /// has precedence: it leads to `fault` from each state except `fault` and `update`.
-inline constexpr auto way_table = std::to_array<Way>({
+inline constexpr auto transition_table = std::to_array<StateTransition>({
     {State::starting, State::update, events(Event::update), 0},
     {State::starting, State::testing, events(Event::measured), 0},
     {State::testing, State::update, events(Event::update), 0},
@@ -179,7 +179,7 @@ inline constexpr auto way_table = std::to_array<Way>({
     {State::fault, State::testing, events(Event::self_test, Event::measured), events(Event::cause, Event::tested)},
     {State::fault, State::unreferenced, events(Event::clear, Event::tested), events(Event::cause, Event::referenced)},
     {State::fault, State::ready, events(Event::clear, Event::tested, Event::referenced), events(Event::cause)},
-    {State::update, State::fault, events(Event::told), events(Event::update)},
+    {State::update, State::fault, events(Event::raised), events(Event::update)},
     {State::update, State::starting, 0, events(Event::update, Event::measured)},
     {State::update, State::testing, events(Event::measured), events(Event::update, Event::tested)},
     {State::update, State::unreferenced, events(Event::tested), events(Event::update, Event::referenced)},
@@ -205,9 +205,9 @@ enum class Off : std::uint8_t {
   brake_gently,
 };
 
-struct Watch {
+struct Condition {
   Fault fault;
-  States watched_in;
+  States monitored_in;
   Clearing clearing;
   Off off;
   /// Counts may be lost. The position of the arm is unknown until the stylus is in the inkwell again.
@@ -216,14 +216,14 @@ struct Watch {
 
 /// If several faults occur in one period, the board reports the fault that comes first in this table, because that
 /// fault explains the others. The reported fault remains until it is cleared.
-inline constexpr auto watch_table = []() {
+inline constexpr auto condition_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};
   constexpr States started = States(State::testing, State::unreferenced) | moving;
   constexpr States every = States(State::starting) | started;
   using enum Clearing;
   using enum Off;
-  return std::to_array<Watch>({
+  return std::to_array<Condition>({
       {Fault::memory_damaged, every, by_reset, coast},
       {Fault::crystal_failed, every, at_once, coast},
       {Fault::processor_fault, every, at_once, coast},
@@ -257,57 +257,61 @@ inline constexpr auto watch_table = []() {
   });
 }();
 
-/// Set of rows of watch_table, as one bit per row. Bit 0 is the first row.
-using Watches = std::uint32_t;
-static_assert(watch_table.size() <= 32);
+/// Set of rows of condition_table, as one bit per row. Bit 0 is the first row.
+using Conditions = std::uint32_t;
+static_assert(condition_table.size() <= 32);
 
 namespace detail {
-/// Index of each fault code in watch_table. The indices are stored, because the compiler does not evaluate a search in
-/// a long table at compile time.
+/// Index of each fault code in condition_table. The indices are stored, because the compiler does not evaluate a search
+/// in a long table at compile time.
 inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_code_end> result{};
-  result.fill(static_cast<std::uint8_t>(watch_table.size()));
-  for (std::size_t i = 0; i < watch_table.size(); ++i)
-    result[static_cast<std::size_t>(watch_table[i].fault)] = static_cast<std::uint8_t>(i);
+  result.fill(static_cast<std::uint8_t>(condition_table.size()));
+  for (std::size_t i = 0; i < condition_table.size(); ++i)
+    result[static_cast<std::size_t>(condition_table[i].fault)] = static_cast<std::uint8_t>(i);
   return result;
 }();
 }  // namespace detail
 
-/// Returns the index of a fault in watch_table.
+/// Returns the index of a fault in condition_table.
 constexpr std::size_t place_of(Fault fault) {
   const auto code = static_cast<std::size_t>(fault);
-  return code < detail::places.size() ? detail::places[code] : watch_table.size();
+  return code < detail::places.size() ? detail::places[code] : condition_table.size();
 }
-constexpr Watches watch(Fault fault) { return 1u << place_of(fault); }
-constexpr Watches watch(Fault fault, bool is_found) { return static_cast<Watches>(is_found) << place_of(fault); }
+constexpr Conditions condition(Fault fault) { return 1u << place_of(fault); }
+constexpr Conditions condition(Fault fault, bool is_found) {
+  return static_cast<Conditions>(is_found) << place_of(fault);
+}
 
 /// Returns the set of rows for which `is_so` returns true.
 template <class Predicate>
-constexpr Watches watches(Predicate is_so) {
-  Watches bits = 0;
-  for (std::size_t i = 0; i < watch_table.size(); ++i)
-    if (is_so(watch_table[i])) bits |= 1u << i;
+constexpr Conditions conditions(Predicate is_so) {
+  Conditions bits = 0;
+  for (std::size_t i = 0; i < condition_table.size(); ++i)
+    if (is_so(condition_table[i])) bits |= 1u << i;
   return bits;
 }
 
 /// Faults that invalidate the reference in every state, even if another fault is reported.
-inline constexpr Watches voiding_watches = watches([](const Watch& row) { return row.voids_reference; });
+inline constexpr Conditions voiding_conditions = conditions([](const Condition& row) { return row.voids_reference; });
 
 // ---- consistency of the tables -----------------------------------------------------------------------------
 
 namespace detail {
-constexpr bool every_fault_is_watched_once() {
+constexpr bool every_fault_has_one_condition() {
   for (const auto& row : fault_table) {
     std::size_t rows = 0;
-    for (const Watch& watch : watch_table) rows += static_cast<std::uint16_t>(watch.fault) == row.code;
+    for (const Condition& condition : condition_table) rows += static_cast<std::uint16_t>(condition.fault) == row.code;
     if (rows != (row.code == 0 ? 0u : 1u)) return false;
   }
   return true;
 }
-constexpr bool ways_stand_together() {
-  for (std::size_t i = 1; i < way_table.size(); ++i)
+constexpr bool transitions_are_grouped() {
+  for (std::size_t i = 1; i < transition_table.size(); ++i)
     for (std::size_t k = 0; k + 1 < i; ++k)
-      if (way_table[k].from == way_table[i].from && way_table[i - 1].from != way_table[i].from) return false;
+      if (transition_table[k].from == transition_table[i].from &&
+          transition_table[i - 1].from != transition_table[i].from)
+        return false;
   return true;
 }
 #define X(id, text, ...) \
@@ -316,7 +320,9 @@ INKWELL_STATES(X)
 #undef X
 }  // namespace detail
 
-static_assert(detail::every_fault_is_watched_once(), "watch_table: each fault except `none` needs exactly one row");
-static_assert(detail::ways_stand_together(), "way_table: the transitions from one state must be consecutive");
+static_assert(detail::every_fault_has_one_condition(),
+              "condition_table: each fault except `none` needs exactly one row");
+static_assert(detail::transitions_are_grouped(),
+              "transition_table: the transitions from one state must be consecutive");
 
 }  // namespace inkwell::protocol

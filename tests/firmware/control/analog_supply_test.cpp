@@ -21,10 +21,10 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
 }
 
 /// Returns the number of checks until detection with this VDDA, on a chip whose VREFINT is `true_V`.
-int looks(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
+int readings_until_fault(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
-  for (int look = 1; look < never; ++look)
-    if (is_off(supply, counts_of(true_V, analog_supply_V))) return look;
+  for (int reading = 1; reading < never; ++reading)
+    if (is_off(supply, counts_of(true_V, analog_supply_V))) return reading;
   return never;
 }
 
@@ -34,8 +34,8 @@ TEST_CASE("with a measured reference a VDDA that is off by 4.7 % is borne, by 5.
       CAPTURE(reference_V);
       CAPTURE(sign);
       const std::uint16_t calibrated_counts = counts_of(reference_V, nominal_V);
-      CHECK(looks(nominal_V * (1.0f + sign * 0.047f), reference_V, calibrated_counts) == never);
-      CHECK(looks(nominal_V * (1.0f + sign * 0.053f), reference_V, calibrated_counts) == noticed);
+      CHECK(readings_until_fault(nominal_V * (1.0f + sign * 0.047f), reference_V, calibrated_counts) == never);
+      CHECK(readings_until_fault(nominal_V * (1.0f + sign * 0.053f), reference_V, calibrated_counts) == noticed);
     }
 }
 
@@ -45,19 +45,19 @@ TEST_CASE("a calibration that was never written or is lost makes the watch coars
     for (const float reference_V : {1.18f, 1.21f, 1.24f}) {
       CAPTURE(reference_V);
       for (const float part : {0.96f, 1.0f, 1.04f})
-        CHECK(looks(part * nominal_V, reference_V, calibrated_counts) == never);
-      CHECK(looks(0.88f * nominal_V, reference_V, calibrated_counts) == noticed);
-      CHECK(looks(1.12f * nominal_V, reference_V, calibrated_counts) == noticed);
+        CHECK(readings_until_fault(part * nominal_V, reference_V, calibrated_counts) == never);
+      CHECK(readings_until_fault(0.88f * nominal_V, reference_V, calibrated_counts) == noticed);
+      CHECK(readings_until_fault(1.12f * nominal_V, reference_V, calibrated_counts) == noticed);
     }
   }
   // A reference at the limit of the data sheet with a calibration error of 3 per mille is also checked correctly.
-  CHECK(looks(0.94f * nominal_V, 1.18f, counts_of(1.177f, nominal_V)) == noticed);
-  CHECK(looks(1.06f * nominal_V, 1.24f, counts_of(1.243f, nominal_V)) == noticed);
+  CHECK(readings_until_fault(0.94f * nominal_V, 1.18f, counts_of(1.177f, nominal_V)) == noticed);
+  CHECK(readings_until_fault(1.06f * nominal_V, 1.24f, counts_of(1.243f, nominal_V)) == noticed);
 }
 
 TEST_CASE("a reference that reads nothing, or all there is, is off") {
-  CHECK(looks(1e9f, 1.21f, 1'501) == noticed);
-  CHECK(looks(0.1f, 1.21f, 1'501) == noticed);
+  CHECK(readings_until_fault(1e9f, 1.21f, 1'501) == noticed);
+  CHECK(readings_until_fault(0.1f, 1.21f, 1'501) == noticed);
 }
 
 TEST_CASE("the reading of the reference gives VDDA") {
@@ -71,11 +71,11 @@ TEST_CASE("twelve wrong looks in a row are borne, and a right one makes up for a
   const std::uint16_t right = counts_of(1.21f, nominal_V), wrong = counts_of(1.21f, 3.0f);
   AnalogSupply supply = analog_supply(right);
   for (int i = 0; i < 10; ++i) {
-    for (int look = 0; look < 12; ++look) CHECK_FALSE(is_off(supply, wrong));
+    for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(is_off(supply, wrong));
     CHECK_FALSE(is_off(supply, right));
   }
-  for (int look = 0; look < 12; ++look) CHECK_FALSE(is_off(supply, wrong));
-  for (int look = 0; look < 10; ++look) CHECK(is_off(supply, wrong));
+  for (int reading = 0; reading < 12; ++reading) CHECK_FALSE(is_off(supply, wrong));
+  for (int reading = 0; reading < 10; ++reading) CHECK(is_off(supply, wrong));
 }
 
 }  // namespace

@@ -7,15 +7,15 @@ namespace {
 
 using inkwell::control::BridgePins;
 using inkwell::control::BridgeWire;
-using inkwell::control::look_at;
-using inkwell::control::touches;
+using inkwell::control::is_shorted;
+using inkwell::control::update_wire_check;
 
 /// Returns the number of checks of constant pins until detection; 0 means never.
-int looks(const BridgePins& pins) {
+int readings_until_shorted(const BridgePins& pins) {
   BridgeWire wire;
-  for (int look = 1; look < 1'000; ++look) {
-    look_at(wire, pins);
-    if (touches(wire)) return look;
+  for (int reading = 1; reading < 1'000; ++reading) {
+    update_wire_check(wire, pins);
+    if (is_shorted(wire)) return reading;
   }
   return 0;
 }
@@ -23,7 +23,7 @@ int looks(const BridgePins& pins) {
 TEST_CASE("while the bridges are off every wire must be low, while they are on the enable wire must be high") {
   struct Row {
     BridgePins pins;
-    bool sound;
+    bool healthy;
   };
   constexpr Row rows[] = {
       {{.on = false, .enable_is_high = false, .heartbeat_is_high = false, .a_leg_is_high = false}, true},
@@ -38,34 +38,36 @@ TEST_CASE("while the bridges are off every wire must be low, while they are on t
     CAPTURE(row.pins.on);
     CAPTURE(row.pins.enable_is_high);
     CAPTURE(row.pins.a_leg_is_high);
-    CHECK(looks(row.pins) == (row.sound ? 0 : 2));
+    CHECK(readings_until_shorted(row.pins) == (row.healthy ? 0 : 2));
   }
 }
 
 TEST_CASE(
     "a heartbeat that is high outside the control interrupt touches something, whether the bridges are on or off") {
-  CHECK(looks({.on = false, .enable_is_high = false, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
-  CHECK(looks({.on = true, .enable_is_high = true, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
+  CHECK(readings_until_shorted(
+            {.on = false, .enable_is_high = false, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
+  CHECK(readings_until_shorted(
+            {.on = true, .enable_is_high = true, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
 }
 
 TEST_CASE("bridges that are held on while they should be off are told; while they should be on, elsewhere") {
-  CHECK(looks({.on = false, .hold_is_high = true}) == 2);
-  CHECK(looks({.on = true, .enable_is_high = true, .hold_is_high = true}) == 0);
-  CHECK(looks({.on = true, .enable_is_high = true, .hold_is_high = false}) == 0);
+  CHECK(readings_until_shorted({.on = false, .hold_is_high = true}) == 2);
+  CHECK(readings_until_shorted({.on = true, .enable_is_high = true, .hold_is_high = true}) == 0);
+  CHECK(readings_until_shorted({.on = true, .enable_is_high = true, .hold_is_high = false}) == 0);
 }
 
 TEST_CASE("one wrong look is borne, and a right one makes up for all before it") {
-  constexpr BridgePins sound{}, wrong{.enable_is_high = true};
+  constexpr BridgePins healthy{}, wrong{.enable_is_high = true};
   BridgeWire wire;
   for (int i = 0; i < 100; ++i) {
-    look_at(wire, wrong);
-    CHECK_FALSE(touches(wire));
-    look_at(wire, sound);
+    update_wire_check(wire, wrong);
+    CHECK_FALSE(is_shorted(wire));
+    update_wire_check(wire, healthy);
   }
-  for (int i = 0; i < 2; ++i) look_at(wire, wrong);
-  CHECK(touches(wire));
-  look_at(wire, sound);
-  CHECK_FALSE(touches(wire));
+  for (int i = 0; i < 2; ++i) update_wire_check(wire, wrong);
+  CHECK(is_shorted(wire));
+  update_wire_check(wire, healthy);
+  CHECK_FALSE(is_shorted(wire));
 }
 
 }  // namespace

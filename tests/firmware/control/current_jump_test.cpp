@@ -64,23 +64,23 @@ struct HeldArm {
 
 TEST_CASE("a change has a reason up to what its loop was short of, and what its speed drives in the end") {
   const auto resistance = control::Resistance::of(2.0f, 0.0f, 2.0f);
-  constexpr float bearable_A = CurrentJump::bearable_A;
+  constexpr float tolerance_A = CurrentJump::tolerance_A;
   for (const float sign : {1.0f, -1.0f}) {
-    CHECK_FALSE(is_jump(sign * (bearable_A - 0.01f), 0.0f, 0.0f, resistance));
-    CHECK(is_jump(sign * (bearable_A + 0.01f), 0.0f, 0.0f, resistance));
+    CHECK_FALSE(is_jump(sign * (tolerance_A - 0.01f), 0.0f, 0.0f, resistance));
+    CHECK(is_jump(sign * (tolerance_A + 0.01f), 0.0f, 0.0f, resistance));
     for (const float other_sign : {1.0f, -1.0f}) {
-      CHECK_FALSE(is_jump(sign * (bearable_A + 0.99f), other_sign * 1.0f, 0.0f, resistance));
-      CHECK(is_jump(sign * (bearable_A + 1.01f), other_sign * 1.0f, 0.0f, resistance));
-      CHECK_FALSE(is_jump(sign * (bearable_A + 0.49f), 0.0f, other_sign * 1.0f, resistance));
-      CHECK(is_jump(sign * (bearable_A + 0.51f), 0.0f, other_sign * 1.0f, resistance));
+      CHECK_FALSE(is_jump(sign * (tolerance_A + 0.99f), other_sign * 1.0f, 0.0f, resistance));
+      CHECK(is_jump(sign * (tolerance_A + 1.01f), other_sign * 1.0f, 0.0f, resistance));
+      CHECK_FALSE(is_jump(sign * (tolerance_A + 0.49f), 0.0f, other_sign * 1.0f, resistance));
+      CHECK(is_jump(sign * (tolerance_A + 0.51f), 0.0f, other_sign * 1.0f, resistance));
     }
   }
 }
 
 TEST_CASE("each motor's change is looked at") {
-  constexpr float bearable_A = CurrentJump::bearable_A;
-  CHECK_FALSE(control::is_large(0.5f * bearable_A, -0.5f * bearable_A, 0.5f * bearable_A));
-  for (const float size_A : {-1.01f * bearable_A, 1.01f * bearable_A}) {
+  constexpr float tolerance_A = CurrentJump::tolerance_A;
+  CHECK_FALSE(control::is_large(0.5f * tolerance_A, -0.5f * tolerance_A, 0.5f * tolerance_A));
+  for (const float size_A : {-1.01f * tolerance_A, 1.01f * tolerance_A}) {
     CHECK(control::is_large(size_A, 0.0f, 0.0f));
     CHECK(control::is_large(0.0f, size_A, 0.0f));
     CHECK(control::is_large(0.0f, 0.0f, size_A));
@@ -136,7 +136,7 @@ TEST_CASE(
   arm.samples.encoder_counts[0] += 12;  // out of the wall
   CHECK(arm.run(1'000) == 1'000);
   CHECK(arm.largest_change_A > 0.02f);
-  CHECK(arm.largest_change_A < 0.33f * CurrentJump::bearable_A);
+  CHECK(arm.largest_change_A < 0.33f * CurrentJump::tolerance_A);
 }
 
 TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and forces that change at once") {
@@ -156,7 +156,7 @@ TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and 
     arm.samples.encoder_counts[0] += i % 4 < 2 ? 10 : -10;
     REQUIRE(arm.run(60) == 60);
   }
-  CHECK(arm.largest_change_A > 0.5f * CurrentJump::bearable_A);  // a large change was tested
+  CHECK(arm.largest_change_A > 0.5f * CurrentJump::tolerance_A);  // a large change was tested
 }
 
 TEST_CASE("a brake goes on whatever currents come and go, and so does a force that is asked for while a pulse runs") {

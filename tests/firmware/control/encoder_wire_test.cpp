@@ -18,7 +18,7 @@ constexpr std::uint32_t never = periods_in(2.0f);
 
 /// Count of a timer in encoder mode if one wire is stuck: every second edge is counted, alternately up and down.
 std::uint16_t with_dead_wire(std::int64_t count) { return static_cast<std::uint16_t>((count >> 1) & 1); }
-std::uint16_t sound(std::int64_t count) { return static_cast<std::uint16_t>(count); }
+std::uint16_t without_dead_wire(std::int64_t count) { return static_cast<std::uint16_t>(count); }
 
 /// Checks `count(time_s)` every `every` periods from `begin` on. Returns the number of periods until the wire is
 /// reported as dead.
@@ -44,7 +44,7 @@ TEST_CASE("a joint that turns at 1 rad/s with a dead wire is noticed within a te
     CAPTURE(speed_rad_per_s);
     const float counts_per_s = speed_rad_per_s * counts_per_rad;
     CHECK(periods_until_dead(turning(counts_per_s, with_dead_wire)) <= periods_in(0.1f));
-    CHECK(periods_until_dead(turning(counts_per_s, sound)) == never);
+    CHECK(periods_until_dead(turning(counts_per_s, without_dead_wire)) == never);
   }
   CHECK(periods_until_dead(turning(0.5f * counts_per_rad, with_dead_wire)) == never);
 }

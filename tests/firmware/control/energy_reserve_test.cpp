@@ -19,28 +19,28 @@ using protocol::Signal;
 using tests::along;
 using tests::TurningArm;
 
-constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .given_J_per_period = 5e-5f, .low_reserves_per_J = 100.0f};
+constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .refill_J_per_period = 5e-5f, .low_reserves_per_J = 100.0f};
 
 TEST_CASE("what the force gave on the probe's way is taken out, and what the hand gave is put in") {
   EnergyReserve reserve{0.02f, {0.1f, 0.0f, 0.0f}};
-  account(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
+  update_energy(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
   CHECK(reserve.left_J == doctest::Approx(0.02f - 0.002f + 5e-5f));
-  account(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, -0.004f, 0.0f}, limits);
+  update_energy(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, -0.004f, 0.0f}, limits);
   CHECK(reserve.left_J == doctest::Approx(0.018f + 0.004f + 1e-4f));
-  for (int i = 0; i < 100; ++i) account(reserve, {}, reserve.position_m, limits);
+  for (int i = 0; i < 100; ++i) update_energy(reserve, {}, reserve.position_m, limits);
   CHECK(reserve.left_J == doctest::Approx(0.0221f + 100 * 5e-5f));
 
-  account(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for a long time
+  update_energy(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for a long time
   CHECK(reserve.left_J == limits.reserve_J);
-  account(reserve, {8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
+  update_energy(reserve, {8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
   CHECK(reserve.left_J == 0.0f);
 }
 
 TEST_CASE("only what drives the motion gives way, from a quarter of the reserve on, all of it at none") {
-  CHECK(gives_way({0.04f, {}}, limits) == 0.0f);
-  CHECK(gives_way({0.01f, {}}, limits) == 0.0f);
-  CHECK(gives_way({0.005f, {}}, limits) == doctest::Approx(0.5f));
-  CHECK(gives_way({0.0f, {}}, limits) == 1.0f);
+  CHECK(driving_reduction({0.04f, {}}, limits) == 0.0f);
+  CHECK(driving_reduction({0.01f, {}}, limits) == 0.0f);
+  CHECK(driving_reduction({0.005f, {}}, limits) == doctest::Approx(0.5f));
+  CHECK(driving_reduction({0.0f, {}}, limits) == 1.0f);
 
   const Vector3 force_N{2.0f, -1.0f, 0.5f}, velocity_m_per_s{0.4f, 0.0f, 0.3f};
   const float power_W = dot(force_N, velocity_m_per_s);
@@ -60,17 +60,17 @@ TEST_CASE("a program that pushes along with every motion gives the reserve and t
   arm.settings = control::prepare(arm.set);
   const auto pushes = [](const Vector3& velocity_m_per_s) { return along(velocity_m_per_s, 2.0f); };
   arm.turn(4.0f, pushes);
-  MESSAGE("given in 4 s: ", arm.given_J, " J");
-  CHECK(arm.given_J > 0.9f * (0.05f + 4.0f * 0.1f));  // the allowed energy
-  CHECK(arm.given_J < 0.05f + 4.0f * 0.1f + 0.01f);   // an arm may exceed this energy slightly at low speed during a
-                                                      // reversal
+  MESSAGE("given in 4 s: ", arm.delivered_J, " J");
+  CHECK(arm.delivered_J > 0.9f * (0.05f + 4.0f * 0.1f));  // the allowed energy
+  CHECK(arm.delivered_J < 0.05f + 4.0f * 0.1f + 0.01f);  // an arm may exceed this energy slightly at low speed during a
+                                                         // reversal
   CHECK(arm.reached(Limit::energy));
 
   TurningArm unbounded;
   unbounded.set[Parameter::power_given_W] = 20.0f;
   unbounded.settings = control::prepare(unbounded.set);
   unbounded.turn(4.0f, pushes);
-  CHECK(unbounded.given_J > 0.8f);
+  CHECK(unbounded.delivered_J > 0.8f);
   CHECK_FALSE(unbounded.reached(Limit::energy));
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("a program that brakes, and one that springs, lose nothing") {
   arm.set[Parameter::power_given_W] = 0.0f;
   arm.settings = control::prepare(arm.set);
   arm.turn(3.0f, [](const Vector3& velocity_m_per_s) { return along(velocity_m_per_s, -2.0f); });
-  CHECK(arm.given_J < -0.5f);
+  CHECK(arm.delivered_J < -0.5f);
   const Vector3 middle_m = arm.position();
   arm.turn(3.0f, [&](const Vector3&) { return 20.0f * (middle_m - arm.position()); });
   CHECK_FALSE(arm.reached(Limit::energy));

@@ -177,7 +177,7 @@ TEST_CASE("without one of the links' torques the force is the nearest that needs
         const Vector3 nearest_N = force_N - (control::dot(force_N, way) / control::dot(way, way)) * way;
         const Triple nearest_Nm = control::joint_torques(jacobian, nearest_N);
         Triple torque_Nm = whole_Nm;
-        control::leave_out(idle, torque_Nm, jacobian);
+        control::remove_idle_torque(idle, torque_Nm, jacobian);
         for (std::size_t joint = 0; joint < 3; ++joint)
           worst_Nm = std::max(worst_Nm, std::fabs(torque_Nm[joint] - nearest_Nm[joint]));
       }

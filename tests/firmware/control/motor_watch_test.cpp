@@ -11,11 +11,11 @@ namespace {
 
 using namespace inkwell;
 using control::BridgeLoss;
-using control::fits;
 using control::MotorModel;
 using control::MotorWatch;
 using control::Resistance;
 using control::Triple;
+using control::update_motor_check;
 using protocol::Fault;
 
 constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
@@ -28,39 +28,41 @@ std::array<Resistance, 3> all(const Resistance& resistance) { return {resistance
 const std::array<Resistance, 3> all_unmeasured{unmeasured(0), unmeasured(1), unmeasured(2)};
 
 /// Checks one motor with constant values. Returns the number of checks until a mismatch is reported.
-int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, BridgeLoss loss,
-          const Resistance& resistance) {
+int checks_until_fault(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s,
+                       BridgeLoss loss, const Resistance& resistance) {
   MotorWatch watch;
   Triple currents_A{}, speeds_rad_per_s{};
   currents_A[motor] = current_A;
   speeds_rad_per_s[motor] = joint_speed_rad_per_s;
-  for (int look = 1; look < never; ++look) {
+  for (int check = 1; check < never; ++check) {
     turn_to(watch, motor, voltage_V, loss);
-    if (!fits(watch, currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad)) return look;
+    if (!update_motor_check(watch, currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad))
+      return check;
   }
   return never;
 }
-int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, BridgeLoss loss = {}) {
-  return looks(motor, voltage_V, current_A, joint_speed_rad_per_s, loss, unmeasured(motor));
+int checks_until_fault(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s,
+                       BridgeLoss loss = {}) {
+  return checks_until_fault(motor, voltage_V, current_A, joint_speed_rad_per_s, loss, unmeasured(motor));
 }
 
 TEST_CASE("a motor with the voltage of its resistance and its speed fits, in either direction") {
-  CHECK(looks(0, 5.0f, 2.5f, 0.0f) == never);
-  CHECK(looks(0, -5.0f, -2.5f, 0.0f) == never);
-  CHECK(looks(1, 10.0f, 2.5f, 0.0f) == never);
-  CHECK(looks(0, 6.0f, 0.0f, 20.0f) == never);
-  CHECK(looks(1, -4.0f, 0.0f, 20.0f) == never);
-  CHECK(looks(2, 0.0f, -0.25f, 20.0f) == never);  // shorted and turned by a hand
+  CHECK(checks_until_fault(0, 5.0f, 2.5f, 0.0f) == never);
+  CHECK(checks_until_fault(0, -5.0f, -2.5f, 0.0f) == never);
+  CHECK(checks_until_fault(1, 10.0f, 2.5f, 0.0f) == never);
+  CHECK(checks_until_fault(0, 6.0f, 0.0f, 20.0f) == never);
+  CHECK(checks_until_fault(1, -4.0f, 0.0f, 20.0f) == never);
+  CHECK(checks_until_fault(2, 0.0f, -0.25f, 20.0f) == never);  // shorted and turned by a hand
 }
 
 TEST_CASE("a motor at rest without current may have the bearable voltage, and what dead time takes, and no more") {
-  CHECK(looks(0, 0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
-  CHECK(looks(0, -0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
-  CHECK(looks(0, 1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
-  CHECK(looks(2, -1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
+  CHECK(checks_until_fault(0, 0.99f * MotorWatch::tolerance_V, 0.0f, 0.0f) == never);
+  CHECK(checks_until_fault(0, -0.99f * MotorWatch::tolerance_V, 0.0f, 0.0f) == never);
+  CHECK(checks_until_fault(0, 1.1f * MotorWatch::tolerance_V, 0.0f, 0.0f) < never);
+  CHECK(checks_until_fault(2, -1.1f * MotorWatch::tolerance_V, 0.0f, 0.0f) < never);
   for (const float dead_V : {0.1f, 0.5f}) {
-    CHECK(looks(0, 0.99f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) == never);
-    CHECK(looks(0, 1.1f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) < never);
+    CHECK(checks_until_fault(0, 0.99f * (MotorWatch::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) == never);
+    CHECK(checks_until_fault(0, 1.1f * (MotorWatch::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) < never);
   }
 }
 
@@ -69,21 +71,21 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
   for (const float sign : {1.0f, -1.0f}) {
     // The resistance accounts for 2 V, and its value may be 28 % too high.
     for (const float bridge_V : {0.4f, 0.5f})
-      CHECK(looks(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
-    const float least_V = 2.0f + 0.4f - MotorWatch::bearable_V - 0.56f;
-    CHECK(looks(0, sign * (least_V + 0.02f), sign * 1.0f, 0.0f, loss) == never);
-    CHECK(looks(0, sign * (least_V - 0.02f), sign * 1.0f, 0.0f, loss) < never);
-    const float most_V = 2.0f + 0.5f + MotorWatch::bearable_V + 0.86f;
-    CHECK(looks(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
-    CHECK(looks(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
+      CHECK(checks_until_fault(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
+    const float least_V = 2.0f + 0.4f - MotorWatch::tolerance_V - 0.56f;
+    CHECK(checks_until_fault(0, sign * (least_V + 0.02f), sign * 1.0f, 0.0f, loss) == never);
+    CHECK(checks_until_fault(0, sign * (least_V - 0.02f), sign * 1.0f, 0.0f, loss) < never);
+    const float most_V = 2.0f + 0.5f + MotorWatch::tolerance_V + 0.86f;
+    CHECK(checks_until_fault(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
+    CHECK(checks_until_fault(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
     // The lower bound assumes at most the dead-time loss, because the voltage drop of brushes is not reliable.
-    CHECK(looks(0, sign * (2.0f + 0.5f - MotorWatch::bearable_V - 0.56f + 0.02f), sign * 1.0f, 0.0f, {0.9f, 0.5f}) ==
-          never);
+    CHECK(checks_until_fault(0, sign * (2.0f + 0.5f - MotorWatch::tolerance_V - 0.56f + 0.02f), sign * 1.0f, 0.0f,
+                             {0.9f, 0.5f}) == never);
     // A small current may change sign in each PWM period, and the dead time then has no net effect.
     const float steady_A = MotorWatch::steady_A;
-    const float small_V = -0.5f - MotorWatch::bearable_V + 0.72f * 2.0f * steady_A + 0.02f;
-    CHECK(looks(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
-    CHECK(looks(0, sign * small_V, sign * 1.01f * steady_A, 0.0f, loss) < never);
+    const float small_V = -0.5f - MotorWatch::tolerance_V + 0.72f * 2.0f * steady_A + 0.02f;
+    CHECK(checks_until_fault(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
+    CHECK(checks_until_fault(0, sign * small_V, sign * 1.01f * steady_A, 0.0f, loss) < never);
   }
 }
 
@@ -91,31 +93,31 @@ TEST_CASE(
     "a hot motor fits, and one that was hot when it was measured: 43 % more resistance, 28 % less, back EMF a quarter "
     "less") {
   for (const float sign : {1.0f, -1.0f}) {
-    CHECK(looks(0, sign * (1.42f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) == never);
-    CHECK(looks(0, sign * (1.5f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) < never);
-    CHECK(looks(0, sign * (0.73f * 5.0f - MotorWatch::bearable_V), sign * 2.5f, 0.0f) == never);
-    CHECK(looks(0, sign * (0.7f * 5.0f - MotorWatch::bearable_V), sign * 2.5f, 0.0f) < never);
-    CHECK(looks(0, sign * (0.76f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) == never);
-    CHECK(looks(0, sign * (0.65f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) < never);
+    CHECK(checks_until_fault(0, sign * (1.42f * 5.0f + MotorWatch::tolerance_V), sign * 2.5f, 0.0f) == never);
+    CHECK(checks_until_fault(0, sign * (1.5f * 5.0f + MotorWatch::tolerance_V), sign * 2.5f, 0.0f) < never);
+    CHECK(checks_until_fault(0, sign * (0.73f * 5.0f - MotorWatch::tolerance_V), sign * 2.5f, 0.0f) == never);
+    CHECK(checks_until_fault(0, sign * (0.7f * 5.0f - MotorWatch::tolerance_V), sign * 2.5f, 0.0f) < never);
+    CHECK(checks_until_fault(0, sign * (0.76f * 6.0f - MotorWatch::tolerance_V), 0.0f, sign * 20.0f) == never);
+    CHECK(checks_until_fault(0, sign * (0.65f * 6.0f - MotorWatch::tolerance_V), 0.0f, sign * 20.0f) < never);
   }
 }
 
 TEST_CASE("a motor that was measured may have a fifth more, and what its current has warmed it by since") {
   for (const float sign : {1.0f, -1.0f}) {
     const auto fits_with = [sign](const Resistance& resistance, float voltage_V) {
-      return looks(0, sign * voltage_V, sign * 2.5f, 0.0f, {}, resistance) == never;
+      return checks_until_fault(0, sign * voltage_V, sign * 2.5f, 0.0f, {}, resistance) == never;
     };
     // A measured motor resistance of 2.5 ohm overrides the parameters.
     const auto as_measured = Resistance::of(2.5f, 0.0f, 2.0f);
-    CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorWatch::bearable_V));
-    CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorWatch::bearable_V));
-    CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorWatch::bearable_V));
-    CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorWatch::bearable_V));
+    CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorWatch::tolerance_V));
+    CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorWatch::tolerance_V));
+    CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorWatch::tolerance_V));
+    CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorWatch::tolerance_V));
     // The heating at the continuous current increases the resistance by 39 %.
     const auto warmer = Resistance::of(2.5f, 1.0f, 2.0f);
     CHECK(warmer.value_ohm == doctest::Approx(1.39 * 2.5));
-    CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorWatch::bearable_V));
-    CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorWatch::bearable_V));
+    CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorWatch::tolerance_V));
+    CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorWatch::tolerance_V));
     // A colder motor does not reduce the resistance.
     CHECK(Resistance::of(2.5f, -1.0f, 2.0f).value_ohm == 2.5f);
   }
@@ -123,32 +125,33 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
 
 TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
   // The voltage is 4 V beyond the tolerance, and one check runs every three periods.
-  const float voltage_V = 4.0f + MotorWatch::bearable_V;
-  const float look_Vs = 4.0f * 3.0f * protocol::servo_period_s;
-  CHECK(looks(0, voltage_V, 0.0f, 0.0f) == static_cast<int>(MotorWatch::bearable_flux_Vs / look_Vs) + 1);
-  CHECK(looks(0, 16.0f, 0.0f, 0.0f) == 2);
+  const float voltage_V = 4.0f + MotorWatch::tolerance_V;
+  const float flux_of_check_Vs = 4.0f * 3.0f * protocol::servo_period_s;
+  CHECK(checks_until_fault(0, voltage_V, 0.0f, 0.0f) ==
+        static_cast<int>(MotorWatch::tolerance_flux_Vs / flux_of_check_Vs) + 1);
+  CHECK(checks_until_fault(0, 16.0f, 0.0f, 0.0f) == 2);
 }
 
 TEST_CASE("a current that turns round from one limit to the other in no time is borne, and forgotten") {
   MotorWatch watch;
   const Triple still{};
-  const auto look = [&](float voltage_V, float current_A) {
+  const auto check = [&](float voltage_V, float current_A) {
     turn_to(watch, 0, voltage_V, {0.43f, 0.43f});
-    return fits(watch, {current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
+    return update_motor_check(watch, {current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
   };
   for (int turn = 0; turn < 1'000; ++turn) {
     const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
-    CHECK(look(16.0f * sign, -1.0f * sign));  // 16 V change the current of 0.24 mH by more than this in one period
-    for (int rest = 0; rest < 15; ++rest) CHECK(look(5.43f * sign, 2.5f * sign));
+    CHECK(check(16.0f * sign, -1.0f * sign));  // 16 V change the current of 0.24 mH by more than this in one period
+    for (int rest = 0; rest < 15; ++rest) CHECK(check(5.43f * sign, 2.5f * sign));
   }
 }
 
 TEST_CASE("each motor has its own sum") {
   MotorWatch watch;
-  for (int look = 0; look < 300; ++look) {
-    const std::size_t motor = static_cast<std::size_t>(look % 3);
+  for (int check = 0; check < 300; ++check) {
+    const std::size_t motor = static_cast<std::size_t>(check % 3);
     turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f, {});
-    if (fits(watch, {}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
+    if (update_motor_check(watch, {}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
     CHECK(motor == 2);
     CHECK(watch.beyond_V[0] == 0.0f);
     CHECK(watch.beyond_V[1] == 0.0f);
@@ -306,14 +309,14 @@ TEST_CASE("below the force limit it may make what the limit leaves, as if the mo
     const float left_N = 8.0f - arm.controller.signals()[protocol::Signal::force_N];
     REQUIRE(left_N > 0.3f);
     REQUIRE(left_N < 2.0f);
-    const float asked_A = std::fabs(reference_A(arm, motor));
+    const float requested_A = std::fabs(reference_A(arm, motor));
     const float more_A = left_N * arm.settings.motors.ampere_per_N[motor];
     arm.samples.current_A[motor] *= 0.98f;
     float most_A = 0.0f;
     for (int period = 0; period < 2'000 && arm.run(1, motor) == 1; ++period)
       most_A = std::max(most_A, std::fabs(settled_A(arm, motor)));
-    CHECK(most_A < 1.01f * 1.05f * (asked_A + more_A));
-    CHECK(most_A > asked_A + 0.6f * more_A);
+    CHECK(most_A < 1.01f * 1.05f * (requested_A + more_A));
+    CHECK(most_A > requested_A + 0.6f * more_A);
   }
 }
 

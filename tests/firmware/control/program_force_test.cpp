@@ -29,7 +29,7 @@ float length(const Vector3& vector) { return std::sqrt(control::dot(vector, vect
 
 TEST_CASE("between two reports the force goes in a straight line") {
   ProgramForce program;
-  control::head_for(program, target({0.4f, 0.0f, -0.2f}), limits);
+  control::set_target(program, target({0.4f, 0.0f, -0.2f}), limits);
   for (int period = 1; period <= 20; ++period) {
     control::advance(program, limits);
     CHECK(program.force_N.x == doctest::Approx(0.02f * static_cast<float>(period)).epsilon(1e-5));
@@ -38,7 +38,7 @@ TEST_CASE("between two reports the force goes in a straight line") {
   // The force remains constant until the next report.
   for (int period = 0; period < 100; ++period) control::advance(program, limits);
   CHECK(program.force_N.x == doctest::Approx(0.4f).epsilon(1e-5));
-  control::head_for(program, target({0.0f, 0.0f, -0.2f}, 40), limits);
+  control::set_target(program, target({0.0f, 0.0f, -0.2f}, 40), limits);
   for (int period = 0; period < 20; ++period) control::advance(program, limits);
   CHECK(program.force_N.x == doctest::Approx(0.2f).epsilon(1e-5));
   CHECK(program.force_N.z == doctest::Approx(-0.2f).epsilon(1e-5));
@@ -46,7 +46,7 @@ TEST_CASE("between two reports the force goes in a straight line") {
 
 TEST_CASE("a report beyond the limit keeps its direction") {
   ProgramForce program;
-  control::head_for(program, target({300.0f, -400.0f, 0.0f}), limits);
+  control::set_target(program, target({300.0f, -400.0f, 0.0f}), limits);
   for (int period = 0; period < 200; ++period) control::advance(program, limits);
   CHECK(length(program.force_N) == doctest::Approx(3.3f).epsilon(0.02));
   CHECK(program.force_N.y / program.force_N.x == doctest::Approx(-4.0f / 3.0f).epsilon(1e-4));
@@ -54,11 +54,11 @@ TEST_CASE("a report beyond the limit keeps its direction") {
 
 TEST_CASE("the force never changes faster than its bound, and gets there all the same") {
   ProgramForce program;
-  control::head_for(program, target({-3.0f, 0.0f, 0.0f}, 1), limits);
+  control::set_target(program, target({-3.0f, 0.0f, 0.0f}, 1), limits);
   for (int period = 0; period < 100; ++period) control::advance(program, limits);
   const Vector3 wanted[] = {{3.0f, 0.0f, 0.0f}, {0.0f, 3.0f, 0.0f}, {-1.0f, -1.0f, 2.0f}};
   for (const Vector3& force_N : wanted) {
-    control::head_for(program, target(force_N, 1), limits);
+    control::set_target(program, target(force_N, 1), limits);
     float fastest_N = 0.0f;
     for (int period = 0; period < 150; ++period) {
       const Vector3 before_N = program.force_N;
@@ -72,7 +72,7 @@ TEST_CASE("the force never changes faster than its bound, and gets there all the
 
 TEST_CASE("without a report the force stays for the expiry and is gone 10 ms later, without a jump") {
   ProgramForce program;
-  control::head_for(program, target({2.0f, 0.0f, 0.0f}), limits);
+  control::set_target(program, target({2.0f, 0.0f, 0.0f}), limits);
   for (std::uint32_t period = 0; period < limits.expiry_periods; ++period) control::advance(program, limits);
   CHECK(program.force_N.x == doctest::Approx(2.0f).epsilon(1e-5));
   CHECK(!program.is_driven());
@@ -88,24 +88,24 @@ TEST_CASE("without a report the force stays for the expiry and is gone 10 ms lat
 
 TEST_CASE("a program that ends lets its force fade at once, and one that comes back takes over from there") {
   ProgramForce program;
-  control::head_for(program, target({2.0f, 0.0f, 0.0f}, 20, ForceMode::instead_of_walls), limits);
+  control::set_target(program, target({2.0f, 0.0f, 0.0f}, 20, ForceMode::instead_of_walls), limits);
   for (int period = 0; period < 40; ++period) control::advance(program, limits);
-  control::head_for(program, target({}, 20, ForceMode::none), limits);
+  control::set_target(program, target({}, 20, ForceMode::none), limits);
   CHECK(!program.is_driven());
   for (int period = 0; period < 100; ++period) control::advance(program, limits);
   const float half_N = program.force_N.x;
   CHECK(half_N == doctest::Approx(1.0f).epsilon(1e-3));
-  control::head_for(program, target({1.5f, 0.0f, 0.0f}), limits);
+  control::set_target(program, target({1.5f, 0.0f, 0.0f}), limits);
   control::advance(program, limits);
   CHECK(program.force_N.x == doctest::Approx(half_N + 0.025f).epsilon(1e-3));
 }
 
 TEST_CASE("a second end does not stretch the fading") {
   ProgramForce program;
-  control::head_for(program, target({2.0f, 0.0f, 0.0f}), limits);
+  control::set_target(program, target({2.0f, 0.0f, 0.0f}), limits);
   for (int period = 0; period < 40; ++period) control::advance(program, limits);
   for (std::uint32_t period = 0; period < ProgramForce::fade_periods; ++period) {
-    control::head_for(program, target({}, 20, ForceMode::none), limits);
+    control::set_target(program, target({}, 20, ForceMode::none), limits);
     control::advance(program, limits);
   }
   CHECK(program.force_N == Vector3{});
@@ -113,10 +113,10 @@ TEST_CASE("a second end does not stretch the fading") {
 
 TEST_CASE("late is more than a millisecond after the interval that the program named") {
   ProgramForce program;
-  CHECK(!control::head_for(program, target({}), limits));
+  CHECK(!control::set_target(program, target({}), limits));
   const auto next_after = [&](int periods) {
     for (int period = 0; period < periods; ++period) control::advance(program, limits);
-    return control::head_for(program, target({}), limits);
+    return control::set_target(program, target({}), limits);
   };
   CHECK(!next_after(20));
   CHECK(!next_after(40));

@@ -33,7 +33,7 @@ TEST_CASE("while the self-test's pulses run their current is borne by any motor,
     Samples samples = tests::samples_at_rest();
     samples.current_A[1] = current_A;
     tests::run(controller, samples, settings, 2);
-    CHECK(controller.fault() == (current_A < control::SelfTestPulses::bearable_A ? Fault::none : Fault::over_current));
+    CHECK(controller.fault() == (current_A < control::SelfTestPulses::maximum_A ? Fault::none : Fault::over_current));
   }
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("a current limit that is lowered while the self-test's pulses run hold
     settings.limits.over_current_A.fill(3.0f);
     Controller controller = controller_in_pulses(settings);
     Samples samples = tests::samples_at_rest();
-    samples.current_A[motor] = 1.2f * control::SelfTestPulses::bearable_A;
+    samples.current_A[motor] = 1.2f * control::SelfTestPulses::maximum_A;
     tests::run(controller, samples, settings, 3);
     REQUIRE(controller.fault() == Fault::none);
     settings.limits.over_current_A.fill(0.5f);

@@ -21,23 +21,23 @@ constexpr Triple resistance_ohm{2.0f, 4.0f, 40.0f}, limit_A{2.5f, 0.5f, 2.5f};
 constexpr float dead_V = 0.4f;
 constexpr PulseScale scale{resistance_ohm, limit_A, 20.0f, dead_V / 20.0f};
 
-std::vector<Triple> told_V(SelfTestPulses& pulses, const PulseScale& with) {
-  std::vector<Triple> told;
+std::vector<Triple> requested_V(SelfTestPulses& pulses, const PulseScale& with) {
+  std::vector<Triple> requested;
   pulses.start();
-  while (pulses.runs() && told.size() < 10'000) told.push_back(pulses.step({}, {}, with));
-  return told;
+  while (pulses.runs() && requested.size() < 10'000) requested.push_back(pulses.step({}, {}, with));
+  return requested;
 }
 
 TEST_CASE("each motor by itself gets low, high, and the same the other way round, a millisecond each") {
   SelfTestPulses pulses;
   CHECK_FALSE(pulses.runs());
-  const auto told = told_V(pulses, scale);
-  REQUIRE(told.size() == SelfTestPulses::round_periods);
-  CHECK(told.size() < 300);
+  const auto requested = requested_V(pulses, scale);
+  REQUIRE(requested.size() == SelfTestPulses::round_periods);
+  CHECK(requested.size() < 300);
   // The amplitude is 0.7 A if the limit and the voltage allow this current.
   const Triple high_V{1.4f + dead_V, 2.0f + dead_V, 7.5f + dead_V};
   const Triple low_V{0.56f + dead_V, 0.8f + dead_V, 3.0f + dead_V};
-  for (std::size_t period = 0; period < told.size(); ++period) {
+  for (std::size_t period = 0; period < requested.size(); ++period) {
     CAPTURE(period);
     const std::size_t motor = period / 90, in_motor = period % 90;
     const float wanted_V = in_motor < 20   ? low_V[motor]
@@ -46,7 +46,7 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
                            : in_motor < 80 ? -low_V[motor]
                                            : 0.0f;
     for (std::size_t i = 0; i < 3; ++i)
-      CHECK(told[period][i] == doctest::Approx(i == motor ? wanted_V : 0.0f).epsilon(1e-5));
+      CHECK(requested[period][i] == doctest::Approx(i == motor ? wanted_V : 0.0f).epsilon(1e-5));
   }
 }
 
@@ -54,16 +54,17 @@ TEST_CASE("a motor with a current limit of nearly nothing gets pulses that tell 
   constexpr Triple little_for_2_A{2.5f, 0.01f, 2.5f};
   SelfTestPulses pulses;
   float largest_V = 0.0f;
-  for (const Triple& told : told_V(pulses, {resistance_ohm, little_for_2_A, 20.0f, dead_V / 20.0f}))
-    largest_V = std::max(largest_V, told[1]);
+  for (const Triple& requested : requested_V(pulses, {resistance_ohm, little_for_2_A, 20.0f, dead_V / 20.0f}))
+    largest_V = std::max(largest_V, requested[1]);
   CHECK(largest_V == doctest::Approx(0.3f * resistance_ohm[1] + dead_V));
   CHECK(pulses.round().motors[1].takes_part);
 }
 
 TEST_CASE("a motor whose current limit is zero gets no pulse and takes no part") {
-  constexpr Triple none_for_2_A{2.5f, 0.0f, 2.5f};
+  constexpr Triple no_room_for_2_A{2.5f, 0.0f, 2.5f};
   SelfTestPulses pulses;
-  for (const Triple& told : told_V(pulses, {resistance_ohm, none_for_2_A, 20.0f, 0.02f})) CHECK(told[1] == 0.0f);
+  for (const Triple& requested : requested_V(pulses, {resistance_ohm, no_room_for_2_A, 20.0f, 0.02f}))
+    CHECK(requested[1] == 0.0f);
   CHECK(pulses.round().motors[0].takes_part);
   CHECK_FALSE(pulses.round().motors[1].takes_part);
   CHECK(pulses.round().motors[2].takes_part);
@@ -75,9 +76,9 @@ TEST_CASE("the means are of settled currents, of all sensors, and of this round 
   for (auto& motor : motors.motors) motor.dead_V = dead_V;
   motors.motors[0].resistance_ohm = 2.0f;
   for (int round = 0; round < 2; ++round) {
-    Triple told_V{};
+    Triple requested_V{};
     pulses.start();
-    while (pulses.runs()) told_V = pulses.step(motors.step(told_V), {}, scale);
+    while (pulses.runs()) requested_V = pulses.step(motors.step(requested_V), {}, scale);
   }
   const auto& means_A = pulses.round().motors[0].current_A;
   CHECK(means_A[0][0] == doctest::Approx(0.28).epsilon(0.01));
@@ -103,7 +104,7 @@ TEST_CASE("pulses that are stopped begin anew with the first motor") {
   for (int i = 0; i < 130; ++i) pulses.step({}, {}, scale);
   pulses.stop();
   CHECK_FALSE(pulses.runs());
-  CHECK(told_V(pulses, scale).size() == SelfTestPulses::round_periods);
+  CHECK(requested_V(pulses, scale).size() == SelfTestPulses::round_periods);
 }
 
 }  // namespace

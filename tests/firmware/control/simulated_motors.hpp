@@ -29,14 +29,14 @@ class SimulatedMotors {
   }
 
   /// Runs one control period. The voltages of the previous call act now; the new voltages act in the next period.
-  control::Triple step(const control::Triple& told_V) {
+  control::Triple step(const control::Triple& requested_V) {
     control::Triple reading_A{};
     for (std::size_t i = 0; i < 3; ++i) {
       SimulatedMotor& motor = motors[i];
       reading_A[motor.sensor] += motor.sensor_gain * motor.current_A;
       advance(motor, acting_V_[i]);
     }
-    acting_V_ = told_V;
+    acting_V_ = requested_V;
     return reading_A;
   }
 

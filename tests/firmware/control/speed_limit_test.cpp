@@ -24,11 +24,11 @@ TEST_CASE("nothing gives way up to 0.8 of the speed limit, all of what drives fr
   const control::SpeedLimit limit = control::prepare(set).speed;
   CHECK_FALSE(is_near(1.59f * 1.59f, limit));
   CHECK(is_near(1.61f * 1.61f, limit));
-  CHECK(gives_way(1.59f * 1.59f, limit) == 0.0f);
-  CHECK(gives_way(0.5f * (1.6f * 1.6f + 1.8f * 1.8f), limit) == doctest::Approx(0.5f));
-  CHECK(gives_way(1.79f * 1.79f, limit) < 1.0f);
-  CHECK(gives_way(1.81f * 1.81f, limit) == 1.0f);
-  CHECK(gives_way(100.0f, limit) == 1.0f);
+  CHECK(driving_reduction(1.59f * 1.59f, limit) == 0.0f);
+  CHECK(driving_reduction(0.5f * (1.6f * 1.6f + 1.8f * 1.8f), limit) == doctest::Approx(0.5f));
+  CHECK(driving_reduction(1.79f * 1.79f, limit) < 1.0f);
+  CHECK(driving_reduction(1.81f * 1.81f, limit) == 1.0f);
+  CHECK(driving_reduction(100.0f, limit) == 1.0f);
 }
 
 /// The waist joint turns for one second with a probe speed of up to 0.19 m/s. A 2 N force acts with or against the

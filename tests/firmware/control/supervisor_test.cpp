@@ -11,12 +11,12 @@ using namespace inkwell;
 using control::advance;
 using control::Situation;
 using control::Supervisor;
+using protocol::condition;
 using protocol::Event;
 using protocol::Events;
 using protocol::events;
 using protocol::Fault;
 using protocol::State;
-using protocol::watch;
 
 constexpr Events good = events(Event::measured, Event::tested, Event::referenced);
 
@@ -25,8 +25,8 @@ State next(State state, Events now) { return advance(in(state), {now, 0}).state;
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
 TEST_CASE("what has no row in the table of what is watched has a place behind it") {
-  CHECK(protocol::place_of(Fault::none) == protocol::watch_table.size());
-  CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::watch_table.size());
+  CHECK(protocol::place_of(Fault::none) == protocol::condition_table.size());
+  CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
 }
 
 TEST_CASE("the way from power-up to force") {
@@ -80,7 +80,7 @@ TEST_CASE("a test on command begins while the force is off, and in a fault only 
   const Supervisor failed = faulty(Fault::self_test_failed);
   const Events untested = events(Event::measured, Event::referenced, Event::self_test);
   CHECK(advance(failed, {untested, 0}) == in(State::testing));
-  CHECK(advance(faulty(Fault::supply_low), {untested, watch(Fault::supply_low)}) == faulty(Fault::supply_low));
+  CHECK(advance(faulty(Fault::supply_low), {untested, condition(Fault::supply_low)}) == faulty(Fault::supply_low));
   CHECK(advance(faulty(Fault::over_speed), {asked, 0}) == faulty(Fault::over_speed));
   CHECK(advance(failed, {events(Event::referenced, Event::self_test), 0}) == failed);
 }
@@ -112,7 +112,7 @@ TEST_CASE("the boot loader takes no fault away: it is there again if the device 
 
 struct FaultCase {
   Fault fault;
-  std::vector<State> watched_in;
+  std::vector<State> monitored_in;
   bool clears_at_once;
 };
 
@@ -169,8 +169,8 @@ TEST_CASE("each fault is looked for in its states and in no other") {
       if (state == State::limited) now |= events(Event::held_back);
       if (state == State::update) now |= events(Event::update);
       bool expected = false;
-      for (const State watched : row.watched_in) expected |= watched == state;
-      CHECK(advance(in(state), {now, watch(row.fault)}) == (expected ? faulty(row.fault) : in(state)));
+      for (const State watched : row.monitored_in) expected |= watched == state;
+      CHECK(advance(in(state), {now, condition(row.fault)}) == (expected ? faulty(row.fault) : in(state)));
     }
 }
 
@@ -182,17 +182,17 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
     CHECK(advance(found, {good, 0}) == found);
     CHECK(advance(found, {good | events(Event::enable), 0}) == found);
     CHECK(advance(found, {clear, 0}) == in(State::ready));
-    CHECK(advance(found, {clear, watch(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
+    CHECK(advance(found, {clear, condition(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
     // The cause of another fault does not prevent clearing. The new fault is raised afterwards.
     const Fault other = row.fault == Fault::supply_low ? Fault::supply_high : Fault::supply_low;
-    CHECK(advance(found, {clear, watch(other)}) == in(State::ready));
+    CHECK(advance(found, {clear, condition(other)}) == in(State::ready));
   }
 }
 
 TEST_CASE("the place of the arm is void after faults that an encoder may have brought about, and after no other") {
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
-    CHECK(((protocol::voiding_watches & watch(row.fault)) != 0) ==
+    CHECK(((protocol::voiding_conditions & condition(row.fault)) != 0) ==
           (row.fault == Fault::encoder_implausible || row.fault == Fault::encoder_wire ||
            row.fault == Fault::motor_implausible || row.fault == Fault::inkwell_implausible));
   }
@@ -207,29 +207,29 @@ TEST_CASE("where a cleared fault leads to") {
 }
 
 TEST_CASE("of several faults the one that explains the others is shown, and the first one stays") {
-  const auto several =
-      watch(Fault::supply_low) | watch(Fault::bridge_fault) | watch(Fault::over_current) | watch(Fault::host_silent);
+  const auto several = condition(Fault::supply_low) | condition(Fault::bridge_fault) | condition(Fault::over_current) |
+                       condition(Fault::host_silent);
   CHECK(advance(in(State::active), {good, several}).fault == Fault::supply_low);
-  CHECK(advance(in(State::active), {good, several | watch(Fault::servo_overrun)}).fault == Fault::servo_overrun);
+  CHECK(advance(in(State::active), {good, several | condition(Fault::servo_overrun)}).fault == Fault::servo_overrun);
   CHECK(advance(in(State::active), {good | events(Event::update, Event::disable), several}).fault == Fault::supply_low);
   const Supervisor first = faulty(Fault::over_speed);
-  CHECK(advance(first, {good, several | watch(Fault::servo_overrun)}) == first);
+  CHECK(advance(first, {good, several | condition(Fault::servo_overrun)}) == first);
 }
 
 TEST_CASE("the short look never says that a state stays which the tables leave") {
   int stays = 0;
   for (std::size_t i = 0; i < protocol::state_count; ++i)
     for (Events now = 0; now < 2u * events(Event::self_test); ++now)
-      for (const auto found :
-           {protocol::Watches{0}, watch(Fault::over_speed), watch(Fault::supply_low), watch(Fault::crystal_failed)}) {
+      for (const auto found : {protocol::Conditions{0}, condition(Fault::over_speed), condition(Fault::supply_low),
+                               condition(Fault::crystal_failed)}) {
         const Supervisor here{static_cast<State>(i), Fault::none};
-        if (!control::surely_stays(here.state, {now, found})) continue;
+        if (!control::stays_unchanged(here.state, {now, found})) continue;
         ++stays;
         CHECK(advance(here, {now, found}) == here);
       }
   CHECK(stays > 1'000);
-  CHECK(control::surely_stays(State::active, {good | events(Event::risen), 0}));
-  CHECK(control::surely_stays(State::limited, {good | events(Event::risen, Event::held_back), 0}));
+  CHECK(control::stays_unchanged(State::active, {good | events(Event::risen), 0}));
+  CHECK(control::stays_unchanged(State::limited, {good | events(Event::risen, Event::held_back), 0}));
 }
 
 }  // namespace

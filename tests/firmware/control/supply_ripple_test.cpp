@@ -14,7 +14,7 @@ using control::ripples;
 using control::SupplyRipple;
 
 constexpr float nominal_V = 18.0f, step_V = 0.01f;
-constexpr SupplyRipple watch{.bearable_counts = 100};
+constexpr SupplyRipple watch{.tolerance_counts = 100};
 
 std::uint16_t counts_of(float supply_V) { return static_cast<std::uint16_t>(supply_V / step_V); }
 
@@ -82,9 +82,9 @@ TEST_CASE("ripple lasts as long as the supply swings, and is over a tenth of a s
 }
 
 TEST_CASE("looks that are skipped, and a count of periods that wraps, change nothing") {
-  const auto sound = periods_until_ripple(swing(2.0f, 100.0f));
-  CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0xFFFF'FF00u) == sound);
-  CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0, 5) == doctest::Approx(sound).epsilon(0.02));
+  const auto at_100_Hz = periods_until_ripple(swing(2.0f, 100.0f));
+  CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0xFFFF'FF00u) == at_100_Hz);
+  CHECK(periods_until_ripple(swing(2.0f, 100.0f), 0, 5) == doctest::Approx(at_100_Hz).epsilon(0.02));
   CHECK(periods_until_ripple(swing(5.0f, 20.0f), 0xFFFF'0000u, 5) == never);
   // The mean follows the supply with a time constant of `within_periods`.
   for (const std::uint32_t every : {1u, 7u}) {

@@ -303,12 +303,12 @@ TEST_CASE("a hot motor's pulse is held back") {
   set[protocol::Parameter::force_limit_N] = info(protocol::Parameter::force_limit_N).maximum;
   set[protocol::Parameter::winding_time_constant_s] = 0.25f;
   set[protocol::Parameter::winding_heat_part] = 1.0f;
-  const float bears_A = set[protocol::Parameter::continuous_current_2_A];
+  const float continuous_A = set[protocol::Parameter::continuous_current_2_A];
   Settings settings = control::prepare(set);
   settings.motor_model.resistance_ohm = {};  // otherwise the motor check reports the current as implausible
   Controller controller = tests::ready_controller(settings);
   auto warm = tests::samples_at_rest();
-  warm.current_A[1] += bears_A;
+  warm.current_A[1] += continuous_A;
   controller.carry_out(tests::command(Command::enable_force));
   for (int i = 0; i < 40'000; ++i) {
     controller.host_alive();
@@ -319,7 +319,7 @@ TEST_CASE("a hot motor's pulse is held back") {
   tests::run(controller, tests::samples_at_rest(), settings, 1);
   controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
   tests::run(controller, warm, settings, 1);
-  CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(bears_A).epsilon(0.02));
+  CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(continuous_A).epsilon(0.02));
 }
 
 }  // namespace

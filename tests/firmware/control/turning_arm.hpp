@@ -24,7 +24,7 @@ struct TurningArm {
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();
   Vector3 position_m = position();
-  float given_J = 0.0f;
+  float delivered_J = 0.0f;
   float largest_change_N = 0.0f;
   std::uint8_t limits = 0;
 
@@ -56,7 +56,7 @@ struct TurningArm {
       const Vector3 felt_N = three(Signal::force_x_N);
       tests::run(controller, samples, settings, 1);
       const Vector3 now_m = position();
-      given_J += dot(felt_N, now_m - position_m);
+      delivered_J += dot(felt_N, now_m - position_m);
       position_m = now_m;
       const Vector3 change_N = three(Signal::force_x_N) - felt_N;
       largest_change_N = std::max(largest_change_N, std::sqrt(dot(change_N, change_N)));

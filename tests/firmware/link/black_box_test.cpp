@@ -360,12 +360,12 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
       board.period = 0;
       board.run(1007, State::active);
     }
-    const auto sound = board.memory;
+    const auto intact = board.memory;
     const Periods expected = is_kept ? around_fault : Periods{920, 940, 960, 980, 1000};
     const Fault fault = is_kept ? Fault::supply_low : Fault::watchdog;
-    for (std::size_t place = 0; place < sizeof sound; place += 3) {
+    for (std::size_t place = 0; place < sizeof intact; place += 3) {
       CAPTURE(place);
-      board.memory = sound;
+      board.memory = intact;
       std::as_writable_bytes(std::span(&board.memory, 1))[place] ^= std::byte{0x10};
       board.start(is_kept ? Fault::none : fault);
       if (!board.is_kept()) continue;

@@ -21,7 +21,9 @@ CommandReport make(Command command, std::uint8_t token = 0) {
   return report;
 }
 
-bool sound(const CommandReport& report) { return decode_command(std::as_bytes(std::span(&report, 1))).has_value(); }
+bool is_accepted(const CommandReport& report) {
+  return decode_command(std::as_bytes(std::span(&report, 1))).has_value();
+}
 
 }  // namespace
 
@@ -44,58 +46,58 @@ TEST_CASE("a command of another length, report, version or kind is ignored") {
 
   CommandReport bad = good;
   bad.version = protocol::protocol_version + 1;
-  CHECK_FALSE(sound(bad));
+  CHECK_FALSE(is_accepted(bad));
   bad = good;
   bad.report_id = protocol::ReportId::pose;
-  CHECK_FALSE(sound(bad));
+  CHECK_FALSE(is_accepted(bad));
   for (int command = static_cast<int>(Command::factory_reset) + 1; command < 256; ++command)
-    CHECK_FALSE(sound(make(static_cast<Command>(command))));
+    CHECK_FALSE(is_accepted(make(static_cast<Command>(command))));
 }
 
 TEST_CASE("a selection holds known signals, at most as many as fit") {
   CommandReport report = make(Command::select_signals);
-  CHECK(sound(report));  // an empty selection stops the scope
+  CHECK(is_accepted(report));  // an empty selection stops the scope
   report.selection.count = protocol::scope_signals_maximum;
   for (std::uint8_t& signal : report.selection.signals) signal = protocol::signal_count - 1;
-  CHECK(sound(report));
+  CHECK(is_accepted(report));
   report.selection.signals[31] = protocol::signal_count;
-  CHECK_FALSE(sound(report));
+  CHECK_FALSE(is_accepted(report));
   report.selection.count = 31;
-  CHECK(sound(report));  // entries after `count` are not checked
+  CHECK(is_accepted(report));  // entries after `count` are not checked
   report.selection.count = protocol::scope_signals_maximum + 1;
-  CHECK_FALSE(sound(report));
+  CHECK_FALSE(is_accepted(report));
   report.selection.count = 255;
-  CHECK_FALSE(sound(report));
+  CHECK_FALSE(is_accepted(report));
 }
 
 TEST_CASE("a test pulse names a motor and has finite numbers") {
   for (const Command command : {Command::test_current, Command::test_voltage}) {
     CommandReport good = make(command);
     good.test = {2, -0.5f, 0.1f};
-    CHECK(sound(good));
+    CHECK(is_accepted(good));
     for (const int motor : {0, 4, 255}) {
       CommandReport bad = good;
       bad.test.motor = static_cast<std::uint8_t>(motor);
-      CHECK_FALSE(sound(bad));
+      CHECK_FALSE(is_accepted(bad));
     }
     const float infinity = std::numeric_limits<float>::infinity();
     const float not_a_number = std::numeric_limits<float>::quiet_NaN();
     for (const float amplitude : {infinity, -infinity, not_a_number}) {
       CommandReport bad = good;
       bad.test.amplitude = amplitude;
-      CHECK_FALSE(sound(bad));
+      CHECK_FALSE(is_accepted(bad));
     }
     for (const float duration_s : {-0.001f, 0.501f, infinity, not_a_number}) {
       CommandReport bad = good;
       bad.test.duration_s = duration_s;
-      CHECK_FALSE(sound(bad));
+      CHECK_FALSE(is_accepted(bad));
     }
   }
 }
 
 TEST_CASE("commands come out in order, one a period, and their tokens with them") {
   CommandQueue queue;
-  CHECK(queue.take() == nullptr);
+  CHECK(queue.pop() == nullptr);
   CHECK_FALSE(queue.take_sign_of_life());
   // The commands wrap around the ring several times.
   std::uint8_t next = 0;
@@ -104,13 +106,13 @@ TEST_CASE("commands come out in order, one a period, and their tokens with them"
     CHECK(queue.take_sign_of_life());
     CHECK_FALSE(queue.take_sign_of_life());
     for (int i = 0; i < 3; ++i) {
-      const CommandReport* command = queue.take();
+      const CommandReport* command = queue.pop();
       REQUIRE(command != nullptr);
       CHECK(command->token == next);
       CHECK(queue.last_token() == next);
       ++next;
     }
-    CHECK(queue.take() == nullptr);
+    CHECK(queue.pop() == nullptr);
   }
 }
 
@@ -123,10 +125,10 @@ TEST_CASE("a full queue refuses, keeps what it has and still notes the sign of l
   CHECK_FALSE(queue.push(make(Command::enable_force, 99)));
   CHECK(queue.take_sign_of_life());
   CHECK_FALSE(queue.waiting(Command::enable_force));
-  CHECK(queue.take() != nullptr);
+  CHECK(queue.pop() != nullptr);
   CHECK(queue.has_room());
-  for (std::uint32_t i = 1; i < CommandQueue::capacity; ++i) CHECK(queue.take()->token == i);
-  CHECK(queue.take() == nullptr);
+  for (std::uint32_t i = 1; i < CommandQueue::capacity; ++i) CHECK(queue.pop()->token == i);
+  CHECK(queue.pop() == nullptr);
 }
 
 TEST_CASE("a waiting command is seen until it is taken") {
@@ -134,33 +136,33 @@ TEST_CASE("a waiting command is seen until it is taken") {
   CHECK(queue.push(make(Command::heartbeat)));
   CHECK(queue.push(make(Command::enable_force)));
   CHECK(queue.waiting(Command::enable_force));
-  queue.take();
+  queue.pop();
   CHECK(queue.waiting(Command::enable_force));
-  queue.take();
+  queue.pop();
   CHECK_FALSE(queue.waiting(Command::enable_force));
 }
 
 TEST_CASE("when the host is gone, the next thing that happens is that the force goes off") {
   CommandQueue queue;
   CHECK(queue.push(make(Command::heartbeat, 5)));
-  queue.take();
+  queue.pop();
   CHECK(queue.push(make(Command::enable_force, 6)));
   queue.host_gone();
   CHECK_FALSE(queue.take_sign_of_life());
   CHECK(queue.push(make(Command::clear_fault, 7)));  // a command of the next host, before the interrupt runs
-  const CommandReport* command = queue.take();
+  const CommandReport* command = queue.pop();
   REQUIRE(command != nullptr);
   CHECK(command->command == Command::stop);
   CHECK(queue.is_of_gone_host(*command));
   CHECK(command->token == 5);  // the discarded command is not acknowledged
   CHECK(queue.last_token() == 5);
-  command = queue.take();
+  command = queue.pop();
   REQUIRE(command != nullptr);
   CHECK(command->token == 7);
   CHECK_FALSE(queue.is_of_gone_host(*command));
-  CHECK(queue.take() == nullptr);
+  CHECK(queue.pop() == nullptr);
   CHECK(queue.push(make(Command::stop, 8)));
-  command = queue.take();
+  command = queue.pop();
   REQUIRE(command != nullptr);
   CHECK_FALSE(queue.is_of_gone_host(*command));
 }

@@ -58,8 +58,8 @@ MotorHeatKeeper fresh() {
 /// Two records have been written, the second record to the second slot.
 Memory memory_with(const Warmth& first, const Warmth& second) {
   MotorHeatKeeper keeper = fresh();
-  keeper.leave(first);
-  keeper.leave(second);
+  keeper.store(first);
+  keeper.store(second);
   return std::bit_cast<Memory>(keeper);
 }
 
@@ -70,13 +70,13 @@ std::optional<Warmth> found_in(const Memory& memory) { return std::bit_cast<Moto
 TEST_CASE("motor heat: what was left last is what the next start finds, and those after it") {
   MotorHeatKeeper keeper = fresh();
   for (const Warmth& warmth : {warm, warmer, warm, warm, warmer}) {
-    keeper.leave(warmth);
+    keeper.store(warmth);
     check_is(keeper.start(false), warmth);
     check_is(keeper.start(false), warmth);
   }
-  keeper.leave(warm);
-  keeper.leave(warmer);
-  keeper.leave(warm);
+  keeper.store(warm);
+  keeper.store(warmer);
+  keeper.store(warm);
   check_is(keeper.start(false), warm);
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("motor heat: memory after power-up is not believed") {
   for (const std::uint32_t word : {0u, 0xFFFF'FFFFu, 0x3E3E'3E3Eu, 0x5A5A'5A5Au}) {
     MotorHeatKeeper keeper = filled_with(word);
     CHECK_FALSE(keeper.start(false).has_value());
-    keeper.leave(warm);
+    keeper.store(warm);
     check_is(keeper.start(false), warm);
   }
 }
@@ -93,14 +93,14 @@ TEST_CASE("motor heat: the power's coming forgets all of it, also for the starts
   MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(memory_with(warm, warmer));
   CHECK_FALSE(keeper.start(true).has_value());
   CHECK_FALSE(keeper.start(false).has_value());
-  keeper.leave(warm);
+  keeper.store(warm);
   check_is(keeper.start(false), warm);
 }
 
 TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and the one before it is found") {
   const auto before = std::bit_cast<Words>(memory_with(warmer, warm));
   MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(before);
-  keeper.leave(warmer);
+  keeper.store(warmer);
   const auto after = std::bit_cast<Words>(keeper);
   constexpr std::size_t number = 7, check = 8, next_number = 18;
   // The previous record in this slot has the same heat.
@@ -113,7 +113,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
     if ((written & 2) != 0) words[check] = after[check];
     keeper = std::bit_cast<MotorHeatKeeper>(words);
     check_is(keeper.start(false), written == 3 ? warmer : warm);
-    keeper.leave(warmer);
+    keeper.store(warmer);
     check_is(keeper.start(false), warmer);
   }
   // The write of another heat is interrupted at each of its words.
@@ -132,7 +132,7 @@ TEST_CASE("motor heat: the first copy after a start leaves what the start found 
   memory.next_number = 0xF000'0001;  // an invalid number, which start() ignores
   auto keeper = std::bit_cast<MotorHeatKeeper>(memory);
   check_is(keeper.start(false), warmer);
-  keeper.leave(warm);
+  keeper.store(warm);
   check_is(keeper.start(false), warm);
   memory = std::bit_cast<Memory>(keeper);
   CHECK(memory.places[0].left.number == 2);
@@ -162,7 +162,7 @@ TEST_CASE("motor heat: what is kept lies in its range") {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   constexpr float most = MotorHeatKeeper::most;
   MotorHeatKeeper keeper = fresh();
-  keeper.leave({{-1e-9f, 0.5f, 225.0f}, {infinity, std::numeric_limits<float>::quiet_NaN(), -infinity}, 1});
+  keeper.store({{-1e-9f, 0.5f, 225.0f}, {infinity, std::numeric_limits<float>::quiet_NaN(), -infinity}, 1});
   check_is(keeper.start(false), {{0.0f, 0.5f, most}, {most, most, 0.0f}, 1});
 }
 

@@ -25,7 +25,7 @@ void check_refused(ParameterStore& store, std::span<const std::byte> report, Ref
                    float value = 0.0f, bool force_is_on = false) {
   const protocol::ParameterSet before = store.values();
   const protocol::TransactionReport result_before = store.result();
-  store.take(10);
+  store.apply_offered(10);
   const control::Settings* settings = &store.settings();
 
   CHECK(store.accept(report, force_is_on) == reason);
@@ -40,7 +40,7 @@ void check_refused(ParameterStore& store, std::span<const std::byte> report, Ref
     CHECK(refused_value == value);
   CHECK(result.transactions == result_before.transactions + 1);
   CHECK(store.values() == before);
-  CHECK(!store.take(11));
+  CHECK(!store.apply_offered(11));
   CHECK(&store.settings() == settings);
   CHECK(store.result().applied_at_periods == result_before.applied_at_periods);
 }
@@ -66,14 +66,14 @@ TEST_CASE("a store starts with the defaults and reads them in the table's order"
 
 TEST_CASE("an accepted transaction takes effect whole, at the period in which the interrupt takes it") {
   ParameterStore store;
-  CHECK(!store.take(0));
+  CHECK(!store.apply_offered(0));
   const control::Settings* before = &store.settings();
   const float ramp_before = before->ramp_per_period;
   const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 500.0f), entry(Parameter::force_ramp_s, 1.0f)};
   CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
   CHECK(before->ramp_per_period == ramp_before);  // the current settings of the interrupt do not change
 
-  CHECK(store.take(1234));
+  CHECK(store.apply_offered(1234));
   const control::Settings& after = store.settings();
   CHECK(&after != before);
   protocol::ParameterSet expected = protocol::default_parameters();
@@ -85,7 +85,7 @@ TEST_CASE("an accepted transaction takes effect whole, at the period in which th
   CHECK(store.result().applied_at_periods == 1234);
   CHECK(store.result().transactions == 1);
 
-  CHECK(!store.take(1235));
+  CHECK(!store.apply_offered(1235));
   CHECK(&store.settings() == &after);
   CHECK(store.result().applied_at_periods == 1234);
 }
@@ -104,7 +104,7 @@ TEST_CASE("defaults are restored by their operation, all of them") {
   ParameterStore store;
   const Transaction change{entry(Parameter::wall_stiffness_N_per_m, 1.0f), entry(Parameter::link_2_m, 0.2f)};
   REQUIRE(store.accept(change.bytes(), false) == Refusal::accepted);
-  store.take(1);
+  store.apply_offered(1);
   Transaction restore{};
   restore.report().operation = protocol::ParameterOperation::restore_defaults;
 
@@ -188,7 +188,7 @@ TEST_CASE("each refusal tells its reason and leaves everything as it was") {
     CHECK(store.accept(Transaction{{stiffness, 0, 1.0f}}.bytes(), false) == Refusal::busy);
     CHECK(store.result().refusal == Refusal::busy);
     CHECK(store.values() == accepted);
-    store.take(5);
+    store.apply_offered(5);
     CHECK(store.accept(Transaction{{stiffness, 0, 1.0f}}.bytes(), false) == Refusal::accepted);
   }
 }
@@ -225,7 +225,7 @@ TEST_CASE("the box must have room for the sphere") {
 
   const Transaction wide{entry(Parameter::box_minimum_y_m, 0.0f), entry(Parameter::box_maximum_y_m, 2.1f * radius_m)};
   REQUIRE(store.accept(wide.bytes(), false) == Refusal::accepted);
-  store.take(1);
+  store.apply_offered(1);
   check_refused(store, Transaction{entry(Parameter::sphere_radius_m, 1.1f * radius_m)}.bytes(), Refusal::inconsistent,
                 id_of(Parameter::sphere_radius_m), 1.1f * radius_m);
   check_refused(store, Transaction{entry(Parameter::box_maximum_y_m, 1.9f * radius_m)}.bytes(), Refusal::inconsistent,
@@ -240,7 +240,7 @@ TEST_CASE("while the force is on the arm can not change, everything else can") {
     const bool arm = row.group == "arm";
     // An equal value is not a change.
     CHECK(store.accept(Transaction{{row.id, 0, row.default_value}}.bytes(), true) == Refusal::accepted);
-    store.take(0);
+    store.apply_offered(0);
     if (!arm) continue;
     const float other = row.default_value == row.maximum ? row.minimum : row.maximum;
     check_refused(store, Transaction{{row.id, 0, other}}.bytes(), Refusal::force_is_on, row.id, other, true);
@@ -254,7 +254,7 @@ TEST_CASE("a bit of the settings that changes by itself is found, whichever it i
   const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 700.0f)};
   REQUIRE(store.accept(transaction.bytes(), false) == Refusal::accepted);
   CHECK(store.settings_are_intact());  // the interrupt has not accepted the settings yet
-  store.take(1);
+  store.apply_offered(1);
   CHECK(store.settings_are_intact());
   auto* bytes = reinterpret_cast<unsigned char*>(const_cast<control::Settings*>(&store.settings()));
   for (std::size_t i = 0; i < sizeof(control::Settings); i += 7) {
@@ -281,7 +281,7 @@ TEST_CASE("a bit of the values that changes by itself is found, whichever it is"
 TEST_CASE("nothing is made of damaged values, and nothing hides them, be it a transaction or the defaults") {
   ParameterStore store;
   REQUIRE(store.accept(Transaction{entry(Parameter::force_limit_N, 1.5f)}.bytes(), false) == Refusal::accepted);
-  store.take(1);
+  store.apply_offered(1);
   Transaction transaction{entry(Parameter::force_limit_N, 1.0f)};
   SUBCASE("one value, which may be the damaged one") {}
   SUBCASE("all of them") {
@@ -292,7 +292,7 @@ TEST_CASE("nothing is made of damaged values, and nothing hides them, be it a tr
   test::flip_bit(force_limit_N);
   check_refused(store, transaction.bytes(), Refusal::busy);
   CHECK_FALSE(store.restore_defaults());
-  CHECK(!store.take(2));
+  CHECK(!store.apply_offered(2));
   CHECK_FALSE(store.values_are_intact());
   test::flip_bit(force_limit_N);
   CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
@@ -309,7 +309,7 @@ TEST_CASE("what is stored is restored, unless a bit of it has changed by itself"
   const protocol::ParameterSet before = store.values();
   CHECK(store.accept(restore.bytes(), false, &stored) == Refusal::busy);
   CHECK(store.values() == before);
-  CHECK(!store.take(1));
+  CHECK(!store.apply_offered(1));
   test::flip_bit(stored.value().values[3]);
   CHECK(store.accept(restore.bytes(), false, &stored) == Refusal::accepted);
   CHECK(store.values() == set);

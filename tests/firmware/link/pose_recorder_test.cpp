@@ -45,11 +45,11 @@ TEST_CASE("a report shows the newest period and its signals") {
   Recorded recorded;
   PoseRecorder& recorder = recorded.poses;
   PoseReport report;
-  CHECK_FALSE(recorder.take(report));
+  CHECK_FALSE(recorder.read_for_report(report));
   CHECK_FALSE(recorder.read(report));
   for (std::uint32_t period = 1000; period < 1019; ++period) recorded.record(some_signals(0.5f), period);
   recorded.record(some_signals(), 1019);
-  REQUIRE(recorder.take(report));
+  REQUIRE(recorder.read_for_report(report));
   CHECK(report.report_id == protocol::ReportId::pose);
   CHECK(report.state == protocol::State::ready);
   CHECK(report.time_periods == 1019);
@@ -73,7 +73,7 @@ TEST_CASE("a report shows the newest period and its signals") {
 
   recorded.is_referenced = false;
   recorded.record(some_signals(0.5f), 1020);
-  REQUIRE(recorder.take(report));
+  REQUIRE(recorder.read_for_report(report));
   CHECK(report.time_periods == 1020);
   CHECK(int{report.limits} == 2);
   CHECK(int{report.is_referenced} == 0);
@@ -91,7 +91,7 @@ TEST_CASE("the load is the longest interrupt since the last report that was take
       recorded.record(signals, i, i == 7 ? longest : 84u);
       REQUIRE(recorder.read(report));  // read() does not reset the maximum
     }
-    REQUIRE(recorder.take(report));
+    REQUIRE(recorder.read_for_report(report));
     return int{report.servo_load};
   };
   CHECK(millisecond(4200) == 127);

@@ -34,12 +34,12 @@ std::span<const std::byte> bytes(const ShapesReport& report) {
   return std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
 }
 
-constexpr protocol::SurfaceEntry sound_surface{800.0f, 1.0f, 0.5f, 0.4f, 2.0f};
+constexpr protocol::SurfaceEntry valid_surface{800.0f, 1.0f, 0.5f, 0.4f, 2.0f};
 
 ShapesReport one_plane() {
   ShapesReport report{};
   report.plane_count = 1;
-  report.planes[0] = {{0.0f, 0.0f, 0.02f}, {0.0f, 0.0f, 4.0f}, sound_surface};
+  report.planes[0] = {{0.0f, 0.0f, 0.02f}, {0.0f, 0.0f, 4.0f}, valid_surface};
   return report;
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("a set of shapes is taken whole or refused whole") {
     ShapesReport report = one_plane();
     report.plane_count = 2;
     report.planes[1] = report.planes[0];
-    report.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, sound_surface};
+    report.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, valid_surface};
     change(report);
     return report;
   };

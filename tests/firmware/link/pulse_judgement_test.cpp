@@ -24,14 +24,14 @@ struct Bench {
   PulseJudgement judgement() {
     const control::Settings settings = control::prepare(parameters);
     control::SelfTestPulses pulses;
-    control::Triple told_V{};
+    control::Triple requested_V{};
     pulses.start();
     for (float period = 0.0f; pulses.runs(); ++period) {
       std::array<std::int32_t, 3> counts{};
       for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int32_t>(period * counts_per_period[i]);
-      told_V = pulses.step(simulated.step(told_V), counts,
-                           {settings.motor_model.resistance_ohm, settings.motors.current_limit_A, supply_V,
-                            board::omni_driver.bridge_dead_time_part()});
+      requested_V = pulses.step(simulated.step(requested_V), counts,
+                                {settings.motor_model.resistance_ohm, settings.motors.current_limit_A, supply_V,
+                                 board::omni_driver.bridge_dead_time_part()});
     }
     return link::judge(pulses.round(), settings);
   }

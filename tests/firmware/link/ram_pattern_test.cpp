@@ -25,32 +25,32 @@ struct Word {
 using Memory = std::array<Word, 10>;
 
 template <class Change>
-bool is_sound_with(Change change) {
+bool is_intact_with(Change change) {
   Memory memory{};
   change(memory);
   std::array<std::uint32_t, 4> room;
-  return link::keeps_pattern(std::span<Word>(memory), std::span(room));
+  return link::retains_pattern(std::span<Word>(memory), std::span(room));
 }
 
 TEST_CASE("sound memory keeps the pattern, and has its content afterwards") {
   Memory memory{};
   for (std::uint32_t i = 0; i < memory.size(); ++i) memory[i] = 1000 + i;
   std::array<std::uint32_t, 4> room;
-  CHECK(link::keeps_pattern(std::span<Word>(memory), std::span(room)));
+  CHECK(link::retains_pattern(std::span<Word>(memory), std::span(room)));
   for (std::uint32_t i = 0; i < memory.size(); ++i) CHECK(memory[i] == 1000 + i);
 }
 
 TEST_CASE("a bit that stands still is found, whichever, high or low, first word or last") {
   for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}})
     for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
-      CHECK_FALSE(is_sound_with([&](Memory& memory) { memory[place].stuck_high = bit; }));
-      CHECK_FALSE(is_sound_with([&](Memory& memory) { memory[place].stuck_low = bit; }));
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_high = bit; }));
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_low = bit; }));
     }
 }
 
 TEST_CASE("a write that disturbs a neighbour is found, before it or behind it") {
-  CHECK_FALSE(is_sound_with([](Memory& memory) { memory[1].disturbs = &memory[2]; }));
-  CHECK_FALSE(is_sound_with([](Memory& memory) { memory[2].disturbs = &memory[1]; }));
+  CHECK_FALSE(is_intact_with([](Memory& memory) { memory[1].disturbs = &memory[2]; }));
+  CHECK_FALSE(is_intact_with([](Memory& memory) { memory[2].disturbs = &memory[1]; }));
 }
 
 }  // namespace

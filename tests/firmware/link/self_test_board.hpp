@@ -28,14 +28,14 @@ struct SelfTestBoard {
   control::Drive drive;
   std::optional<protocol::SelfTestItem> floating;  ///< a wire that is not driven
   std::uint32_t follows_by_chance = 0;  ///< number of checks in which a driven wire follows the pull resistors
-  std::optional<protocol::SelfTestItem> looked_at;
-  std::uint32_t looks = 0;
+  std::optional<protocol::SelfTestItem> tested_wire;
+  std::uint32_t readings = 0;
   std::uint32_t driven_periods = 0;
 
   void interrupt() {
-    control::Triple told_V{};
-    for (std::size_t i = 0; i < 3; ++i) told_V[i] = drive.duty[i] * samples.supply_V;
-    samples.current_A = motors.step(told_V);
+    control::Triple requested_V{};
+    for (std::size_t i = 0; i < 3; ++i) requested_V[i] = drive.duty[i] * samples.supply_V;
+    samples.current_A = motors.step(requested_V);
     for (std::size_t i = 0; i < 3; ++i) samples.current_A[i] += offset_A[i];
     drive = controller.step(samples, settings, clock);
     if (controller.state() == protocol::State::testing) link.self_test.exchange(controller);
@@ -48,9 +48,9 @@ struct SelfTestBoard {
     link.self_test.follow(controller, settings, {samples.gimbal_ratio, analog_supply_V, analog_supply_is_right});
     if (const auto wire = link.self_test.wanted_wire()) {
       CHECK_FALSE(drive.enabled);
-      looks = wire == looked_at ? looks + 1 : 1;
-      looked_at = wire;
-      link.self_test.note_wire(wire == floating || looks <= follows_by_chance);
+      readings = wire == tested_wire ? readings + 1 : 1;
+      tested_wire = wire;
+      link.self_test.note_wire(wire == floating || readings <= follows_by_chance);
     }
   }
 

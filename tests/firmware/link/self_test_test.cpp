@@ -157,7 +157,7 @@ TEST_CASE("each wire that follows its pulls every time is told; one that does so
       CHECK((board.result(static_cast<SelfTestItem>(i)) == SelfTestResult::failed) == (i == item));
   }
   Board board;
-  board.follows_by_chance = SelfTest::wire_looks - 1;
+  board.follows_by_chance = SelfTest::wire_readings - 1;
   board.run_while(State::starting);
   board.run_while(State::testing);
   CHECK(board.controller.state() == State::unreferenced);

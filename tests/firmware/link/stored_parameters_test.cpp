@@ -43,12 +43,12 @@ struct Board {
   void set(Parameter parameter, float value) {
     REQUIRE(parameters.accept(test::Transaction{test::entry(parameter, value)}.bytes(), false) ==
             protocol::Refusal::accepted);
-    parameters.take(periods);
+    parameters.apply_offered(periods);
   }
   void step(bool force_is_on = false) {
     periods += 10;
     stored.follow(parameters, force_is_on, periods);
-    parameters.take(periods);
+    parameters.apply_offered(periods);
   }
   StoreResult finish() {
     for (int i = 0; i < 2000 && stored.is_busy(); ++i) step();
@@ -94,7 +94,7 @@ void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
 }
 
 /// Returns the header of a record of this firmware.
-RecordHead own_head() {
+RecordHead valid_head() {
   PlainFlash flash;
   store_in(flash, force_limit, 1.0f);
   return log_of(flash).newest()->head;
@@ -249,7 +249,7 @@ TEST_CASE("stored parameters: what stands there already is not written again") {
 
 TEST_CASE("stored parameters: zero and minus zero are two values") {
   PlainFlash flash;
-  RecordHead head = own_head();
+  RecordHead head = valid_head();
   write(flash, head, {{id_of(Parameter::box_minimum_x_m), -0.0f}});
   Board board(flash);
   board.set(Parameter::box_minimum_x_m, 0.0f);
@@ -295,14 +295,14 @@ TEST_CASE(
     CHECK(board.report().result == StoreResult::under_way);
     CHECK(board.held(force_limit) == 2.0f);
   }
-  board.parameters.take(board.periods);
+  board.parameters.apply_offered(board.periods);
   CHECK(board.finish() == StoreResult::nothing_stored);
   CHECK(board.parameters.values() == link::image_defaults());
 }
 
 TEST_CASE("stored parameters: what another firmware knew is named and kept") {
   PlainFlash flash;
-  RecordHead head = own_head();
+  RecordHead head = valid_head();
   head.firmware_version = 0x0009'0807;
   head.parameter_table_hash = 0x1234;
   write(flash, head, {{id_of(force_limit), 1.25f}, {7, 5.0f}, {70'000, 6.0f /* no id of any firmware */}, {999, 7.0f}});
@@ -335,7 +335,7 @@ TEST_CASE("stored parameters: of many that it does not know as many are kept as 
   PlainFlash flash;
   Entries many;
   for (std::uint32_t i = 0; i < 200; ++i) many.emplace_back(2 + i % 90, 1.0f);
-  write(flash, own_head(), many);
+  write(flash, valid_head(), many);
   Board board(flash);
   CHECK(board.report().unknown == 200);
   for (const std::uint16_t id : board.report().unknown_ids) CHECK(id >= 2);
@@ -347,7 +347,7 @@ TEST_CASE("stored parameters: of many that it does not know as many are kept as 
 
 TEST_CASE("stored parameters: those of another force law are neither taken nor kept") {
   PlainFlash flash;
-  RecordHead head = own_head();
+  RecordHead head = valid_head();
   head.force_law_hash ^= 1;
   write(flash, head, {{id_of(force_limit), 1.25f}, {protocol::force_law_first_id, 3.0f}});
   Board board(flash);
@@ -363,7 +363,7 @@ TEST_CASE("stored parameters: those of another force law are neither taken nor k
 TEST_CASE(
     "stored parameters: a value that this firmware refuses becomes the default, and a pair that contradicts too") {
   PlainFlash flash;
-  write(flash, own_head(),
+  write(flash, valid_head(),
         {{id_of(force_limit), 1e9f},
          {id_of(link_length), 0.15f},
          {id_of(Parameter::box_minimum_x_m), 0.05f},
@@ -384,7 +384,7 @@ TEST_CASE(
 TEST_CASE("stored parameters: records of another schema or kind are told, and give the defaults") {
   for (const bool other_schema : {true, false}) {
     PlainFlash flash;
-    RecordHead head = own_head();
+    RecordHead head = valid_head();
     if (other_schema)
       head.schema = protocol::store_schema + 1;
     else

@@ -62,9 +62,9 @@ TEST_CASE("firmware update: the device leaves when the host has its answer, not 
   CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({0}));
   CHECK(bench.control(request(0xA1, 3, 0, 3, 6)) == answer({0, 0, 0, 0, 0, 0}));
   CHECK_FALSE(bench.device.leaves_for_update());
-  CHECK_FALSE(bench.link.update_asked.load());
+  CHECK_FALSE(bench.link.update_requested.load());
   bench.setup(detach);
-  CHECK(bench.link.update_asked.load());  // from now on no command can switch the force on
+  CHECK(bench.link.update_requested.load());  // from now on no command can switch the force on
   CHECK_FALSE(bench.device.leaves_for_update());
   CHECK(bench.status_in() == done_result);
   CHECK(bench.device.leaves_for_update());
@@ -93,7 +93,7 @@ TEST_CASE("firmware update: with a force, or one about to come, a detach has no 
   CHECK(bench.control(detach) == done_result);
   CHECK(status() == refused);
   CHECK_FALSE(bench.device.leaves_for_update());
-  CHECK_FALSE(bench.link.update_asked.load());
+  CHECK_FALSE(bench.link.update_requested.load());
   bench.run(1);
   CHECK(bench.control(detach) == done_result);
   CHECK(status() == answer({0, 0, 0, 0, 1, 0}));
@@ -110,7 +110,7 @@ TEST_CASE("firmware update: a reset of the bus forgets it") {
   bench.device.poll();
   bench.configure();
   CHECK_FALSE(bench.device.leaves_for_update());
-  CHECK_FALSE(bench.link.update_asked.load());
+  CHECK_FALSE(bench.link.update_requested.load());
 }
 
 TEST_CASE("firmware update: other requests, directions and lengths are refused") {

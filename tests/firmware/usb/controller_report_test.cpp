@@ -9,14 +9,14 @@ namespace {
 
 using namespace inkwell;
 
-protocol::PoseReport somewhere() {
+protocol::PoseReport example_pose() {
   protocol::PoseReport pose{};
   pose.is_referenced = 1;
   return pose;
 }
 
 TEST_CASE("the controller counts hundredths of a millimetre and tenths of a milliradian, to the nearest") {
-  auto pose = somewhere();
+  auto pose = example_pose();
   const float position_m[] = {0.123456f, -0.000004f, -0.1f}, gimbal_rad[] = {1.00006f, -0.5f, 0.00004f};
   std::copy_n(position_m, 3, pose.position_m);
   std::copy_n(gimbal_rad, 3, pose.gimbal_rad);
@@ -30,7 +30,7 @@ TEST_CASE("the controller counts hundredths of a millimetre and tenths of a mill
 }
 
 TEST_CASE("what is beyond the range, or no number, stays within it") {
-  auto pose = somewhere();
+  auto pose = example_pose();
   pose.position_m[0] = 1.0f;
   pose.position_m[1] = -std::numeric_limits<float>::infinity();
   pose.position_m[2] = std::numeric_limits<float>::quiet_NaN();
@@ -41,7 +41,7 @@ TEST_CASE("what is beyond the range, or no number, stays within it") {
 }
 
 TEST_CASE("the axes of a place are in their middle while nobody knows where the arm is, those of the gimbal tell") {
-  auto pose = somewhere();
+  auto pose = example_pose();
   pose.position_m[1] = 0.05f;
   pose.gimbal_rad[1] = 0.2f;
   CHECK(usb::controller_report(pose).position[1] == 5000);

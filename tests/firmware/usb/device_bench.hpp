@@ -132,8 +132,8 @@ struct DeviceBench {
   void run(std::uint32_t count, protocol::State state = protocol::State::ready,
            protocol::Fault fault = protocol::Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      link.parameters.take(periods);
-      if (const protocol::CommandReport* command = link.commands.take()) last_command = *command;
+      link.parameters.apply_offered(periods);
+      if (const protocol::CommandReport* command = link.commands.pop()) last_command = *command;
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       signals[protocol::Signal::gimbal_1_rad] = 1e-4f * static_cast<float>(periods % 30'000);

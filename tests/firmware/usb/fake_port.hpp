@@ -87,7 +87,7 @@ class FakePort final : public usb::Port {
 
   bool cancel(std::uint8_t endpoint_address) override {
     ++at(endpoint_address).cancels;
-    if (asked_in_cancel == (endpoint_address & 0x7F)) in(*std::exchange(asked_in_cancel, std::nullopt));
+    if (polled_in_cancel == (endpoint_address & 0x7F)) in(*std::exchange(polled_in_cancel, std::nullopt));
     const bool was_left = at(endpoint_address).running;
     forget_transfer(endpoint_address);
     return was_left;
@@ -121,7 +121,7 @@ class FakePort final : public usb::Port {
   }
   bool frames_run = true;
   /// The host polls this endpoint once, directly before the device cancels the transfer.
-  std::optional<std::uint8_t> asked_in_cancel;
+  std::optional<std::uint8_t> polled_in_cancel;
 
   void reset() {
     for (Endpoint& endpoint : endpoints_) endpoint = {};

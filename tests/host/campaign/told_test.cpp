@@ -129,6 +129,6 @@ TEST_CASE("faults that were told by no case are named with the reason, whenever 
   CHECK(some.find("| `motor_hot` | A motor gets less") != std::string::npos);
   results.back().error = "The board did not start.";
   CHECK(section_of(page_of(results), "Told by none").find("`encoder_wire`") != std::string::npos);
-  for (const protocol::Watch& row : protocol::watch_table) told_in(&Result::detected_as, row.fault);
+  for (const protocol::Condition& row : protocol::condition_table) told_in(&Result::detected_as, row.fault);
   CHECK(section_of(page_of(results), "Told by none").ends_with("no case that was run told: none.\n"));
 }

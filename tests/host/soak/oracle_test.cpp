@@ -158,10 +158,10 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
 TEST_CASE("a fault whose cause was there is missed when nothing or another one is told") {
   Watched board(Kind::too_fast);
   board.step(State::fault, Fault::over_speed);
-  board.oracle.must_have_told(protocol::watch(Fault::over_speed));
+  board.oracle.must_have_told(protocol::condition(Fault::over_speed));
   board.check_nothing();
   board.oracle.begin(2, Kind::silence);
-  board.oracle.must_have_told(protocol::watch(Fault::host_silent));
+  board.oracle.must_have_told(protocol::condition(Fault::host_silent));
   board.check_only(Complaint::missed_fault);
   Watched cable(Kind::cable);
   cable.step(State::fault, Fault::usb_gone);

@@ -38,40 +38,40 @@ struct AnalogSupply {
   /// Largest error of the manufacturer's measurement: 1 %.
   static constexpr std::uint16_t calibration_error_counts = typical_counts / 100;
   /// Consecutive wrong readings that are tolerated. A current loop does not follow a shorter disturbance.
-  static constexpr std::uint32_t bearable_looks = 12;
+  static constexpr std::uint32_t tolerated_readings = 12;
 
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA
-  std::int32_t bearable_per_mille = 0;            ///< tolerated deviation of VDDA
-  std::uint32_t wrong_looks = 0;
+  std::int32_t tolerance_per_mille = 0;           ///< tolerated deviation of VDDA
+  std::uint32_t wrong_readings = 0;
 };
 
 /// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. If this value is out of range, it
 /// was never written or was lost. In this case the typical value is used, and the tolerance is increased by the spread
 /// between chips.
 constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
-  constexpr auto bearable_per_mille = static_cast<std::int32_t>(1000.0f * protocol::analog_supply_bearable + 0.5f);
+  constexpr auto tolerance_per_mille = static_cast<std::int32_t>(1000.0f * protocol::analog_supply_tolerance + 0.5f);
   constexpr std::int32_t spread_per_mille =
       1000 * (AnalogSupply::maximum_counts - AnalogSupply::typical_counts) / AnalogSupply::typical_counts + 1;
   const bool is_possible = calibrated_counts >= AnalogSupply::minimum_counts - AnalogSupply::calibration_error_counts &&
                            calibrated_counts <= AnalogSupply::maximum_counts + AnalogSupply::calibration_error_counts;
-  if (is_possible) return {.expected_counts = calibrated_counts, .bearable_per_mille = bearable_per_mille};
-  return {.bearable_per_mille = bearable_per_mille + spread_per_mille};
+  if (is_possible) return {.expected_counts = calibrated_counts, .tolerance_per_mille = tolerance_per_mille};
+  return {.tolerance_per_mille = tolerance_per_mille + spread_per_mille};
 }
 
 /// Whether this reading of VREFINT corresponds to a valid VDDA.
 inline bool is_right(const AnalogSupply& supply, std::uint16_t reference_counts) {
   // VDDA / nominal VDDA = expected reading / this reading.
   const std::int32_t off_counts = std::abs(supply.expected_counts - reference_counts);
-  return 1000 * off_counts <= supply.bearable_per_mille * reference_counts;
+  return 1000 * off_counts <= supply.tolerance_per_mille * reference_counts;
 }
 
-/// Checks one reading of VREFINT. Returns true after more than `bearable_looks` consecutive wrong readings.
+/// Checks one reading of VREFINT. Returns true after more than `tolerated_readings` consecutive wrong readings.
 inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
   if (is_right(supply, reference_counts))
-    supply.wrong_looks = 0;
-  else if (supply.wrong_looks <= AnalogSupply::bearable_looks)
-    ++supply.wrong_looks;
-  return supply.wrong_looks > AnalogSupply::bearable_looks;
+    supply.wrong_readings = 0;
+  else if (supply.wrong_readings <= AnalogSupply::tolerated_readings)
+    ++supply.wrong_readings;
+  return supply.wrong_readings > AnalogSupply::tolerated_readings;
 }
 
 /// VDDA from this reading of VREFINT. Returns 0 for a reading of 0, which no VDDA can cause.

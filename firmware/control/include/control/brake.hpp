@@ -34,13 +34,13 @@ struct Brake {
 };
 
 /// Whether the motors may be shorted: true if none of these faults requires coasting.
-constexpr bool may_brake(protocol::Watches found) {
-  return (found & protocol::watches([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
+constexpr bool may_brake(protocol::Conditions found) {
+  return (found & protocol::conditions([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
 }
 
 /// Call this function once per control period, including the first period of braking. `speed_squared_m2_per_s2` is the
 /// squared probe speed. `found` comes from the supervisor.
-void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found);
+void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions found);
 
 /// Whether the motors are shorted in this period. `limit_A` is Limits::brake_A. A current that is not a number releases
 /// the motors.

@@ -24,21 +24,21 @@ struct BridgePins {
 struct BridgeWire {
   /// Consecutive wrong readings that are tolerated. A wire settles within 1 us, but a single reading may coincide with
   /// a spike.
-  static constexpr std::uint32_t bearable_looks = 1;
+  static constexpr std::uint32_t tolerated_readings = 1;
 
-  std::uint32_t wrong_looks = 0;
+  std::uint32_t wrong_readings = 0;
 };
 
 /// Whether a wire was at a wrong level for too many consecutive readings.
-constexpr bool touches(const BridgeWire& wire) { return wire.wrong_looks > BridgeWire::bearable_looks; }
+constexpr bool is_shorted(const BridgeWire& wire) { return wire.wrong_readings > BridgeWire::tolerated_readings; }
 
-constexpr void look_at(BridgeWire& wire, const BridgePins& pins) {
+constexpr void update_wire_check(BridgeWire& wire, const BridgePins& pins) {
   const bool wrong = pins.heartbeat_is_high ||
                      (pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.hold_is_high || pins.a_leg_is_high);
   if (!wrong)
-    wire.wrong_looks = 0;
-  else if (!touches(wire))
-    ++wire.wrong_looks;
+    wire.wrong_readings = 0;
+  else if (!is_shorted(wire))
+    ++wire.wrong_readings;
 }
 
 }  // namespace inkwell::control

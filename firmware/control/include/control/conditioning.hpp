@@ -62,7 +62,7 @@ struct SwitchFilter {
   static constexpr std::size_t count = protocol::switch_count;
 
   std::uint8_t closed = 0;
-  std::array<std::uint8_t, count> looks{};  ///< consecutive readings that differ from `closed`
+  std::array<std::uint8_t, count> changed_readings{};  ///< consecutive readings that differ from `closed`
 };
 
 /// `turn` is the switch of this period, 0..SwitchFilter::count - 1.

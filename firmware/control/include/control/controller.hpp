@@ -79,10 +79,10 @@ class Controller {
   /// Sets the shapes of a program on the PC. `shapes` must not change until the next call.
   void replace_shapes(const Shapes& shapes);
   /// Requests the state `update`. Call this function in each period until the boot loader starts.
-  void leave_for_update() { asked_.events |= protocol::events(protocol::Event::update); }
+  void leave_for_update() { pending_.events |= protocol::events(protocol::Event::update); }
   /// Reports faults found outside the signal path. The faults switch the bridges off in the next step.
-  void raise(protocol::Watches found) { asked_.found |= found; }
-  void raise(protocol::Fault fault) { raise(protocol::watch(fault)); }
+  void raise(protocol::Conditions found) { pending_.found |= found; }
+  void raise(protocol::Fault fault) { raise(protocol::condition(fault)); }
 
   // ---- while the state is `testing`, also before step ----
 
@@ -122,14 +122,14 @@ class Controller {
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };
 
   void condition_samples(const Samples& samples, const Settings& settings);
-  [[gnu::cold]] void look_for_jump(const Triple& change_A, const Settings& settings);
+  [[gnu::cold]] void check_for_jumps(const Triple& change_A, const Settings& settings);
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
-  void give(Force asked, const Settings& settings);
+  void limit_and_apply_force(Force requested, const Settings& settings);
   // Rare code is compiled for size, because the interrupt memory is small.
-  [[gnu::cold]] Force less_driving(const Force& asked, float power_W, const Settings& settings);
+  [[gnu::cold]] Force reduce_driving_part(const Force& requested, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
-  [[gnu::cold]] void know_resistance(const Settings& settings);
+  [[gnu::cold]] void update_resistance(const Settings& settings);
   void watch_motors(const Settings& settings);
   void bound_voltages(const Settings& settings);
   void regulate_currents(const Settings& settings);
@@ -140,7 +140,7 @@ class Controller {
   [[gnu::cold]] void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
   [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
-  void follow_test(protocol::Watches found, const Settings& settings);
+  void follow_test(protocol::Conditions found, const Settings& settings);
   [[gnu::cold]] void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);
@@ -167,7 +167,7 @@ class Controller {
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
-  Situation asked_;                      ///< external requests and faults since the previous period
+  Situation pending_;                    ///< external requests and faults since the previous period
   protocol::Events lasting_events_ = 0;  ///< events requested in every period
   bool force_is_on_ = false;
   Brake brake_;
@@ -176,7 +176,7 @@ class Controller {
   ProgramForce program_;
   bool world_changed_ = false;  ///< shapes or settings changed since the previous period
   bool law_rendered_ = true;    ///< false while a program replaces the walls
-  Vector3 touched_N_;           ///< force of law, shapes and transition in the previous period
+  Vector3 rendered_N_;          ///< force of law, shapes and transition in the previous period
   Transition transition_;
   EnergyReserve reserve_;
   std::uint32_t late_force_reports_ = 0;

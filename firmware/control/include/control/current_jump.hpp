@@ -15,7 +15,7 @@ namespace inkwell::control {
 struct CurrentJump {
   /// Tolerated current change per control period, in addition to the explained change. In simulation, healthy motors
   /// reached half of this value while a program reversed a force of 7 N every millisecond.
-  static constexpr float bearable_A = 0.3f;
+  static constexpr float tolerance_A = 0.3f;
 };
 
 /// Replaces `current_A` by `now_A` and returns the change.
@@ -29,13 +29,13 @@ inline float replace(float& current_A, float now_A) {
 /// each change.
 inline bool is_large(float first_A, float second_A, float third_A) {
   return first_A * first_A + second_A * second_A + third_A * third_A >
-         CurrentJump::bearable_A * CurrentJump::bearable_A;
+         CurrentJump::tolerance_A * CurrentJump::tolerance_A;
 }
 
 /// Whether neither the current loop nor the speed explains a current change. A current loop changes its current by
 /// about its previous error, `error_A`. A back EMF changes a current by at most back EMF / resistance.
 inline bool is_jump(float change_A, float error_A, float back_emf_V, const Resistance& resistance) {
-  const float beyond_A = std::fabs(change_A) - CurrentJump::bearable_A - std::fabs(error_A);
+  const float beyond_A = std::fabs(change_A) - CurrentJump::tolerance_A - std::fabs(error_A);
   return beyond_A * resistance.value_ohm > std::fabs(back_emf_V);
 }
 

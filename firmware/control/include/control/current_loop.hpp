@@ -40,7 +40,7 @@ struct VoltageRange {
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =
-      resistance.with_room_ohm() * most_A + bridge_V + MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V);
+      resistance.with_room_ohm() * most_A + bridge_V + MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V);
   return {std::max(std::min(back_emf_V - half_V, 0.0f), -bound_V),
           std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
 }

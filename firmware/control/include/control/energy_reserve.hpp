@@ -14,9 +14,9 @@
 namespace inkwell::control {
 
 struct EnergyLimits {
-  float reserve_J;           ///< energy that may be delivered in advance
-  float given_J_per_period;  ///< energy that may be delivered in each period
-  float low_reserves_per_J;  ///< 1 / energy below which the force is reduced
+  float reserve_J;            ///< energy that may be delivered in advance
+  float refill_J_per_period;  ///< energy that may be delivered in each period
+  float low_reserves_per_J;   ///< 1 / energy below which the force is reduced
 };
 
 struct EnergyReserve {
@@ -32,7 +32,8 @@ struct EnergyReserve {
 
 /// Advances by one control period. Subtracts the work of the previous period's force, `felt_N`, on the path to
 /// `position_m`. Adds the energy that may be delivered in each period.
-void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits);
+void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
+                   const EnergyLimits& limits);
 
 /// Remaining energy divided by the energy below which the force is reduced.
 inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
@@ -43,7 +44,7 @@ inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
 }
 
 /// Part of the driving force component to remove, 0..1.
-inline float gives_way(const EnergyReserve& reserve, const EnergyLimits& limits) {
+inline float driving_reduction(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
 }
 

@@ -19,7 +19,7 @@ class FeltForceLaw {
   }
 
   /// Call this function in each period in which the law does not run. The law then restarts from its initial state.
-  void rest() {
+  void reset() {
     if (periods_ != 0) reset_force_law(memory_);
     periods_ = 0;
   }

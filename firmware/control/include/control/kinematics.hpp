@@ -70,7 +70,7 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
 /// 2 and 2 for joint 3. The result is the nearest force without torque at the idle joint, and is never larger than the
 /// requested force. The torque of joint 1 does not change, because joint 1 moves the probe perpendicular to the motion
 /// of joints 2 and 3.
-[[gnu::cold]] void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian);
+[[gnu::cold]] void remove_idle_torque(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian);
 
 /// Elbow angle: the angle of link 3 relative to link 2. The elbow stops limit this angle. On a parallelogram the elbow
 /// angle is joint 3 minus joint 2.

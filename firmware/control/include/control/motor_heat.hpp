@@ -17,8 +17,8 @@ struct MotorHeat {
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
-  Triple beyond{};       ///< heat above motor_heat_holds_back_from
-  bool too_hot = false;  ///< set at motor_heat_fault, cleared when all motors are below motor_heat_holds_back_from
+  Triple beyond{};       ///< heat above motor_heat_limits_from
+  bool too_hot = false;  ///< set at motor_heat_fault, cleared when all motors are below motor_heat_limits_from
   Triple housing{};      ///< part of the heat
   Triple square_sum_A2{};
   std::uint32_t readings = 0;  ///< number of readings in each sum

@@ -46,10 +46,10 @@ struct MeasuredMotors {
 /// Assumed resistance of a motor.
 struct Resistance {
   /// Tolerated excess resistance of a measured motor. The tolerance covers an error of 50 K in the heat model.
-  static constexpr float bearable_more_if_measured = 0.2f;
+  static constexpr float tolerated_increase_if_measured = 0.2f;
   /// Tolerated excess resistance without a measurement. Copper that is 100 K hotter has 39 % more resistance. Switches
   /// and shunt add 4 %.
-  static constexpr float bearable_more_else = 0.43f;
+  static constexpr float tolerated_increase_if_unmeasured = 0.43f;
   /// Part of the tolerance that the voltage range of a current loop includes: 5 % of the resistance of a measured
   /// motor. The resistance of a healthy motor may be higher, depending on angle or heat. A motor with a higher
   /// resistance gets less current at the force limit, but no fault is raised.
@@ -58,17 +58,17 @@ struct Resistance {
   static constexpr float part_per_heat = 0.39f;
 
   float value_ohm;
-  float bearable_more;  ///< part of value_ohm
+  float tolerated_increase;  ///< part of value_ohm
 
-  constexpr float with_room_ohm() const { return value_ohm + room_part * bearable_more * value_ohm; }
+  constexpr float with_room_ohm() const { return value_ohm + room_part * tolerated_increase * value_ohm; }
 
   /// `warmer` is the heat gained since the measurement.
   static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
-    if (!(measured_ohm > 0.0f)) return {parameter_ohm, bearable_more_else};
+    if (!(measured_ohm > 0.0f)) return {parameter_ohm, tolerated_increase_if_unmeasured};
     // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat at the
     // measurement may have been overestimated.
     const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
-    return {measured_ohm + measured_ohm * more, bearable_more_if_measured};
+    return {measured_ohm + measured_ohm * more, tolerated_increase_if_measured};
   }
 };
 
@@ -76,19 +76,19 @@ struct MotorWatch {
   /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. The flux tolerance covers short
   /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
   /// arm stops.
-  static constexpr float bearable_V = 0.3f;
+  static constexpr float tolerance_V = 0.3f;
   /// Above this value, a current does not change its sign during a PWM period, despite its ripple. The bridge drop then
   /// does not depend on the current.
   static constexpr float steady_A = 0.3f;
   /// A motor that has cooled by 100 K since its measurement has 28 % less resistance.
-  static constexpr float bearable_less_resistance = 0.28f;
+  static constexpr float tolerated_decrease_of_resistance = 0.28f;
   /// Magnets that are 100 K hotter are 20 % weaker.
-  static constexpr float bearable_part_of_back_emf = 0.25f;
+  static constexpr float tolerated_part_of_back_emf = 0.25f;
   /// A motor of 0.24 mH needs 1.2 mVs to change its current from one limit to the other.
-  static constexpr float bearable_flux_Vs = 0.003f;
+  static constexpr float tolerance_flux_Vs = 0.003f;
 
   /// Each period checks one motor, so each reading represents three periods.
-  static constexpr float bearable_sum_V = bearable_flux_Vs / (3.0f * protocol::servo_period_s);
+  static constexpr float tolerance_sum_V = tolerance_flux_Vs / (3.0f * protocol::servo_period_s);
 
   Triple beyond_V{};       ///< sum of the voltages beyond the tolerance, per motor; 0 while its bridge is off
   std::size_t motor = 0;   ///< motor of this period, 0..2
@@ -98,7 +98,7 @@ struct MotorWatch {
 
 /// Voltage that the model does not explain, and its tolerance for a healthy motor.
 struct Unexplained {
-  float voltage_V, bearable_V;
+  float voltage_V, tolerance_V;
 };
 inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float current_A, float joint_speed_rad_per_s,
                                const Resistance& resistance, float back_emf_Vs_per_rad) {
@@ -106,26 +106,27 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
   const float left_V = voltage_V - ohmic_V - back_emf_V;
   const bool is_more = left_V * current_A > 0.0f;
-  const float part_of_resistance = is_more ? resistance.bearable_more : MotorWatch::bearable_less_resistance;
+  const float part_of_resistance =
+      is_more ? resistance.tolerated_increase : MotorWatch::tolerated_decrease_of_resistance;
   // The bridge drop opposes the current. If the voltage is too small for its current, the drop therefore reduces the
   // tolerance.
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
-  return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
-                                 MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
+  return {std::fabs(left_V), bridge_V + MotorWatch::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
+                                 MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
 /// Checks the motor of this period. Returns whether its voltage, current and speed are consistent.
-bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
-          const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
+bool update_motor_check(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
+                        const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
 
 /// Clears the sums. Call this function while the current loops do not drive the bridges.
-inline void rest(MotorWatch& watch) {
+inline void reset(MotorWatch& watch) {
   watch.beyond_V = {};
   watch.voltage_V = 0.0f;
 }
 
-/// Completes the period. The next call of fits() checks `motor`, 0..2. Until then, `voltage_V` is the bridge voltage of
-/// this motor, and `loss` is its bridge drop.
+/// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. Until then, `voltage_V` is the
+/// bridge voltage of this motor, and `loss` is its bridge drop.
 inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;

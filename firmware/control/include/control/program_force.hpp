@@ -45,7 +45,7 @@ struct ProgramForce {
 /// Starts a linear transition to a new report. The transition lasts for the program's interval, or longer if the force
 /// would change too fast. A force above the limit is reduced to the limit and keeps its direction. Returns whether the
 /// report arrived more than 1 ms late.
-[[gnu::cold]] bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
+[[gnu::cold]] bool set_target(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
 
 /// Advances by one control period. Without reports the force fades and the program is no longer a force source.
 void advance(ProgramForce& program, const ProgramForceLimits& limits);

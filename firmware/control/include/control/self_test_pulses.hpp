@@ -58,7 +58,7 @@ class SelfTestPulses {
   static constexpr float high_minimum_A = 0.3f;
   /// Over-current bound during the pulses. The bound includes the effects of the back EMF and of the other motors'
   /// pulses.
-  static constexpr float bearable_A = 1.5f * high_A;
+  static constexpr float maximum_A = 1.5f * high_A;
   /// Voltage bound for windings with a higher resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
 

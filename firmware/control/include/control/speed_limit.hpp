@@ -14,7 +14,7 @@ inline bool is_near(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
 }
 
 /// Part of the driving force component to remove, 0..1.
-inline float gives_way(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
+inline float driving_reduction(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
   const float part = (speed_squared_m2_per_s2 - limit.from_squared_m2_per_s2) * limit.per_squared_m2_per_s2;
   if (!(part > 0.0f)) return 0.0f;
   return part < 1.0f ? part : 1.0f;

@@ -33,8 +33,8 @@ namespace inkwell::control {
 struct StuckEncoder {
   /// Force change, at the end of the longer link, that almost always turns every joint.
   static constexpr float moving_force_N = 1.5f;
-  static constexpr unsigned bearable_changes = 2;
-  static constexpr std::uint32_t bearable_counts = 1;
+  static constexpr unsigned tolerated_changes = 2;
+  static constexpr std::uint32_t tolerance_counts = 1;
   static constexpr std::uint32_t settle_periods = periods_in(0.1f);
   /// Filter weight of a new reading. With one reading in three periods, the time constant of this low-pass filter is
   /// 9.6 ms.
@@ -55,8 +55,8 @@ inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A
                      float moving_A) {
   encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);
   const std::uint32_t away =
-      static_cast<std::uint32_t>(counts) - static_cast<std::uint32_t>(encoder.counts) + StuckEncoder::bearable_counts;
-  if (held || away > 2 * StuckEncoder::bearable_counts) {
+      static_cast<std::uint32_t>(counts) - static_cast<std::uint32_t>(encoder.counts) + StuckEncoder::tolerance_counts;
+  if (held || away > 2 * StuckEncoder::tolerance_counts) {
     encoder.counts = counts;
     encoder.since_periods = now_periods;
     encoder.changes = 0;
@@ -67,7 +67,7 @@ inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A
   const bool changed = !settles && encoder.most_A - encoder.least_A > moving_A;
   if (settles || changed) encoder.least_A = encoder.most_A = encoder.current_A;
   if (changed) ++encoder.changes;
-  return encoder.changes > StuckEncoder::bearable_changes;
+  return encoder.changes > StuckEncoder::tolerated_changes;
 }
 
 }  // namespace inkwell::control

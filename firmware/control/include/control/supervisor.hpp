@@ -8,7 +8,7 @@ namespace inkwell::control {
 /// Conditions in this period, and requests since the previous period.
 struct Situation {
   protocol::Events events = 0;
-  protocol::Watches found = 0;  ///< includes faults that the state does not watch
+  protocol::Conditions found = 0;  ///< includes faults that the state does not watch
 };
 
 struct Supervisor {
@@ -19,7 +19,7 @@ struct Supervisor {
 
 /// Fast state check, which is sufficient in most periods. Returns true if no fault is found and no transition is open.
 /// If the result is false, advance() must decide.
-bool surely_stays(protocol::State state, const Situation& situation);
+bool stays_unchanged(protocol::State state, const Situation& situation);
 
 /// Returns the state of the next period. This function itself determines `Event::cause`.
 [[gnu::cold]] Supervisor advance(const Supervisor& supervisor, const Situation& situation);

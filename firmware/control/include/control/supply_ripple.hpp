@@ -32,10 +32,10 @@ struct SupplyRipple {
   /// step before the next hand reversal. The value is a power of two, so that the division is a shift.
   static constexpr std::int32_t mean_periods = 2048;
 
-  std::int32_t bearable_counts;   ///< protocol::supply_ripple_V in converter counts, in either direction from the mean
+  std::int32_t tolerance_counts;  ///< protocol::supply_ripple_V in converter counts, in either direction from the mean
   std::int32_t mean_counts = -1;  ///< mean times mean_periods; below 0 before the first reading
   bool above = false, below = false;  ///< whether the last excursion was above or below the bounds
-  std::uint32_t looked_at_periods = 0;
+  std::uint32_t read_at_periods = 0;
   std::array<std::uint32_t, alternations> changed_at_periods{};  ///< ring of the newest side changes
   std::size_t next = 0, changes = 0;                             ///< next ring position; number of valid entries
 };
@@ -45,12 +45,12 @@ struct SupplyRipple {
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
   if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
   constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);
-  const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - ripple.looked_at_periods, all));
-  ripple.looked_at_periods = now_periods;
+  const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - ripple.read_at_periods, all));
+  ripple.read_at_periods = now_periods;
   const std::int32_t beyond_counts = supply_counts - ripple.mean_counts / SupplyRipple::mean_periods;
   ripple.mean_counts += beyond_counts * passed_periods;
 
-  const bool above = beyond_counts > ripple.bearable_counts, below = beyond_counts < -ripple.bearable_counts;
+  const bool above = beyond_counts > ripple.tolerance_counts, below = beyond_counts < -ripple.tolerance_counts;
   if ((above && ripple.below) || (below && ripple.above)) {
     ripple.changed_at_periods[ripple.next] = now_periods;
     ripple.next = (ripple.next + 1) % SupplyRipple::alternations;

@@ -27,7 +27,7 @@ struct TestPulse {
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
   /// Stops the pulse. The rest remains, so that the host has to wait before the next pulse.
-  void rest() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
+  void end_pulse() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
   /// Current or voltage of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };

@@ -31,8 +31,8 @@ struct CurrentReferences {
 };
 
 /// Allowed part of the requested current.
-[[gnu::cold, gnu::noinline]] inline float part_of(float allowed_A, float asked_A) {
-  return allowed_A * reciprocal_square_root(asked_A * asked_A);
+[[gnu::cold, gnu::noinline]] inline float part_of(float allowed_A, float requested_A) {
+  return allowed_A * reciprocal_square_root(requested_A * requested_A);
 }
 
 /// Returns the currents for the joint torques. If a motor would exceed its allowed current, all three currents are
@@ -41,16 +41,16 @@ inline CurrentReferences current_references(const Triple& torque_Nm, const Motor
   CurrentReferences references;
   float part = 1.0f;
   for (std::size_t i = 0; i < 3; ++i) {
-    const float asked_A = torque_Nm[i] * motors.ampere_per_Nm[i];
-    references.reference_A[i] = asked_A;
+    const float requested_A = torque_Nm[i] * motors.ampere_per_Nm[i];
+    references.reference_A[i] = requested_A;
     const float allowed_A = motors.allowed_A(i, heat_beyond);
-    if (std::fabs(asked_A) <= allowed_A) continue;
+    if (std::fabs(requested_A) <= allowed_A) continue;
     if (motors.current_limit_A[i] == 0.0f) {
       references.reference_A[i] = 0.0f;
       continue;
     }
     (allowed_A < motors.current_limit_A[i] ? references.held_by_heat : references.held_by_current) = true;
-    part = std::min(part, part_of(allowed_A, asked_A));
+    part = std::min(part, part_of(allowed_A, requested_A));
   }
   for (float& reference_A : references.reference_A) reference_A *= part;
   return references;

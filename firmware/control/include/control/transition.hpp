@@ -17,7 +17,7 @@ struct Transition {
 
 /// Starts a transition over `jump_N`, the old force minus the new force. The magnitude of the transition falls by
 /// `N_per_period`.
-Transition over(const Vector3& jump_N, float N_per_period);
+Transition start_transition(const Vector3& jump_N, float N_per_period);
 
 constexpr void advance(Transition& transition) {
   transition.part = transition.part > transition.part_per_period ? transition.part - transition.part_per_period : 0.0f;

@@ -39,9 +39,9 @@ namespace detail {
 
 /// Base address and register map of a peripheral.
 template <class Peripheral>
-struct Behind;
+struct Underlying;
 template <template <std::uint32_t> class Map, std::uint32_t base_>
-struct Behind<registers::Claimable<Map, base_>> {
+struct Underlying<registers::Claimable<Map, base_>> {
   static constexpr std::uint32_t base = base_;
   using Registers = Map<base_>;
 };
@@ -54,7 +54,7 @@ constexpr bool holds(const Claims& claims, const Claim& wanted) {
 }
 
 template <class One, class Other>
-struct Apart {
+struct Disjoint {
   static constexpr bool share = []() {
     for (const Claim& claim : One::claims)
       if (holds(Other::claims, claim)) return true;
@@ -65,19 +65,20 @@ struct Apart {
 };
 
 template <class... Drivers>
-struct AllApart : std::true_type {};
+struct AllDisjoint : std::true_type {};
 template <class First, class... Rest>
-struct AllApart<First, Rest...> : std::bool_constant<(Apart<First, Rest>::value && ...) && AllApart<Rest...>::value> {};
+struct AllDisjoint<First, Rest...>
+    : std::bool_constant<(Disjoint<First, Rest>::value && ...) && AllDisjoint<Rest...>::value> {};
 
 }  // namespace detail
 
 template <class Peripheral>
 constexpr Claim peripheral() {
-  return {Claim::Kind::peripheral, detail::Behind<Peripheral>::base};
+  return {Claim::Kind::peripheral, detail::Underlying<Peripheral>::base};
 }
 template <class Controller, std::uint32_t number>
 constexpr Claim stream() {
-  return {Claim::Kind::stream, detail::Behind<Controller>::base + number};
+  return {Claim::Kind::stream, detail::Underlying<Controller>::base + number};
 }
 constexpr Claim pin(const board::Pin& pin) {
   return {Claim::Kind::pin, static_cast<std::uint32_t>(pin.port) << 8 | pin.number};
@@ -95,7 +96,7 @@ constexpr bool require_claim() {
 namespace detail {
 
 template <class Driver, class Peripheral, Claim claim>
-struct Claimed : Behind<Peripheral> {
+struct Claimed : Underlying<Peripheral> {
   static_assert(require_claim<Driver, claim>());
 };
 
@@ -111,7 +112,7 @@ using RegistersOfStream = typename detail::Claimed<Driver, Controller, stream<Co
 /// List of all drivers of an application.
 template <class... Drivers>
 struct PartsList {
-  static_assert(detail::AllApart<Drivers...>::value);
+  static_assert(detail::AllDisjoint<Drivers...>::value);
   template <class Driver>
   static constexpr bool has = (std::is_same_v<Driver, Drivers> || ...);
 };

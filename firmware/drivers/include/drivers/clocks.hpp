@@ -14,6 +14,6 @@ inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 [[nodiscard]] bool start_clocks();
 
 /// Whether the crystal oscillates. After start_clocks() has failed, the chip still tries to start the crystal.
-bool crystal_swings();
+bool crystal_oscillates();
 
 }  // namespace inkwell::drivers

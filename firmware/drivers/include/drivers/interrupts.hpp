@@ -23,12 +23,12 @@ inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
 /// Handler that runs after all interrupts have been served, before the program continues (PendSV: ARMv7-M, B1.5.6).
 /// Every interrupt can preempt this handler.
-struct CallBehindInterrupts {
+struct CallAfterInterrupts {
   static void start() {
-    constexpr std::uint32_t behind_all = 0xF0;
-    registers::SCB::SHPR3::modify(registers::SCB::SHPR3::PRI_14(behind_all));
+    constexpr std::uint32_t after_all_interrupts = 0xF0;
+    registers::SCB::SHPR3::modify(registers::SCB::SHPR3::PRI_14(after_all_interrupts));
   }
-  static void ask() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
+  static void request() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
 };
 
 /// Interrupt line of a driver. No interrupt preempts another interrupt. Faults preempt all interrupts.
@@ -36,8 +36,8 @@ template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {
     require_claim<Driver, interrupt(line)>();
-    constexpr std::uint8_t behind_faults = 0x10;
-    registers::NVIC::IPR::write(position, behind_faults);
+    constexpr std::uint8_t after_faults = 0x10;
+    registers::NVIC::IPR::write(position, after_faults);
     registers::NVIC::ISER::write(position / 32, 1u << position % 32);
   }
 

@@ -14,18 +14,18 @@ class KeptOverReset {
  public:
   static_assert(std::is_trivially_copyable_v<Facts> && sizeof(Facts) % sizeof(std::uint32_t) == 0);
 
-  void leave(const Facts& facts) {
+  void store(const Facts& facts) {
     facts_ = facts;
     check_ = check_of(facts_);
   }
 
-  void forget() { check_ = ~check_of(facts_); }
+  void erase() { check_ = ~check_of(facts_); }
 
   /// Returns the data of the previous run. Only the first call returns data.
-  std::optional<Facts> take() {
-    const bool is_sound = check_ == check_of(facts_);
-    forget();
-    if (!is_sound) return std::nullopt;
+  std::optional<Facts> load_and_erase() {
+    const bool is_valid = check_ == check_of(facts_);
+    erase();
+    if (!is_valid) return std::nullopt;
     return facts_;
   }
 

@@ -55,9 +55,9 @@ inline std::array<char, 24> unique_identifier() {
 /// disabled during the check, and a pending interrupt ends the sleep immediately. An interrupt between check and sleep
 /// therefore cannot be missed.
 template <class Question>
-void sleep_unless(Question is_something_to_do) {
+void sleep_unless(Question has_work) {
   const InterruptsHeld held;
-  if (!is_something_to_do()) asm volatile("wfi" ::: "memory");
+  if (!has_work()) asm volatile("wfi" ::: "memory");
 }
 
 }  // namespace inkwell::drivers

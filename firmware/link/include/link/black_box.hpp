@@ -74,9 +74,10 @@ class BlackBox {
  private:
   enum class Phase : std::uint8_t { recording, fault_seen, complete };
 
-  void begin_anew();
-  void keep(protocol::Fault fault, std::uint32_t period, bool is_restart, const protocol::CrashFacts& crash);
-  void take(const Sample& sample);
+  void restart_recording();
+  void start_fault_record(protocol::Fault fault, std::uint32_t period, bool is_restart,
+                          const protocol::CrashFacts& crash);
+  void record_sample(const Sample& sample);
   void add_after_fault(const Sample& sample);
   /// Returns the slot of a row before the fault. `number` counts rows since recording started.
   BlackBoxPlace& before(std::uint32_t number) const { return ring_[number % ring_.size()]; }

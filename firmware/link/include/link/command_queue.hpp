@@ -46,7 +46,7 @@ class CommandQueue {
   /// True if a command of this kind is in the queue.
   bool waiting(protocol::Command command) const;
 
-  /// Discards the queued commands. Call this function when the connection to the host is lost. The next take() returns
+  /// Discards the queued commands. Call this function when the connection to the host is lost. The next pop() returns
   /// a stop command that the interrupt can distinguish from a stop command of the host.
   void host_gone();
 
@@ -60,7 +60,7 @@ class CommandQueue {
   }
 
   /// Returns the command for this control period, or null. The command is valid until the interrupt returns.
-  const protocol::CommandReport* take();
+  const protocol::CommandReport* pop();
 
   /// True for the stop command of host_gone(), false for a stop command of the host.
   bool is_of_gone_host(const protocol::CommandReport& command) const { return &command == &stop_; }

@@ -14,12 +14,12 @@ template <class T>
 class Handover {
  public:
   constexpr Handover() = default;
-  constexpr explicit Handover(const T& first) : places_{first, T{}} {}
+  constexpr explicit Handover(const T& first) : slots_{first, T{}} {}
 
   // ---- main loop ----
 
   /// Returns the slot for the next value, or null while the interrupt has not accepted the previous value.
-  T* next() { return offered_.load() ? nullptr : &places_[used_ ^ 1u]; }
+  T* next() { return offered_.load() ? nullptr : &slots_[used_ ^ 1u]; }
   /// True if a value has been offered but not yet accepted. While this function returns false, used() does not change.
   bool is_offered() const { return offered_.load(); }
   /// Offers the value in next() to the interrupt.
@@ -28,16 +28,16 @@ class Handover {
   // ---- control interrupt ----
 
   /// Swaps the slots if a value was offered. Returns true if the slots were swapped.
-  bool take() {
+  bool swap_if_offered() {
     if (!offered_.load()) return false;
     used_ ^= 1u;
     offered_.store(false);
     return true;
   }
-  const T& used() const { return places_[used_]; }
+  const T& used() const { return slots_[used_]; }
 
  private:
-  std::array<T, 2> places_{};
+  std::array<T, 2> slots_{};
   std::uint32_t used_ = 0;  ///< written by the interrupt, and only while `offered_` is true
   Shared<bool> offered_{false};
 };

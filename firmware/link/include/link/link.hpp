@@ -3,13 +3,13 @@
 // Each member has one producer and one consumer and never blocks the interrupt. The interrupt makes these calls in each
 // control period:
 //
-//   if (link.parameters.take(periods)) controller.settings_changed()
+//   if (link.parameters.apply_offered(periods)) controller.settings_changed()
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
-//   if (command = link.commands.take()) controller.carry_out(*command)
+//   if (command = link.commands.pop()) controller.carry_out(*command)
 //   if (link.commands.is_of_gone_host(*command)) controller.raise(usb_gone)
 //   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
-//   if (link.update_asked) controller.leave_for_update()
+//   if (link.update_requested) controller.leave_for_update()
 //   controller.raise(link.found_in_main_loop)
 //   controller.step(...)
 //   if (controller.state() is testing) link.self_test.exchange(controller)
@@ -62,8 +62,8 @@ struct Link {
   BlackBox black_box;
   SelfTest self_test;
   ServoStatus status;
-  Shared<bool> update_asked{false};                 ///< the host requested the boot loader
-  Shared<protocol::Watches> found_in_main_loop{0};  ///< faults that tolerate a delay of one control period
+  Shared<bool> update_requested{false};                ///< the host requested the boot loader
+  Shared<protocol::Conditions> found_in_main_loop{0};  ///< faults that tolerate a delay of one control period
 };
 
 }  // namespace inkwell::link

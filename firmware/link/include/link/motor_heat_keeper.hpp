@@ -19,22 +19,22 @@ class MotorHeatKeeper {
 
   /// Returns the last motor heat of the previous run. Returns nothing after power-on, or if no slot is valid. Call this
   /// function before all other functions of this class.
-  std::optional<control::Warmth> start(bool power_has_come);
+  std::optional<control::Warmth> start(bool after_power_on);
   /// Stores the motor heat in the older slot.
-  void leave(const control::Warmth& warmth);
+  void store(const control::Warmth& warmth);
 
  private:
-  struct Left {
+  struct Record {
     control::Warmth warmth;
     std::uint32_t number;  ///< increases by one per write
   };
-  struct Place {
-    Left left;
+  struct Slot {
+    Record record;
     std::uint32_t check;
   };
-  static bool is_sound(const Place& place);
+  static bool is_valid(const Slot& slot);
 
-  std::array<Place, 2> places_;
+  std::array<Slot, 2> slots_;
   std::uint32_t next_number_;
 };
 

@@ -66,8 +66,8 @@ class ParameterStore {
 
   /// Applies a transaction if one is offered. Returns true if a transaction was applied. Call this function once at the
   /// start of a control period.
-  bool take(std::uint32_t periods) {
-    const bool changed = settings_.take();
+  bool apply_offered(std::uint32_t periods) {
+    const bool changed = settings_.swap_if_offered();
     if (changed) applied_at_periods_.store(periods);
     return changed;
   }

@@ -28,8 +28,8 @@ class PoseRecorder {
 
   /// Call this function in every period with the length of the last finished control interrupt.
   void note_load(std::uint32_t servo_cycles) {
-    if (longest_was_taken_.load()) {
-      longest_was_taken_.store(false);
+    if (longest_was_sent_.load()) {
+      longest_was_sent_.store(false);
       longest_cycles_.store(servo_cycles);
     } else if (servo_cycles > longest_cycles_.load()) {
       longest_cycles_.store(servo_cycles);
@@ -42,10 +42,10 @@ class PoseRecorder {
   bool read(protocol::PoseReport& report) const;
 
   /// Like read(), for a report that is sent. After this call, the maximum of the interrupt length is reset.
-  bool take(protocol::PoseReport& report);
+  bool read_for_report(protocol::PoseReport& report);
 
   /// Records that the report of read() was sent.
-  void note_taken() { longest_was_taken_.store(true); }
+  void note_sent() { longest_was_sent_.store(true); }
 
   /// Longest control interrupt since the last sent report.
   std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
@@ -63,7 +63,7 @@ class PoseRecorder {
 
  private:
   const SampleRing& samples_;
-  Shared<bool> longest_was_taken_{false};    ///< set by the main loop, cleared by the interrupt
+  Shared<bool> longest_was_sent_{false};     ///< set by the main loop, cleared by the interrupt
   Shared<std::uint32_t> longest_cycles_{0};  ///< written by the interrupt
   std::uint32_t cycles_per_period_;
   float load_per_cycle_;

@@ -53,8 +53,8 @@ class ProgramRequests {
   // ---- control interrupt ----
 
   /// Returns the newest request since the last call, or null. The result is valid until the next call.
-  const control::ForceTarget* take_force() { return forces_.take() ? &forces_.used() : nullptr; }
-  const control::Shapes* take_shapes() { return shapes_.take() ? &shapes_.used() : nullptr; }
+  const control::ForceTarget* take_force() { return forces_.swap_if_offered() ? &forces_.used() : nullptr; }
+  const control::Shapes* take_shapes() { return shapes_.swap_if_offered() ? &shapes_.used() : nullptr; }
 
  private:
   Handover<control::ForceTarget> forces_;

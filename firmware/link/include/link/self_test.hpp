@@ -22,7 +22,7 @@ class SelfTest {
 
   /// A wire is not driven if it follows its pull resistor in this number of consecutive checks. In fewer checks, the
   /// level of a moving encoder could match the pull resistor by chance.
-  static constexpr std::uint32_t wire_looks = 8;
+  static constexpr std::uint32_t wire_readings = 8;
   /// An item has failed after this number of failures with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
   /// Limits for an arm that moves continuously: number of rounds, and waiting time before each round.
@@ -42,7 +42,7 @@ class SelfTest {
   // ---- main loop ----
 
   /// Records the result of a start-up test.
-  void note(Item item, bool is_sound, float figure = 0.0f) { note(item, sound(is_sound), figure); }
+  void note(Item item, bool has_passed, float figure = 0.0f) { note(item, result_of(has_passed), figure); }
 
   /// Returns the wire to be tested, if any. The bridges are off during this test.
   std::optional<Item> wanted_wire() const;
@@ -73,7 +73,7 @@ class SelfTest {
   enum class Phase : std::uint8_t { idle, wires, rest, pulses, verdict };
   enum class Order : std::uint8_t { none, pulses, pass, fail };
 
-  static Result sound(bool is_sound) { return is_sound ? Result::passed : Result::failed; }
+  static Result result_of(bool has_passed) { return has_passed ? Result::passed : Result::failed; }
   protocol::SelfTestEntry& entry(Item item) { return entries_[static_cast<std::size_t>(item)]; }
   void note(Item item, Result result, float figure);
   void begin(const Readings& readings, const control::Triple& offset_A);
@@ -83,9 +83,9 @@ class SelfTest {
   void begin_round();
   void end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals);
   void note_pulses(const PulseJudgement& judgement);
-  void keep(const PulseJudgement& judgement, const protocol::SignalValues& signals);
-  void give(Order order);
-  void give_verdict();
+  void store_measurements(const PulseJudgement& judgement, const protocol::SignalValues& signals);
+  void send_order(Order order);
+  void finish_test();
 
   const SampleRing& samples_;
   std::array<protocol::SelfTestEntry, protocol::self_test_item_count> entries_{};
@@ -93,7 +93,7 @@ class SelfTest {
   std::uint32_t test_ = 0;  ///< number of the current self-test, as counted by the controller
   std::uint32_t tests_ended_ = 0;
   std::size_t wire_ = 0;
-  std::uint32_t looks_ = 0;  ///< checks in which the wire followed its pull resistors
+  std::uint32_t following_readings_ = 0;  ///< checks in which the wire followed its pull resistors
   std::uint32_t rounds_ = 0, failures_ = 0;
   std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< sample numbers
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up

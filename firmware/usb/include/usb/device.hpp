@@ -94,7 +94,7 @@ class Device final : private ControlRequests {
   /// endpoint answers NAK, so the host waits and no report is lost.
   void pass_on_held_command();
   void send_pose();
-  void note_pose_taken();
+  void note_pose_sent();
   void offer_controller_report();
   void send_scope();
   protocol::InformationReport information() const;
@@ -133,7 +133,7 @@ class Device final : private ControlRequests {
   std::array<std::uint8_t, protocol::usb::interface_count> idle_rates_{};
   bool suspended_ = false;
   bool force_must_fall_ = false;  ///< the driver is gone, and the command queue was full
-  bool detach_asked_ = false;
+  bool detach_requested_ = false;
   bool detach_was_refused_ = false;  ///< the last detach request was refused, because the force was on
   bool leaves_for_update_ = false;
   std::array<Endpoint, 4> endpoints_;

@@ -105,7 +105,7 @@ class Oracle {
   /// Compares the counts since the board's start. Returns true if the chip restarted since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
   /// At least one of these faults must have been reported.
-  void must_have_told(protocol::Watches faults);
+  void must_have_told(protocol::Conditions faults);
   void complain(Complaint complaint, std::string text);
 
   bool has_told() const { return !told_.empty(); }
@@ -143,7 +143,7 @@ class Oracle {
 
   unsigned phase_ = 0;
   Kind kind_ = Kind::docking;
-  protocol::Watches may_tell_ = 0;
+  protocol::Conditions may_tell_ = 0;
   Disturbance disturbance_ = Disturbance::none;
   std::vector<protocol::Fault> told_;  ///< in this phase
   double now_s_ = 0;

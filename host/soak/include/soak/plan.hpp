@@ -23,12 +23,12 @@
 namespace inkwell::soak {
 
 /// Faults by which a board can detect wrong encoder counts.
-inline constexpr protocol::Watches lost_counts =
-    protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
+inline constexpr protocol::Conditions lost_counts = protocol::condition(protocol::Fault::encoder_implausible) |
+                                                    protocol::condition(protocol::Fault::inkwell_implausible);
 
 /// Faults that a disconnected host causes; the board reports the first detected fault.
-inline constexpr protocol::Watches host_gone =
-    protocol::watch(protocol::Fault::usb_gone) | protocol::watch(protocol::Fault::host_silent);
+inline constexpr protocol::Conditions host_gone =
+    protocol::condition(protocol::Fault::usb_gone) | protocol::condition(protocol::Fault::host_silent);
 
 // clang-format off
 /// X(name, cards in a deck, faults that may be reported, description)
@@ -45,13 +45,13 @@ inline constexpr protocol::Watches host_gone =
     "Legal and illegal values of all parameters are sent with the force off, including joint stops and scales.") \
   X(store, 1, 0, "Parameters are stored, restored and erased. The board also restarts, even during a write.") \
   X(cable, 1, host_gone, "The cable is unplugged and plugged in again.") \
-  X(silence, 1, protocol::watch(protocol::Fault::host_silent), \
+  X(silence, 1, protocol::condition(protocol::Fault::host_silent), \
     "The host is silent for shorter and longer than the time-out.") \
   X(killed, 1, host_gone, "The program is killed while the force is on.") \
   X(reset, 1, 0, "The board is reset at any time.") \
-  X(too_fast, 1, protocol::watch(protocol::Fault::over_speed), \
+  X(too_fast, 1, protocol::condition(protocol::Fault::over_speed), \
     "The hand is faster than a speed limit that was lowered.") \
-  X(fault, 4, ~protocol::Watches{0}, "A fault from the table is injected and removed.")
+  X(fault, 4, ~protocol::Conditions{0}, "A fault from the table is injected and removed.")
 // clang-format on
 
 enum class Kind : std::uint8_t {
@@ -63,7 +63,7 @@ enum class Kind : std::uint8_t {
 struct KindInfo {
   std::string_view name;
   unsigned cards;
-  protocol::Watches may_tell;
+  protocol::Conditions may_tell;
   std::string_view meaning;
 };
 

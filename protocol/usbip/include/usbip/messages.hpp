@@ -187,29 +187,29 @@ struct ReturnUnlink {
 // --- Bytes -----------------------------------------------------------------------------------------------
 
 template <class Message>
-inline constexpr bool lies_as_on_the_wire = std::is_trivially_copyable_v<Message> && alignof(Message) == 1;
+inline constexpr bool has_wire_layout = std::is_trivially_copyable_v<Message> && alignof(Message) == 1;
 
-static_assert(sizeof(OperationHeader) == 8 && lies_as_on_the_wire<OperationHeader>);
-static_assert(sizeof(ImportRequest) == 40 && lies_as_on_the_wire<ImportRequest>);
-static_assert(sizeof(DeviceListReply) == 12 && lies_as_on_the_wire<DeviceListReply>);
-static_assert(sizeof(Device) == 312 && lies_as_on_the_wire<Device>);
-static_assert(sizeof(Interface) == 4 && lies_as_on_the_wire<Interface>);
-static_assert(sizeof(TransferHeader) == 20 && lies_as_on_the_wire<TransferHeader>);
-static_assert(sizeof(Submit) == 48 && lies_as_on_the_wire<Submit>);
-static_assert(sizeof(ReturnSubmit) == 48 && lies_as_on_the_wire<ReturnSubmit>);
-static_assert(sizeof(IsochronousPacket) == 16 && lies_as_on_the_wire<IsochronousPacket>);
-static_assert(sizeof(Unlink) == 48 && lies_as_on_the_wire<Unlink>);
-static_assert(sizeof(ReturnUnlink) == 48 && lies_as_on_the_wire<ReturnUnlink>);
+static_assert(sizeof(OperationHeader) == 8 && has_wire_layout<OperationHeader>);
+static_assert(sizeof(ImportRequest) == 40 && has_wire_layout<ImportRequest>);
+static_assert(sizeof(DeviceListReply) == 12 && has_wire_layout<DeviceListReply>);
+static_assert(sizeof(Device) == 312 && has_wire_layout<Device>);
+static_assert(sizeof(Interface) == 4 && has_wire_layout<Interface>);
+static_assert(sizeof(TransferHeader) == 20 && has_wire_layout<TransferHeader>);
+static_assert(sizeof(Submit) == 48 && has_wire_layout<Submit>);
+static_assert(sizeof(ReturnSubmit) == 48 && has_wire_layout<ReturnSubmit>);
+static_assert(sizeof(IsochronousPacket) == 16 && has_wire_layout<IsochronousPacket>);
+static_assert(sizeof(Unlink) == 48 && has_wire_layout<Unlink>);
+static_assert(sizeof(ReturnUnlink) == 48 && has_wire_layout<ReturnUnlink>);
 
 /// Returns the bytes of a message. The message must outlive the result.
 template <class Message>
-requires lies_as_on_the_wire<Message> std::span<const std::byte, sizeof(Message)> bytes_of(const Message& message) {
+requires has_wire_layout<Message> std::span<const std::byte, sizeof(Message)> bytes_of(const Message& message) {
   return std::as_bytes(std::span<const Message, 1>(&message, 1));
 }
 
 /// Returns the message at the beginning of `bytes`, which must contain the complete message.
 template <class Message>
-requires lies_as_on_the_wire<Message> Message read(std::span<const std::byte> bytes) {
+requires has_wire_layout<Message> Message read(std::span<const std::byte> bytes) {
   Message message;
   std::memcpy(&message, bytes.data(), sizeof message);
   return message;

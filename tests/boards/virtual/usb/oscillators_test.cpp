@@ -98,7 +98,7 @@ TEST_CASE("when the power comes the watchdog is left to bite, and the self-test 
   struct Sort {
     std::uint32_t low_speed_internal_Hz;
     SelfTestResult result;
-    double bitten_after_ms;
+    double expired_after_ms;
   };
   for (const Sort& sort : {Sort{32'000, SelfTestResult::passed, 20.0}, Sort{17'000, SelfTestResult::passed, 37.6},
                            Sort{47'000, SelfTestResult::passed, 13.6}, Sort{14'000, SelfTestResult::failed, 45.7},
@@ -106,9 +106,9 @@ TEST_CASE("when the power comes the watchdog is left to bite, and the self-test 
     CAPTURE(sort.low_speed_internal_Hz);
     OtherBoard other({.low_speed_internal_Hz = sort.low_speed_internal_Hz});
     other.bus.connect();
-    CHECK(other.watchdog_resets() == (sort.bitten_after_ms > 0.0 ? 1 : 0));
+    CHECK(other.watchdog_resets() == (sort.expired_after_ms > 0.0 ? 1 : 0));
     CHECK(other.watchdog_entry().result == sort.result);
-    CHECK(other.watchdog_entry().figure == doctest::Approx(sort.bitten_after_ms).epsilon(0.01));
+    CHECK(other.watchdog_entry().figure == doctest::Approx(sort.expired_after_ms).epsilon(0.01));
     CHECK(other.fault() != protocol::Fault::watchdog);
   }
 }
@@ -116,13 +116,13 @@ TEST_CASE("when the power comes the watchdog is left to bite, and the self-test 
 TEST_CASE("what the trial of the watchdog showed is told after other resets too, without another trial") {
   OtherBoard other({});
   other.bus.connect();
-  const float bitten_after_ms = other.watchdog_entry().figure;
+  const float expired_after_ms = other.watchdog_entry().figure;
   other.bus.chip.reset(ResetCause::pin);
   other.bus.run_for(0.05);  // the port detects that the device was disconnected
   other.bus.connect();
   CHECK(other.watchdog_resets() == 1);
   CHECK(other.watchdog_entry().result == protocol::SelfTestResult::passed);
-  CHECK(other.watchdog_entry().figure == bitten_after_ms);
+  CHECK(other.watchdog_entry().figure == expired_after_ms);
 }
 
 TEST_CASE("a trial of the watchdog that another reset cuts short finds nothing, and hides no later bite") {
