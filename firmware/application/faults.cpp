@@ -43,7 +43,7 @@ std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_
 
 /// Whether the address is in firmware code, directly after a BL instruction or a BLX instruction with a register
 /// (ARMv7-M, A7.7.18 and A7.7.19).
-bool is_behind_call(std::uint32_t address) {
+bool is_after_call(std::uint32_t address) {
   const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
     return address >= address_of(begin) + 4 && address < address_of(end);
   };
@@ -59,7 +59,7 @@ bool is_behind_call(std::uint32_t address) {
 void note_callers(CrashFacts& crash) {
   std::size_t count = 0;
   const auto consider = [&](std::uint32_t word) {
-    if ((word & 1) != 0 && is_behind_call(word - 1)) crash.callers[count++] = word - 1;
+    if ((word & 1) != 0 && is_after_call(word - 1)) crash.callers[count++] = word - 1;
   };
   consider(crash.link_register);
   const auto* word = reinterpret_cast<const std::uint32_t*>(crash.stack_pointer);

@@ -92,10 +92,10 @@ void BoardRun::command(protocol::Command command) {
   }
 }
 
-void BoardRun::run(double time_s, bool gives_sign_of_life) {
+void BoardRun::run(double time_s, bool sends_heartbeats) {
   double left_s = time_s;
   while (left_s > 1e-9) {
-    if (gives_sign_of_life && slices_++ % slices_per_sign_of_life == 0) command(protocol::Command::heartbeat);
+    if (sends_heartbeats && slices_++ % slices_per_sign_of_life == 0) command(protocol::Command::heartbeat);
     pass(std::min(left_s, slice_s));
     left_s -= slice_s;
     read_poses();
@@ -121,7 +121,7 @@ void BoardRun::reset() {
   let_go_of_device();
 }
 
-void BoardRun::ask_for_boot_loader() {
+void BoardRun::request_boot_loader() {
   if (const auto endpoint = board_.find()) device::detach_firmware(*endpoint);
 }
 

@@ -21,7 +21,7 @@
 namespace inkwell::campaign {
 namespace {
 
-constexpr double bearable_part_of_limit = 1.05;
+constexpr double allowed_part_of_limit = 1.05;
 
 std::string off_text(const Summary& s) {
   if (s.were_on == 0) return "were off";
@@ -77,9 +77,9 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
       for (const Result& r : *results) {
         if (!r.error.empty()) continue;
         force_N.see(r.peak_force_N, r);
-        if (fault.is_none()) continue;
-        if (const Result* const sound = sound_of(groups, situation, r.phase))
-          more_J.see(r.energy_J - sound->energy_J, r);
+        if (fault.is_fault_free()) continue;
+        if (const Result* const fault_free = fault_free_case(groups, situation, r.phase))
+          more_J.see(r.energy_J - fault_free->energy_J, r);
         else if (not_compared.empty() || not_compared.back() != name_of(situation))
           not_compared.push_back(name_of(situation));
       }
@@ -113,12 +113,12 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || fault.deed == Deed::fast_hand || !is_active(situation)) continue;
       const Summary s = summarise(*results);
-      const double bearable_N = bearable_part_of_limit * force_limit_N(*results);
+      const double allowed_N = allowed_part_of_limit * force_limit_N(*results);
       for (const Result& r : *results)
-        if (r.peak_force_in_use_N.value_or(0.0) > bearable_N)
+        if (r.peak_force_in_use_N.value_or(0.0) > allowed_N)
           rows += fmt::format("| `{}` | {}, used on | {:.1f} | - | - | {} | - |\n", r.fault, name_of(situation),
                               *r.peak_force_in_use_N, r.noticed_in_use_as.empty() ? "-" : r.noticed_in_use_as);
-      if (s.peak_force_N <= bearable_N) continue;
+      if (s.peak_force_N <= allowed_N) continue;
       rows += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
                           s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m,
                           s.detected_as.empty() ? "-" : s.detected_as, off_text(s));
@@ -139,7 +139,7 @@ std::string went_on(std::span<const Result> results) {
     if (result.error.empty() && result.bridges_went_on)
       text += fmt::format("| {} | `{}` {} {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", result.number, result.fault,
                           result.situation, result.phase, result.peak_force_N, 1e3 * result.energy_J,
-                          1e3 * result.travel_m, told(result).empty() ? "-" : told(result));
+                          1e3 * result.travel_m, fault_text(result).empty() ? "-" : fault_text(result));
   if (text.empty()) return text;
   return "\n## Went on by itself\n\nThe bridges were off, and a leg was at the supply after the fault came.\n\n"
          "| case | what | peak force, N | energy, mJ | travel, mm | detected as |\n"
@@ -177,7 +177,7 @@ Summary summarise(std::span<const Result> results) {
     if (!r.error.empty()) continue;
     ++s.cases;
     s.detected += is_detected(r);
-    add(faults, told(r));
+    add(faults, fault_text(r));
     add(recoveries, recovery_of(r));
     s.were_on += r.bridges_were_on;
     s.went_off += r.off_after_s.has_value();
@@ -217,8 +217,8 @@ at the supply any more, in control periods of {:.0f} us.
   std::string text = fmt::format(head, phases, results.size(), all_cases().size(), force_limit_N(results), observed_s,
                                  1e6 * control_period_s, stem, stem);
   text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + fast_hand(results) +
-          unnoticed(groups, faults) + off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) +
-          after_another(results) + told_by_none(results) + not_run(results) + tables(groups, faults);
+          unnoticed(groups, faults) + off_without_report(groups, faults) + unnoticed_without_force(groups, faults) +
+          after_another(results) + unreported_faults(results) + not_run(results) + tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

@@ -19,7 +19,7 @@ bool was_driven(const Result& result) {
 }
 
 /// Largest forces on the hand without a fault, by situation.
-std::map<std::string, double> sound_forces_N(std::span<const Result> results) {
+std::map<std::string, double> fault_free_forces_N(std::span<const Result> results) {
   std::map<std::string, double> forces_N;
   for (const Result& result : results)
     if (was_driven(result) && result.fault == "none")
@@ -87,21 +87,21 @@ std::string force_plot(std::span<const Result> results) {
   std::vector<Bar> bars(static_cast<std::size_t>(reach_N / width_N) + 1);
   std::vector<std::string> edges;
   for (std::size_t i = 0; i <= bars.size(); ++i) edges.push_back(fmt::format("{}", width_N * static_cast<double>(i)));
-  const auto sound_N = sound_forces_N(results);
+  const auto fault_free_N = fault_free_forces_N(results);
   bool all_compared = true;
   for (const Result& result : results) {
     if (!was_driven(result) || result.fault == "none") continue;
     Bar& bar = bars[static_cast<std::size_t>(result.peak_force_N / width_N)];
     ++bar.count;
-    const auto without = sound_N.find(result.situation);
-    if (without == sound_N.end())
+    const auto without = fault_free_N.find(result.situation);
+    if (without == fault_free_N.end())
       all_compared = false;
     else
       bar.quiet += result.peak_force_N <= without->second + as_without_N;
   }
   std::string felt_without;
   for (const CaseSituation situation : situations)
-    if (const auto without = sound_N.find(std::string(name_of(situation))); without != sound_N.end())
+    if (const auto without = fault_free_N.find(std::string(name_of(situation))); without != fault_free_N.end())
       felt_without += fmt::format("{}{} {:.1f} N", felt_without.empty() ? "" : ", ", without->first, without->second);
   return svg_of({.title = "Simulation: the most that the hand felt after a fault, of cases with the force on",
                  .axis = "peak force at the hand, N",

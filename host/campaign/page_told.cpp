@@ -12,7 +12,7 @@ namespace inkwell::campaign {
 namespace {
 
 /// Reason why no case of the campaign can cause the fault.
-std::string_view reason_untold(protocol::Fault fault) {
+std::string_view reason_unreported(protocol::Fault fault) {
   switch (fault) {
     case protocol::Fault::not_finite:
       return "What converters, encoders and hosts give is always a number; only a bit of the RAM that flips might make "
@@ -34,7 +34,7 @@ std::string name_of_case(const Result& result) {
 }  // namespace
 
 std::string after_another(std::span<const Result> results) {
-  unsigned cases = 0, told = 0, kept = 0, once_cleared = 0;
+  unsigned cases = 0, reported = 0, kept = 0, once_cleared = 0;
   std::string before, rows;
   const auto row = [&](const Result& result, std::string_view what) {
     rows += fmt::format("| {} | {} | {} |\n", result.number, name_of_case(result), what);
@@ -45,7 +45,7 @@ std::string after_another(std::span<const Result> results) {
     if (result.told_before.empty()) continue;
     before = result.told_before;
     ++cases;
-    told += result.first_fault == FirstFault::told;
+    reported += result.first_fault == FirstFault::reported;
     kept += result.first_fault == FirstFault::black_box;
     once_cleared += !result.told_once_cleared.empty();
     if (result.first_fault == FirstFault::lost)
@@ -60,14 +60,14 @@ std::string after_another(std::span<const Result> results) {
     text += fmt::format(
         "In {} cases {} had been told before: it still was in {} of them, and in {} the board started anew and had it "
         "in its black box. Once it was cleared, the other one was told in {}.\n",
-        cases, before, told, kept, once_cleared);
+        cases, before, reported, kept, once_cleared);
   if (rows.empty()) return text;
   return text + "\n| case | what | what was missed |\n| --- | --- | --- |\n" + rows;
 }
 
 std::string fast_hand(std::span<const Result> results) {
   double with_N = 0, without_N = 0;
-  unsigned with = 0, without = 0, told = 0;
+  unsigned with = 0, without = 0, reported = 0;
   for (const Result& result : results) {
     if (!result.error.empty() || !is_flung(result)) continue;
     if (!result.bridges_were_on || is_testing(result)) {
@@ -76,7 +76,7 @@ std::string fast_hand(std::span<const Result> results) {
     } else {
       ++with;
       with_N = std::max(with_N, result.peak_force_N);
-      told += result.detected_as == protocol::info(protocol::Fault::over_speed).name;
+      reported += result.detected_as == protocol::info(protocol::Fault::over_speed).name;
     }
   }
   std::string text = fmt::format(
@@ -86,21 +86,21 @@ std::string fast_hand(std::span<const Result> results) {
   if (without > 0) text += fmt::format(" That takes up to {:.2f} N without a force.", without_N);
   if (with > 0)
     text += fmt::format(" With the force on the hand felt up to {:.2f} N, and {} was told in {} of {} cases.", with_N,
-                        protocol::info(protocol::Fault::over_speed).name, told, with);
+                        protocol::info(protocol::Fault::over_speed).name, reported, with);
   return text + (with + without == 0 ? " No such case was run.\n" : "\n");
 }
 
-std::string told_by_none(std::span<const Result> results) {
-  std::set<std::string_view> told;
+std::string unreported_faults(std::span<const Result> results) {
+  std::set<std::string_view> reported;
   for (const Result& result : results)
     if (result.error.empty())
       for (const std::string* name : {&result.detected_as, &result.fault_on_healing, &result.told_before,
                                       &result.told_once_cleared, &result.noticed_in_use_as})
-        told.insert(*name);
+        reported.insert(*name);
   std::string rows;
   for (const protocol::Condition& row : protocol::condition_table)
-    if (const std::string_view name = protocol::info(row.fault).name; !told.contains(name))
-      rows += fmt::format("| `{}` | {} |\n", name, reason_untold(row.fault));
+    if (const std::string_view name = protocol::info(row.fault).name; !reported.contains(name))
+      rows += fmt::format("| `{}` | {} |\n", name, reason_unreported(row.fault));
   const std::string_view heading =
       "\n## Told by none\n\nFaults that the board watches for, and no case that was run told";
   if (rows.empty()) return fmt::format("{}: none.\n", heading);

@@ -13,6 +13,6 @@ std::string after_another(std::span<const Result> results);
 /// Force on the hand that flings the arm, with the force on and off.
 std::string fast_hand(std::span<const Result> results);
 /// Monitored faults that no case reported.
-std::string told_by_none(std::span<const Result> results);
+std::string unreported_faults(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

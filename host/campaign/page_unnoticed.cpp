@@ -20,8 +20,8 @@ namespace {
 /// Statistics of the cases with continued use, and of the detections during this use.
 class InUse {
  public:
-  /// `sound`: the fault-free case with the same start, or null.
-  void see(const Result& result, const Result* sound) {
+  /// `fault_free`: the fault-free case with the same start, or null.
+  void see(const Result& result, const Result* fault_free) {
     if (!result.error.empty()) return;
     if (!result.peak_force_in_use_N) {
       ++not_used_;
@@ -30,7 +30,7 @@ class InUse {
     ++used_;
     peak_N_ = std::max(peak_N_, *result.peak_force_in_use_N);
     if (!result.noticed_in_use_s) {
-      compare(result, sound);
+      compare(result, fault_free);
       return;
     }
     ++noticed_;
@@ -54,9 +54,11 @@ class InUse {
 
  private:
   /// Compares only cases whose continued use was complete, because the other cases had less time.
-  void compare(const Result& result, const Result* sound) {
-    if (sound == nullptr || sound->noticed_in_use_s || !result.energy_in_use_J || !sound->energy_in_use_J) return;
-    const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
+  void compare(const Result& result, const Result* fault_free) {
+    if (fault_free == nullptr || fault_free->noticed_in_use_s || !result.energy_in_use_J ||
+        !fault_free->energy_in_use_J)
+      return;
+    const double more_J = *result.energy_in_use_J - *fault_free->energy_in_use_J;
     more_J_ = std::max(more_J_.value_or(more_J), more_J);
   }
 
@@ -66,12 +68,12 @@ class InUse {
   std::set<std::string> names_;
 };
 
-InUse sound_in_use(const Groups& groups) {
-  InUse sound;
+InUse fault_free_in_use(const Groups& groups) {
+  InUse fault_free;
   for (const CaseSituation situation : situations)
     if (const auto* results = find(groups, "none", situation))
-      for (const Result& result : *results) sound.see(result, &result);
-  return sound;
+      for (const Result& result : *results) fault_free.see(result, &result);
+  return fault_free;
 }
 
 /// Name of the situation if a completed case satisfies `counts`, otherwise empty. If only some cases satisfy `counts`,
@@ -111,25 +113,25 @@ std::string situations_with(const Groups& groups, const CaseFault& fault,
   return where;
 }
 
-bool stayed_on_untold(CaseSituation situation, const Result& result) {
+bool stayed_on_unreported(CaseSituation situation, const Result& result) {
   return is_active(situation) && is_unnoticed(result);
 }
 
-bool went_off_untold(CaseSituation situation, const Result& result) {
+bool went_off_unreported(CaseSituation situation, const Result& result) {
   return is_active(situation) && !is_detected(result) && result.off_after_s;
 }
 
-bool was_off_untold(CaseSituation situation, const Result& result) {
+bool was_off_unreported(CaseSituation situation, const Result& result) {
   return !is_active(situation) && !is_detected(result);
 }
 
 /// The faults that were reported only after their causes were removed.
-std::string told_later(const Groups& groups, const CaseFault& fault) {
+std::string reported_later(const Groups& groups, const CaseFault& fault) {
   std::set<std::string> names;
   for (const CaseSituation situation : situations)
     if (const auto* results = find(groups, fault.name(), situation))
       for (const Result& result : *results)
-        if (result.error.empty() && went_off_untold(situation, result) && !result.fault_on_healing.empty())
+        if (result.error.empty() && went_off_unreported(situation, result) && !result.fault_on_healing.empty())
           names.insert(result.fault_on_healing);
   return names.empty() ? "-" : fmt::format("{}", fmt::join(names, "; "));
 }
@@ -145,37 +147,38 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
       "since it went on; the fourth is what the hand felt at most, the fifth, of those that were not noticed in use "
       "either, how much more energy it got than from a sound arm that was used alike from the same instant on.",
       goes_on_s, use_presses, use_swings);
-  if (const InUse sound = sound_in_use(groups); sound.used() > 0)
+  if (const InUse fault_free = fault_free_in_use(groups); fault_free.used() > 0)
     text += fmt::format(" Without a fault it felt {} N at most, and a fault was told in {} of {} cases.",
-                        sound.peak_text(), sound.noticed(), sound.used());
+                        fault_free.peak_text(), fault_free.noticed(), fault_free.used());
   text +=
       "\n\n| fault | situations | noticed in use | peak force in use, N | more energy in use, mJ | reason |\n"
       "| --- | --- | --- | --- | --- | --- |\n";
   for (const CaseFault& fault : faults) {
-    if (fault.is_none()) continue;
-    const std::string where = situations_with(groups, fault, stayed_on_untold);
+    if (fault.is_fault_free()) continue;
+    const std::string where = situations_with(groups, fault, stayed_on_unreported);
     if (where.empty()) continue;
     InUse in_use;
     for (const CaseSituation situation : situations)
       if (const auto* results = find(groups, fault.name(), situation))
         for (const Result& result : *results)
-          if (stayed_on_untold(situation, result)) in_use.see(result, sound_of(groups, situation, result.phase));
+          if (stayed_on_unreported(situation, result))
+            in_use.see(result, fault_free_case(groups, situation, result.phase));
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(), in_use.peak_text(),
                         in_use.energy_text(), reason_with_force(fault));
   }
   return text;
 }
 
-std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>& faults) {
+std::string off_without_report(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string rows;
   for (const CaseFault& fault : faults) {
-    if (fault.is_none()) continue;
+    if (fault.is_fault_free()) continue;
     std::map<std::string_view, std::string> where_by_reason;
     for (const CaseSituation situation : situations)
-      if (const std::string where = situation_with(groups, fault, situation, went_off_untold); !where.empty())
+      if (const std::string where = situation_with(groups, fault, situation, went_off_unreported); !where.empty())
         add(where_by_reason[reason_of_silence(fault, situation)], where);
     for (const auto& [reason, where] : where_by_reason)
-      rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, told_later(groups, fault), reason);
+      rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, reported_later(groups, fault), reason);
   }
   const std::string_view heading =
       "\n## Off, but not told\n\nWith the force on, cases in which the bridges went off, but no fault was told";
@@ -195,10 +198,10 @@ std::string unnoticed_without_force(const Groups& groups, const std::vector<Case
   };
   std::vector<Row> rows;
   for (const CaseFault& fault : faults) {
-    if (fault.is_none()) continue;
+    if (fault.is_fault_free()) continue;
     std::map<std::string_view, std::string> where_by_reason;
     for (const CaseSituation situation : situations)
-      if (const std::string where = situation_with(groups, fault, situation, was_off_untold); !where.empty())
+      if (const std::string where = situation_with(groups, fault, situation, was_off_unreported); !where.empty())
         add(where_by_reason[reason_without_force(fault, situation)], where);
     for (const auto& [reason, where] : where_by_reason) {
       auto row = std::ranges::find_if(

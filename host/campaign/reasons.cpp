@@ -37,13 +37,13 @@ std::string_view reason_of_wire(std::string_view wire) {
          "closed outside the inkwell.";
 }
 
-const std::string of_hung_main_loop = std::to_string(virtual_board::exception_pendsv);
+const std::string of_stalled_main_loop = std::to_string(virtual_board::exception_pendsv);
 const std::string of_voltage_detector =
     std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
 
 /// For faults that only accompany another fault, lateness is not judged.
 std::string_view reason_of_exception(std::string_view exception, std::string_view of_control_interrupt) {
-  if (exception == of_hung_main_loop)
+  if (exception == of_stalled_main_loop)
     return "This exception is requested only if the main loop hangs, to record its location. That would be a second "
            "fault.";
   if (exception == of_voltage_detector)
@@ -56,7 +56,7 @@ constexpr std::string_view host_is_missed = "None is known: a silent host is det
 constexpr std::string_view no_force_to_lose = "A lost USB connection is reported only while the force is on.";
 constexpr std::string_view falls_anyway =
     "The force was switched off already and was decreasing. It stops immediately, which only the state reports.";
-constexpr std::string_view chip_stands = "The chip is in reset while its supply is too low, and reports nothing.";
+constexpr std::string_view chip_is_frozen = "The chip is in reset while its supply is too low, and reports nothing.";
 constexpr std::string_view not_begun = "A core that does not take its first instruction has not begun.";
 constexpr std::string_view stalled_unwatched =
     "The main loop is not monitored before it runs, while another fault is reported, and during the transition to the "
@@ -234,7 +234,7 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
              "afterwards.";
     case InjectedFault::logic_sag:
       if (!is_starting && situation != CaseSituation::update) return reason_with_force(put_in);
-      return chip_stands;
+      return chip_is_frozen;
     case InjectedFault::crystal_drift:
     case InjectedFault::usb_cut: return no_force_to_lose;
     case InjectedFault::host_silent: return "A silent host is detected only while the force is on.";
@@ -266,7 +266,7 @@ std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situat
     case InjectedFault::wire_frozen:
       if (of == "usb_supply") return usb_gone;
       break;
-    case InjectedFault::logic_sag: return chip_stands;
+    case InjectedFault::logic_sag: return chip_is_frozen;
     case InjectedFault::crystal_drift:
     case InjectedFault::usb_cut: return usb_gone;
     case InjectedFault::host_silent:

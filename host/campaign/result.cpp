@@ -30,7 +30,7 @@ struct nlohmann::adl_serializer<std::optional<double>> {
 namespace inkwell::campaign {
 
 NLOHMANN_JSON_SERIALIZE_ENUM(FirstFault, {{FirstFault::none, "none"},
-                                          {FirstFault::told, "told"},
+                                          {FirstFault::reported, "told"},
                                           {FirstFault::black_box, "black_box"},
                                           {FirstFault::lost, "lost"}})
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, error, injected_at_s, place,
@@ -59,7 +59,7 @@ bool is_detected(const Result& result) {
 
 bool is_unnoticed(const Result& result) { return !is_detected(result) && !result.off_after_s; }
 
-std::string told(const Result& result) {
+std::string fault_text(const Result& result) {
   std::vector<std::string_view> parts;
   const std::string later = result.told_once_cleared + " once cleared";
   if (!result.detected_as.empty()) parts.push_back(result.detected_as);

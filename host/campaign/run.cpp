@@ -54,11 +54,11 @@ void set_to_maximum(BoardRun& board, ParameterSet& parameters, Parameter paramet
 
 /// Starts the self-test and waits for its first pulse.
 void begin_self_test(BoardRun& board) {
-  constexpr double look_s = 0.0005, longest_s = 0.05;
+  constexpr double poll_interval_s = 0.0005, longest_s = 0.05;
   board.command(Command::self_test);
   bool has_begun = false;
-  for (double waited_s = 0; !has_begun && waited_s < longest_s; waited_s += look_s) {
-    board.run_exactly(look_s);
+  for (double waited_s = 0; !has_begun && waited_s < longest_s; waited_s += poll_interval_s) {
+    board.run_exactly(poll_interval_s);
     has_begun = bridges_drive(board.control().truth());
   }
   expect(has_begun, "the self-test made no pulse.");
@@ -97,10 +97,10 @@ void bring_a_first_fault(BoardRun& board) {
 /// Starts the update. The transition to the boot loader lasts until the board has written its parameters, none of which
 /// were stored before.
 void begin_update(BoardRun& board) {
-  constexpr double until_told_s = 0.002;
+  constexpr double report_delay_s = 0.002;
   board.command(Command::store_parameters);
-  board.run(until_told_s);
-  board.ask_for_boot_loader();
+  board.run(report_delay_s);
+  board.request_boot_loader();
   expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
 }
 
@@ -108,8 +108,9 @@ void begin_update(BoardRun& board) {
 void begin_start(BoardRun& board, const Case& the_case) {
   take_by_hand(board, board.true_position_m(), 0.05);
   if (is_before_power(the_case)) return;
-  constexpr double look_s = 0.0005, longest_s = 0.1;
-  for (double waited_s = 0; board.resets() < 1 && waited_s < longest_s; waited_s += look_s) board.run_exactly(look_s);
+  constexpr double poll_interval_s = 0.0005, longest_s = 0.1;
+  for (double waited_s = 0; board.resets() < 1 && waited_s < longest_s; waited_s += poll_interval_s)
+    board.run_exactly(poll_interval_s);
   expect(board.resets() == 1, "the board did not start.");
 }
 
@@ -239,13 +240,13 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
 /// An earlier fault does not count.
 void note_fault(const BoardRun& board, const Result& result, std::string& name) {
   if (!name.empty() || !board.is(State::fault)) return;
-  const std::string_view told = protocol::info(board.pose()->fault).name;
-  if (told != result.told_before) name = told;
+  const std::string_view reported_name = protocol::info(board.pose()->fault).name;
+  if (reported_name != result.told_before) name = reported_name;
 }
 
 /// Returns FirstFault::none if the board does not answer.
-FirstFault what_became_of_first(BoardRun& board, bool restarted) {
-  if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::told;
+FirstFault outcome_of_first_fault(BoardRun& board, bool restarted) {
+  if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::reported;
   try {
     // Without a restart the fault would still be reported.
     return restarted && board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
@@ -286,17 +287,17 @@ bool notice(BoardRun& board, const Case& the_case, Result& result) {
     note_fault(board, result, result.detected_as);
   if (!board.connected()) return false;
   if (the_case.situation == CaseSituation::fault && !is_about_the_host(the_case.fault)) {
-    result.first_fault = what_became_of_first(board, result.restarts > 0);
-    if (result.first_fault == FirstFault::told) clear_first_fault(board, result);
+    result.first_fault = outcome_of_first_fault(board, result.restarts > 0);
+    if (result.first_fault == FirstFault::reported) clear_first_fault(board, result);
   }
   return true;
 }
 
 /// Waits until the board runs its boot loader, and commands the boot loader to start the firmware.
 void leave_boot_loader(BoardRun& board, Result& result) {
-  constexpr double look_s = 0.005, longest_s = 0.5;
-  for (double waited_s = 0; waited_s < longest_s; waited_s += look_s) {
-    board.run(look_s);
+  constexpr double poll_interval_s = 0.005, longest_s = 0.5;
+  for (double waited_s = 0; waited_s < longest_s; waited_s += poll_interval_s) {
+    board.run(poll_interval_s);
     if (board.is_in_boot_loader()) {
       if (std::exchange(result.missed_boot_loader, false)) result.restarts -= std::min(result.restarts, 1u);
       board.start_from_boot_loader();
@@ -309,15 +310,15 @@ void leave_boot_loader(BoardRun& board, Result& result) {
 
 /// Clears the fault and restores the force. A detection after this point counts only if the device could not report
 /// before.
-void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& result) {
+void recover(BoardRun& board, const Case& the_case, bool could_report, Result& result) {
   board.control().heal_all();
   if (the_case.situation == CaseSituation::update) leave_boot_loader(board, result);
   if (!board.connected()) board.connect(0.5);
   board.run(0.05);
   if (the_case.situation == CaseSituation::fault && result.first_fault == FirstFault::none && board.connected())
-    result.first_fault = what_became_of_first(board, result.restarts > 0);
+    result.first_fault = outcome_of_first_fault(board, result.restarts > 0);
   if (result.detected_as.empty() && result.told_once_cleared.empty() && result.noticed_in_use_as.empty())
-    note_fault(board, result, could_tell ? result.fault_on_healing : result.detected_as);
+    note_fault(board, result, could_report ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
   const bool was_fault = board.is(State::fault);
   if (tries_to_work(board)) {
@@ -361,11 +362,11 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     expect(the_case.situation != CaseSituation::update || board.is(State::update), "the board left too soon.");
     if (the_case.situation == CaseSituation::fault) result.told_before = protocol::info(first_fault).name;
     observe(board, the_case, parameters, result);
-    const bool could_tell = notice(board, the_case, result);
+    const bool could_report = notice(board, the_case, result);
     const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;
-    if (lasts && is_unnoticed(result) && could_tell && !is_about_the_host(the_case.fault))
+    if (lasts && is_unnoticed(result) && could_report && !is_about_the_host(the_case.fault))
       use_on(board, parameters, result);
-    recover(board, the_case, could_tell, result);
+    recover(board, the_case, could_report, result);
   } catch (const device::Error& error) {
     result.error = error.what();
   }

@@ -16,12 +16,12 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   control.meter_start();
   double used_s = 0;
   const auto use_for = [&](double time_s) {
-    constexpr double look_s = 0.01;
+    constexpr double poll_interval_s = 0.01;
     const double until_s = used_s + time_s;
     while (used_s < until_s) {
       if (!board.connected() || !board.force_is_on()) return;
-      board.run(look_s);
-      used_s += look_s;
+      board.run(poll_interval_s);
+      used_s += poll_interval_s;
     }
   };
   use_for(goes_on_s);

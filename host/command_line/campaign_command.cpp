@@ -67,27 +67,27 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
   make_folder(command.folder, "--out");
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   std::atomic<std::size_t> next{0}, failed{0};
-  std::mutex telling;
+  std::mutex printing;
   std::string trouble;
   const auto work = [&] {
     for (std::size_t i; (i = next++) < cases.size();) try {
         const auto result = campaign::run_case(cases[i], board);
         campaign::save(result, command.folder);
-        const std::lock_guard lock(telling);
+        const std::lock_guard lock(printing);
         if (!result.error.empty()) ++failed;
         const std::string off = result.off_after_s
                                     ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
                                     : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
         // The location helps to explain the result.
         const std::string place = result.place.empty() ? "" : " at " + result.place;
-        const std::string told = campaign::told(result);
+        const std::string text = campaign::fault_text(result);
         fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
-                   result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", told.empty() ? "-" : told, off,
+                   result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
                                                       result.peak_force_N, result.recovery)
                                         : result.error);
         std::fflush(stdout);
       } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
-        const std::lock_guard lock(telling);
+        const std::lock_guard lock(printing);
         trouble = error.what();
         next = cases.size();
       }

@@ -36,7 +36,7 @@ struct Listed {
 
 /// Devices that do not answer are also listed. Firmware with another protocol version also answers the information
 /// request.
-Listed ask(const Endpoint& endpoint) {
+Listed query_arm(const Endpoint& endpoint) {
   Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};
   try {
     const auto information = device::Device(device::open_transport(endpoint)).information();
@@ -52,7 +52,7 @@ int list_devices(const DeviceOptions& options) {
   const auto devices = found(options);
   ordered_json json = ordered_json::array();
   for (const Endpoint& endpoint : devices) {
-    const Listed each = ask(endpoint);
+    const Listed each = query_arm(endpoint);
     if (options.json)
       json.push_back({{"serial_number", each.serial_number},
                       {"product", each.product},

@@ -99,8 +99,8 @@ void print(const BlackBoxReport& box, const Image& image) {
   print_crash(box, image);
 }
 
-void tell_fault(const DeviceOptions& options, device::Device& device, const Pose& pose, const BlackBoxReport& box,
-                const Image& image) {
+void print_fault(const DeviceOptions& options, device::Device& device, const Pose& pose, const BlackBoxReport& box,
+                 const Image& image) {
   const bool is_fault = pose.state == State::fault;
   if (options.json) {
     fmt::print("{}\n", ordered_json{{"state", info(pose.state).name},
@@ -120,7 +120,7 @@ int show_fault(const DeviceOptions& device_options, const FaultOptions& options)
   const auto connection = connect(device_options);
   const auto pose = next_pose(*connection.device);
   const auto box = connection.device->black_box();
-  tell_fault(device_options, *connection.device, pose, box, image_of(box, options));
+  print_fault(device_options, *connection.device, pose, box, image_of(box, options));
   return 0;
 }
 
@@ -177,7 +177,7 @@ int clear_fault(const DeviceOptions& options) {
     pose = next_pose(device);
     return shown();
   });
-  tell_fault(options, device, pose, device.black_box(), std::nullopt);
+  print_fault(options, device, pose, device.black_box(), std::nullopt);
   return 0;
 }
 

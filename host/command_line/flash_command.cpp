@@ -59,7 +59,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
                                      {.consent = given.consent(),
                                       .image_for = given.image_for,
                                       .on_progress = [&](std::string_view step, double done) { progress(step, done); },
-                                      .is_cancelled = [&] { return interrupt.was_asked_to_end(); }});
+                                      .is_cancelled = [&] { return interrupt.is_interrupted(); }});
   } catch (...) {
     progress.end();
     throw;

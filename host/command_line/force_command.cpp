@@ -20,7 +20,7 @@ namespace {
 using device::Pose;
 using protocol::State;
 
-void tell_force(const DeviceOptions& options, const Pose& pose) {
+void print_force(const DeviceOptions& options, const Pose& pose) {
   if (options.json)
     fmt::print("{}\n", nlohmann::ordered_json{{"force_is_on", protocol::force_is_on(pose.state)},
                                               {"state", info(pose.state).name}}
@@ -31,13 +31,13 @@ void tell_force(const DeviceOptions& options, const Pose& pose) {
 
 int show_force(const DeviceOptions& options) {
   const auto connection = connect(options);
-  tell_force(options, next_pose(*connection.device));
+  print_force(options, next_pose(*connection.device));
   return 0;
 }
 
 int switch_off(const DeviceOptions& options) {
   const auto connection = connect(options);
-  tell_force(options, switch_force_off(*connection.device));
+  print_force(options, switch_force_off(*connection.device));
   return 0;
 }
 
@@ -49,7 +49,7 @@ int keep_on(const DeviceOptions& options, double seconds) {
   const InterruptGuard interrupt;
   ForceSwitch force(device);
   Pose pose = next_pose(device);
-  tell_force(options, pose);
+  print_force(options, pose);
   if (!options.json && seconds == 0) fmt::print("Ctrl-C switches the force off.\n");
   std::fflush(stdout);
   const std::int64_t begin_periods = pose.time_periods;
@@ -57,13 +57,13 @@ int keep_on(const DeviceOptions& options, double seconds) {
     return seconds > 0 && device::board_time_s(pose.time_periods - begin_periods) >= seconds;
   };
   auto loss = force.loss(pose);
-  while (!loss && !is_over() && !interrupt.was_asked_to_end()) {
+  while (!loss && !is_over() && !interrupt.is_interrupted()) {
     device.keep_alive();
     pose = next_pose(device);
     loss = force.loss(pose);
   }
   if (loss) throw device::Error(*loss);
-  tell_force(options, force.switch_off());
+  print_force(options, force.switch_off());
   return 0;
 }
 

@@ -19,19 +19,19 @@ using protocol::Command;
 using protocol::State;
 
 /// Intervals in board time. The request is repeated, because a device that is not referenced yet drops it.
-constexpr std::int64_t ask_again_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
+constexpr std::int64_t retry_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
 /// Repeats the command until the desired state, a fault, or the time limit.
 template <class Wanted>
-Pose ask(device::Device& device, Command command, Wanted wanted) {
+Pose send_until(device::Device& device, Command command, Wanted wanted) {
   device.carry_out(command);
   Pose pose = next_pose(device);
   const std::int64_t begin_periods = pose.time_periods;
-  std::int64_t asked_periods = begin_periods;
+  std::int64_t sent_periods = begin_periods;
   while (!wanted(pose.state) && pose.state != State::fault && pose.time_periods - begin_periods < patience_periods) {
-    if (pose.time_periods - asked_periods >= ask_again_periods) {
+    if (pose.time_periods - sent_periods >= retry_periods) {
       device.carry_out(command);
-      asked_periods = pose.time_periods;
+      sent_periods = pose.time_periods;
     }
     device.keep_alive();
     pose = next_pose(device);
@@ -72,7 +72,7 @@ Pose switch_force_off(device::Device& device) {
 ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
   device.claim();
   clear_what_a_host_left(device);
-  const auto pose = ask(device, Command::enable_force, [](State state) { return protocol::force_is_on(state); });
+  const auto pose = send_until(device, Command::enable_force, [](State state) { return protocol::force_is_on(state); });
   if (protocol::force_is_on(pose.state)) return;
   if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");
   throw device::Error(force_sentence(pose));

@@ -43,12 +43,12 @@ std::optional<std::string> typed_line() {
 /// Shows the state of a guide on standard error, so that the --json output stays valid.
 class Display {
  public:
-  void show(const Guide& guide, bool asks) {
+  void show(const Guide& guide, bool prompts) {
     if (guide.step_index() != shown_step_) {
       end_line();
       shown_step_ = guide.step_index();
       shown_text_.clear();
-      asked_ = false;
+      has_prompted_ = false;
       fmt::print(stderr, "[{}/{}] {}\n", shown_step_ + 1, guide.step_count(), guide.step().title());
     }
     if (const std::string text = guide.step().text(); text != shown_text_) {
@@ -56,9 +56,9 @@ class Display {
       shown_text_ = text;
       fmt::print(stderr, "{}\n", text);
     }
-    if (asks && !asked_ && guide.phase() == Phase::asks)
+    if (prompts && !has_prompted_ && guide.phase() == Phase::awaits_consent)
       fmt::print(stderr, "Press Enter to agree, Ctrl+C to cancel.\n");
-    if (asks) asked_ = true;
+    if (prompts) has_prompted_ = true;
     if (is_terminal_ && guide.phase() == Phase::working) live(guide);
     std::fflush(stderr);
   }
@@ -83,7 +83,7 @@ class Display {
   bool is_terminal_ = isatty(STDERR_FILENO) == 1;
   std::size_t shown_step_ = SIZE_MAX;
   std::string shown_text_;
-  bool asked_ = false, line_is_open_ = false;
+  bool has_prompted_ = false, line_is_open_ = false;
   Clock::time_point drawn_at_{};
 };
 
@@ -117,7 +117,7 @@ class GuideRun {
 
  private:
   void round() {
-    if (interrupt_.was_asked_to_end()) guide_.cancel(port_);
+    if (interrupt_.is_interrupted()) guide_.cancel(port_);
     for (const auto& samples : device_.take_frames()) guide_.receive(samples);
     const auto now = guides::observe(device_.session());
     guide_.advance(now, port_);
@@ -135,7 +135,7 @@ class GuideRun {
 
   /// --yes agrees to the actions of the device. Only the user or button 1 can confirm the end of the user's task.
   bool agrees() {
-    if (guide_.phase() == Phase::asks && consent_.yes) return true;
+    if (guide_.phase() == Phase::awaits_consent && consent_.yes) return true;
     if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
     return typed_line().has_value();
   }
@@ -157,7 +157,7 @@ class GuideRun {
     for (;;) {
       if (const auto line = typed_line()) return *line == "yes" || *line == "y";
       round();
-      if (interrupt_.was_asked_to_end()) return false;
+      if (interrupt_.is_interrupted()) return false;
     }
   }
 
@@ -192,7 +192,7 @@ bool wants_to_store(const DeviceOptions& options, const Consent& consent, const 
   std::fflush(stderr);
   for (;;) {
     if (const auto line = typed_line()) return *line == "yes" || *line == "y";
-    if (interrupt.was_asked_to_end()) return false;
+    if (interrupt.is_interrupted()) return false;
     std::this_thread::sleep_for(1ms);
   }
 }
@@ -251,7 +251,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
   if (options.json) fmt::print("{}\n", (offers.size() == 1 ? results[0] : results).dump(2));
   std::fflush(stdout);
   if (!failure.empty()) throw device::Error(failure);
-  if (has_changed) tell_what_ends(options, is_stored);
+  if (has_changed) print_unstored(options, is_stored);
   return 0;
 }
 

@@ -34,7 +34,7 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
     frames_.push_back(samples);
   });
   wait_for_device();
-  if (!changes.empty()) give_parameters(changes);
+  if (!changes.empty()) apply_parameters(changes);
 }
 
 void GuidedDevice::wait_for_device() {
@@ -58,7 +58,7 @@ void GuidedDevice::wait_for_device() {
   }
 }
 
-void GuidedDevice::give_parameters(const std::vector<device::ParameterChange>& changes) {
+void GuidedDevice::apply_parameters(const std::vector<device::ParameterChange>& changes) {
   session_->set_parameters(changes);
   auto limit = transaction_limit();
   const auto holds_them = [&] {

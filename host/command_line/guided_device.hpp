@@ -32,7 +32,7 @@ class GuidedDevice {
 
  private:
   void wait_for_device();
-  void give_parameters(const std::vector<device::ParameterChange>& changes);
+  void apply_parameters(const std::vector<device::ParameterChange>& changes);
 
   std::unique_ptr<device::VirtualBoard> board_;
   std::optional<guides::SimulatedUser> user_;

@@ -14,7 +14,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  bool was_asked_to_end() const;
+  bool is_interrupted() const;
 
  private:
   struct sigaction interrupt_before_, terminate_before_;

@@ -106,7 +106,7 @@ void finish(const DeviceOptions& options, device::Device& device, std::size_t co
     fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
     if (store) fmt::print("The parameters are stored on the board and survive power loss.\n");
   }
-  tell_what_ends(options, store);
+  print_unstored(options, store);
 }
 
 int send(const DeviceOptions& options, const device::OpenArm& connection, const std::vector<ParameterChange>& changes,

@@ -28,7 +28,7 @@ struct PlotOptions {
   std::string align;
 };
 
-void tell(const DeviceOptions& options, const std::vector<std::string>& pictures) {
+void print_pictures(const DeviceOptions& options, const std::vector<std::string>& pictures) {
   if (options.json)
     fmt::print("{}\n", nlohmann::ordered_json{{"pictures", pictures}}.dump());
   else
@@ -49,7 +49,7 @@ std::string draw(recording::Recording recording, const PlotOptions& options) {
   std::optional<recording::Overlay> over;
   if (!options.over.empty()) {
     auto other = read_recording(options.over);
-    std::tie(recording.name, other.name) = recording::names_beside_each_other(options.file, options.over);
+    std::tie(recording.name, other.name) = recording::distinct_names(options.file, options.over);
     over.emplace(std::move(other), recording, options.align);
   }
   if (over) figure.over = &*over;
@@ -67,9 +67,9 @@ std::string draw(recording::Recording recording, const PlotOptions& options) {
 int plot(const DeviceOptions& device_options, const PlotOptions& options) {
   auto recording = read_recording(options.file);
   if (options.as_in_paper)
-    tell(device_options, draw_as_in_paper(recording, options));
+    print_pictures(device_options, draw_as_in_paper(recording, options));
   else
-    tell(device_options, {draw(std::move(recording), options)});
+    print_pictures(device_options, {draw(std::move(recording), options)});
   return 0;
 }
 

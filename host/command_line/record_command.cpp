@@ -133,7 +133,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
   auto next_shown = std::chrono::steady_clock::now();
   int silent_reads = 0;
   std::optional<device::Pose> before;
-  while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
+  while (!scope.is_done() && !interrupt.is_interrupted() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
     const auto pose = device.read_pose(read_timeout);

@@ -64,11 +64,11 @@ void print(const SelfTestReport& report) {
           item.name, item.takes_force ? ", and the force stays off" : "", item.meaning, item.remedy);
   });
   if (is_well(report)) return;
-  bool is_told[protocol::self_test_result_table.size()] = {};
+  bool is_printed[protocol::self_test_result_table.size()] = {};
   for_each_item(report, [&](const auto&, const auto& entry) {
     const auto result = static_cast<std::size_t>(entry.result);
-    if (result >= std::size(is_told) || is_told[result]) return;
-    is_told[result] = true;
+    if (result >= std::size(is_printed) || is_printed[result]) return;
+    is_printed[result] = true;
     if (entry.result == SelfTestResult::moved || entry.result == SelfTestResult::broken_off)
       fmt::print("\n{}: {}\n", info(entry.result).name, info(entry.result).meaning);
   });

@@ -79,20 +79,20 @@ Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   Outcome outcome{{choices.seed, choices.sitting_s, choices.use_s, false, {}}, ""};
   std::vector<soak::Sitting> sittings(numbers.size());
   std::atomic<std::size_t> next{0};
-  std::mutex telling;
+  std::mutex printing;
   const InterruptGuard interrupt;
-  const auto is_stopped = [&] { return interrupt.was_asked_to_end(); };
-  const auto tell = [&](const std::string& text) {
+  const auto is_stopped = [&] { return interrupt.is_interrupted(); };
+  const auto print_text = [&](const std::string& text) {
     if (options.json) return;
-    const std::lock_guard lock(telling);
+    const std::lock_guard lock(printing);
     fmt::print("{}", text);
     std::fflush(stdout);
   };
   const auto work = [&] {
     for (std::size_t i; !is_stopped() && (i = next++) < numbers.size();) try {
-        sittings[i] = soak::run_sitting(numbers[i], choices, board, tell, is_stopped);
+        sittings[i] = soak::run_sitting(numbers[i], choices, board, print_text, is_stopped);
       } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
-        const std::lock_guard lock(telling);
+        const std::lock_guard lock(printing);
         outcome.trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
         next = numbers.size();
       }

@@ -32,8 +32,8 @@ std::string firmware_version(const StoreReport& report) {
 }
 
 std::vector<std::uint16_t> unknown_ids(const StoreReport& report) {
-  const std::size_t told = std::min<std::size_t>(report.unknown, protocol::store_unknown_ids_maximum);
-  return {report.unknown_ids, report.unknown_ids + told};
+  const std::size_t listed = std::min<std::size_t>(report.unknown, protocol::store_unknown_ids_maximum);
+  return {report.unknown_ids, report.unknown_ids + listed};
 }
 
 ordered_json to_json(const ParameterSet& held, const BoardStore& store) {
@@ -106,25 +106,25 @@ int show(const DeviceOptions& options) {
   return 0;
 }
 
-void tell(const DeviceOptions& options, device::Device& device, std::string_view done) {
+void print_result(const DeviceOptions& options, device::Device& device, std::string_view done) {
   if (options.json)
     fmt::print("{}\n", to_json(device.parameters(), read_store(device)).dump(2));
   else
     fmt::print("{}\n", done);
-  tell_what_ends(options, true);
+  print_unstored(options, true);
 }
 
 int store(const DeviceOptions& options) {
   const auto connection = connect(options);
   store_parameters(*connection.device);
-  tell(options, *connection.device, "The parameters are stored on the board and survive power loss.");
+  print_result(options, *connection.device, "The parameters are stored on the board and survive power loss.");
   return 0;
 }
 
 int restore(const DeviceOptions& options) {
   const auto connection = connect(options);
   connection.device->restore_stored_parameters();
-  tell(options, *connection.device, "Every parameter has its stored value.");
+  print_result(options, *connection.device, "Every parameter has its stored value.");
   return 0;
 }
 
@@ -145,13 +145,13 @@ int reset(const DeviceOptions& options, bool is_agreed) {
   if (!is_agreed && !agrees()) throw device::Error("Nothing was erased.");
   const auto connection = connect(options);
   factory_reset(*connection.device);
-  tell(options, *connection.device, "The stored parameters are erased, and every parameter has its default.");
+  print_result(options, *connection.device, "The stored parameters are erased, and every parameter has its default.");
   return 0;
 }
 
 }  // namespace
 
-void tell_what_ends(const DeviceOptions& options, bool is_stored) {
+void print_unstored(const DeviceOptions& options, bool is_stored) {
   if (!options.is_virtual || (is_stored && !options.flash.empty())) return;
   if (is_stored)
     fmt::print(stderr, "inkwell: This virtual board exits now, and its flash is lost. Use --flash FILE to keep it.\n");

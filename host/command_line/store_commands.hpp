@@ -6,7 +6,7 @@
 namespace inkwell::command_line {
 
 /// Warns if values are lost when the virtual board of this command exits, and names the option that retains them.
-void tell_what_ends(const DeviceOptions& options, bool is_stored);
+void print_unstored(const DeviceOptions& options, bool is_stored);
 
 void add_store_commands(CLI::App& parameters, const Place& place);
 

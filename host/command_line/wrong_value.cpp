@@ -13,17 +13,17 @@ namespace inkwell::command_line {
 namespace {
 
 /// An option or argument on the command line, and its command.
-struct Given {
+struct GivenOption {
   const CLI::Option* option;
   std::string command;
 };
 
 template <class Which>
-std::optional<Given> find_given(const CLI::App& app, const std::string& words, Which which) {
+std::optional<GivenOption> find_option(const CLI::App& app, const std::string& words, Which which) {
   for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; }))
-    if (which(*option)) return Given{option, words};
+    if (which(*option)) return GivenOption{option, words};
   for (const CLI::App* command : app.get_subcommands())
-    if (auto found = find_given(*command, fmt::format("{} {}", words, command->get_name()), which)) return found;
+    if (auto found = find_option(*command, fmt::format("{} {}", words, command->get_name()), which)) return found;
   return std::nullopt;
 }
 
@@ -36,7 +36,7 @@ std::string name_of(const CLI::Option& option) {
 
 /// Returns the message for a value that is not a valid number. Only numbers are converted. If the value is a number,
 /// the option requires a non-negative integer.
-std::string of_conversion(const Given& given) {
+std::string of_conversion(const GivenOption& given) {
   const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
   const auto& values = given.option->results();
   const std::string name = name_of(*given.option), help = fmt::format("`{} --help` describes it.", given.command);
@@ -56,7 +56,7 @@ std::optional<std::string> of_missing_value(const CLI::App& program, std::string
   if (!raw.ends_with(" missing") || raw.find(" required ") == std::string_view::npos) return std::nullopt;
   const std::string name(raw.substr(0, raw.find(':')));
   const auto given =
-      find_given(program, program.get_name(), [&](const auto& option) { return option.get_name() == name; });
+      find_option(program, program.get_name(), [&](const auto& option) { return option.get_name() == name; });
   if (!given) return std::nullopt;
   return fmt::format("The value of {} is missing. Give it after the option; `{} --help` describes it.",
                      name_of(*given->option), given->command);
@@ -67,7 +67,7 @@ std::optional<std::string> of_missing_value(const CLI::App& program, std::string
 std::string sentence_of(const CLI::App& program, const CLI::ParseError& error) {
   std::string raw = error.what();
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
-    const auto given = find_given(program, program.get_name(), [&](const CLI::Option& option) {
+    const auto given = find_option(program, program.get_name(), [&](const CLI::Option& option) {
       return option.count() > 0 && raw == CLI::ConversionError(option.get_name(), option.results()).what();
     });
     if (given) return of_conversion(*given);

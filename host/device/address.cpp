@@ -24,7 +24,7 @@ std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
   return numbers;
 }
 
-std::string nobody(const Address& address) {
+std::string no_endpoint_message(const Address& address) {
   if (address.kind == Address::Kind::usbip)
     return fmt::format(
         "The USB/IP server at {} exports no arm. Check that its board runs Inkwell's firmware and that its cable is "
@@ -117,13 +117,13 @@ std::vector<Endpoint> find_arms(const Address& address) {
 }
 
 Endpoint find_arm(const Address& address) {
-  const auto give_up_at = std::chrono::steady_clock::now() + start_patience;
+  const auto deadline = std::chrono::steady_clock::now() + start_patience;
   auto endpoints = find_arms(address);
-  while (endpoints.empty() && address.kind == Address::Kind::usbip && std::chrono::steady_clock::now() < give_up_at) {
+  while (endpoints.empty() && address.kind == Address::Kind::usbip && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(look_again);
     endpoints = find_arms(address);
   }
-  if (endpoints.empty()) throw NoDevice(nobody(address));
+  if (endpoints.empty()) throw NoDevice(no_endpoint_message(address));
   if (address.kind == Address::Kind::usb && endpoints.size() > 1)
     throw SeveralArms(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),
                                   serial_numbers(endpoints)));

@@ -41,8 +41,9 @@ StoreReport carry_out(Device& device, Command command, std::string_view failure)
 
 }  // namespace
 
-NotStored::NotStored(std::string_view what, const StoreReport& told)
-    : Error(fmt::format("{} {} {}", what, info(told.result).meaning, info(told.result).remedy)), report(told) {}
+NotStored::NotStored(std::string_view what, const StoreReport& refused_report)
+    : Error(fmt::format("{} {} {}", what, info(refused_report.result).meaning, info(refused_report.result).remedy)),
+      report(refused_report) {}
 
 BoardStore read_store(Device& device) {
   BoardStore store{};

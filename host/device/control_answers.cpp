@@ -32,14 +32,14 @@ Whole whole_number(const json& value, const char* sentence) {
   return value.get<Whole>();
 }
 
-PutInFault put_in_fault(const json& told, const char* time_key, const char* sentence) {
-  PutInFault fault{.number = whole_number<unsigned>(told.at("number"), sentence),
-                   .fault = told.at("fault").get<std::string>(),
-                   .of = told.value("of", std::string()),
-                   .at_s = told.at(time_key).get<double>(),
+PutInFault put_in_fault(const json& entry, const char* time_key, const char* sentence) {
+  PutInFault fault{.number = whole_number<unsigned>(entry.at("number"), sentence),
+                   .fault = entry.at("fault").get<std::string>(),
+                   .of = entry.value("of", std::string()),
+                   .at_s = entry.at(time_key).get<double>(),
                    .has_come = std::string_view(time_key) == "since_s"};
-  if (told.contains("amount")) fault.amount = told["amount"].get<double>();
-  if (told.contains("until_s")) fault.until_s = told["until_s"].get<double>();
+  if (entry.contains("amount")) fault.amount = entry["amount"].get<double>();
+  if (entry.contains("until_s")) fault.until_s = entry["until_s"].get<double>();
   return fault;
 }
 
@@ -74,15 +74,15 @@ PinLevels pin_levels_of(const json& answer) {
   });
 }
 
-PutInFault put_in_fault_of(const json& answer, const protocol::InjectionRequest& asked) {
+PutInFault put_in_fault_of(const json& answer, const protocol::InjectionRequest& request) {
   return read_or_fail(damaged_answer, [&] {
     PutInFault put_in{.number = whole_number<unsigned>(answer.value("number", json(0u)), damaged_answer),
-                      .fault = asked.fault,
-                      .of = asked.of,
-                      .amount = asked.amount,
+                      .fault = request.fault,
+                      .of = request.of,
+                      .amount = request.amount,
                       .at_s = answer.value("at_s", 0.0),
-                      .has_come = asked.after_s == 0.0};
-    if (asked.for_s) put_in.until_s = put_in.at_s + *asked.for_s;
+                      .has_come = request.after_s == 0.0};
+    if (request.for_s) put_in.until_s = put_in.at_s + *request.for_s;
     return put_in;
   });
 }

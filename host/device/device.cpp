@@ -629,9 +629,9 @@ Information Device::information() {
 std::optional<Pose> Device::read_pose(std::chrono::milliseconds timeout) {
   auto& self = *implementation_;
   protocol::PoseReport report;
-  const auto give_up_at = Clock::now() + timeout;
+  const auto deadline = Clock::now() + timeout;
   for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
     const std::size_t length = self.read_report(writable_bytes(report), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     if (length != sizeof report || report.report_id != ReportId::pose) continue;
@@ -800,9 +800,9 @@ protocol::SelfTestReport Device::self_test() {
 
 std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout) {
   std::array<std::byte, protocol::scope_frame_maximum> frame;
-  const auto give_up_at = Clock::now() + timeout;
+  const auto deadline = Clock::now() + timeout;
   for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
     const std::size_t length = implementation_->transport()->read_bulk(frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);

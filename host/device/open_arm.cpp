@@ -14,14 +14,14 @@ constexpr double show_limit_s = 2.0;  // board time; the firmware connects to US
 constexpr double step_s = 0.01;
 constexpr auto look_again = 5ms;
 
-Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bool time_stands) {
+Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bool time_is_stopped) {
   for (;;) {
     const BoardStatus status = control.status();
     const bool is_late = status.board_time_s > show_limit_s;
     if (const auto endpoint = board.find()) return *endpoint;
     status.insist_on_running();
     if (is_late) throw Error("The virtual board shows no USB device. Check that its firmware is Inkwell's.");
-    if (time_stands)
+    if (time_is_stopped)
       control.run(step_s);
     else
       std::this_thread::sleep_for(look_again);

@@ -57,12 +57,12 @@ void Session::restore_default_parameters() {
 
 void Session::store_parameters() {
   const std::lock_guard lock(implementation_->mutex);
-  implementation_->ask(StoreTask::store);
+  implementation_->queue_store_task(StoreTask::store);
 }
 
 void Session::factory_reset() {
   const std::lock_guard lock(implementation_->mutex);
-  implementation_->ask(StoreTask::forget);
+  implementation_->queue_store_task(StoreTask::forget);
 }
 
 std::optional<Reconnection> Session::reconnection() const {

@@ -52,7 +52,7 @@ Session::Implementation::~Implementation() {
 // ---- report thread: connects, reads poses, sends the queued requests ----------------------------------------------
 
 void Session::Implementation::report_loop() {
-  ask_for_precedence();
+  request_priority();
   while (!stopping) {
     try {
       if (const auto endpoint = find())
@@ -102,7 +102,7 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
   requests.commands.clear();
   requests.take_over = false;
   requests.store.reset();
-  device = opened;
+  shared_device = opened;
   changed.notify_all();
   return opened;
 }
@@ -159,19 +159,19 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
   if (served->drives() && Clock::now() - last_pose < silence_limit) let_force_fall(*served);
 }
 
-void Session::Implementation::let_force_fall(Device& of) {
+void Session::Implementation::let_force_fall(Device& device) {
   try {
-    of.disable_force();
+    device.disable_force();
   } catch (const InUse&) {  // another program has taken over the arm
   }
 }
 
-void Session::Implementation::release_idle(Device& of, const Pose& pose) {
+void Session::Implementation::release_idle(Device& device, const Pose& pose) {
   using protocol::State;
-  if (!of.drives()) return;
+  if (!device.drives()) return;
   const bool is_needed = protocol::force_is_on(pose.state) || pose.state == State::testing;
   if (is_needed) claimed_at_periods = pose.time_periods;
-  if (pose.time_periods - claimed_at_periods > idle_claim_periods) of.release();
+  if (pose.time_periods - claimed_at_periods > idle_claim_periods) device.release();
 }
 
 void Session::Implementation::take_pose(const Pose& pose, std::optional<std::int64_t>& sequence) {
@@ -190,13 +190,13 @@ void Session::Implementation::note_events(const std::optional<Pose>& before, con
 }
 
 void Session::Implementation::note_losses(std::int64_t at_periods) {
-  const auto note = [&](const char* what, std::uint64_t now, std::uint64_t& told) {
-    if (now > told)
-      events.add(event_now(EventKind::loss, fmt::format("{} {} were lost.", now - told, what), at_periods));
-    told = now;
+  const auto note = [&](const char* what, std::uint64_t now, std::uint64_t& reported) {
+    if (now > reported)
+      events.add(event_now(EventKind::loss, fmt::format("{} {} were lost.", now - reported, what), at_periods));
+    reported = now;
   };
-  note("poses", state.poses_lost, told_poses_lost);
-  note("samples", state.scope_samples_lost, told_samples_lost);
+  note("poses", state.poses_lost, reported_poses_lost);
+  note("samples", state.scope_samples_lost, reported_samples_lost);
 }
 
 namespace {
@@ -211,7 +211,8 @@ std::optional<protocol::SelfTestReport> self_test_of(Device& device) {
 
 }  // namespace
 
-void Session::Implementation::follow_fault(Device& from, const Pose& pose, std::optional<std::int64_t> before_periods) {
+void Session::Implementation::follow_fault(Device& device, const Pose& pose,
+                                           std::optional<std::int64_t> before_periods) {
   std::optional<NoticedFault> known;
   std::optional<protocol::SelfTestReport> test;
   {
@@ -220,8 +221,8 @@ void Session::Implementation::follow_fault(Device& from, const Pose& pose, std::
   }
   if (pose.state == protocol::State::fault) {
     if (known && known->fault == pose.fault) return;
-    known = {pose.fault, noticed_at_periods(from, pose, before_periods)};
-    if (pose.fault == protocol::Fault::self_test_failed) test = self_test_of(from);
+    known = {pose.fault, noticed_at_periods(device, pose, before_periods)};
+    if (pose.fault == protocol::Fault::self_test_failed) test = self_test_of(device);
   } else if (!known) {
     return;
   } else {
@@ -232,10 +233,10 @@ void Session::Implementation::follow_fault(Device& from, const Pose& pose, std::
   state.self_test = test;
 }
 
-std::int64_t Session::Implementation::noticed_at_periods(Device& by, const Pose& pose,
+std::int64_t Session::Implementation::noticed_at_periods(Device& device, const Pose& pose,
                                                          std::optional<std::int64_t> before_periods) {
   try {
-    const protocol::BlackBoxReport box = by.black_box();
+    const protocol::BlackBoxReport box = device.black_box();
     const std::int64_t fault_periods = WideCounter::nearest_to(pose.time_periods, box.fault_periods);
     if (box.fault == pose.fault && box.is_restart == 0 && fault_periods <= pose.time_periods &&
         (!before_periods || fault_periods > *before_periods))
@@ -245,7 +246,7 @@ std::int64_t Session::Implementation::noticed_at_periods(Device& by, const Pose&
   return pose.time_periods;
 }
 
-void Session::Implementation::send_requests(Device& to) {
+void Session::Implementation::send_requests(Device& device) {
   Requests taken;
   std::vector<protocol::Signal> selection;
   {
@@ -256,13 +257,13 @@ void Session::Implementation::send_requests(Device& to) {
   auto& [restore_defaults, changes] = taken.parameters;
   bool is_at_parameters = false;
   try {
-    if (taken.take_over) take_over(to);
-    for (const auto& queued : taken.commands) carry_out(to, queued);
-    if (taken.select) select(to, selection);
+    if (taken.take_over) take_over(device);
+    for (const auto& queued : taken.commands) carry_out(device, queued);
+    if (taken.select) select(device, selection);
     is_at_parameters = true;
-    if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
+    if (restore_defaults) transact(device, [&] { return device.restore_default_parameters(); });
     restore_defaults = false;
-    if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
+    if (!changes.empty()) transact(device, [&device, &wanted = changes] { return device.set_parameters(wanted); });
   } catch (const Stalled&) {
     // The board would refuse a repeated request again. Later requests were not sent yet.
     if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
@@ -272,7 +273,7 @@ void Session::Implementation::send_requests(Device& to) {
     put_back(std::move(taken.parameters));
     throw;
   }
-  if (taken.store) carry_out(to, *taken.store);
+  if (taken.store) carry_out(device, *taken.store);
 }
 
 void Session::Implementation::put_back(ParameterRequests unsent) {
@@ -280,22 +281,22 @@ void Session::Implementation::put_back(ParameterRequests unsent) {
   requests.parameters.put_before(std::move(unsent));
 }
 
-void Session::Implementation::carry_out(Device& by, const QueuedCommand& queued) {
+void Session::Implementation::carry_out(Device& device, const QueuedCommand& queued) {
   using protocol::Command;
   try {
     if (may_move_arm(queued.command)) {
-      if (!by.drives()) by.claim();
+      if (!device.drives()) device.claim();
       const std::lock_guard lock(mutex);
       if (newest) claimed_at_periods = newest->time_periods;
     }
     if (queued.pulse) {
-      by.carry_out(queued.command, *queued.pulse);
+      device.carry_out(queued.command, *queued.pulse);
     } else {
       try {
-        by.carry_out(queued.command);
+        device.carry_out(queued.command);
       } catch (const InUse&) {
         if (queued.command != Command::disable_force) throw;
-        by.carry_out(Command::stop);
+        device.carry_out(Command::stop);
       }
     }
     const std::lock_guard lock(mutex);
@@ -305,9 +306,9 @@ void Session::Implementation::carry_out(Device& by, const QueuedCommand& queued)
   }
 }
 
-void Session::Implementation::take_over(Device& from) {
+void Session::Implementation::take_over(Device& device) {
   try {
-    from.take_over();
+    device.take_over();
     const std::lock_guard lock(mutex);
     state.command_problem.reset();
     if (newest) claimed_at_periods = newest->time_periods;
@@ -322,26 +323,26 @@ void Session::Implementation::show_problem(const InUse& error) {
   events.add(event_now(EventKind::connection, error.what(), std::nullopt));
 }
 
-void Session::Implementation::refresh_driver(Device& from) {
-  const auto driver = from.driver();
+void Session::Implementation::refresh_driver(Device& device) {
+  const auto driver = device.driver();
   const std::lock_guard lock(mutex);
   state.driver = driver;
 }
 
-void Session::Implementation::carry_out(Device& by, StoreTask task) {
+void Session::Implementation::carry_out(Device& device, StoreTask task) {
   std::optional<std::string> problem;
   try {
     if (task == StoreTask::store)
-      device::store_parameters(by);
+      device::store_parameters(device);
     else
-      device::factory_reset(by);
+      device::factory_reset(device);
   } catch (const Disconnected&) {
     throw;
   } catch (const Error& error) {
     problem = error.what();
   }
-  const auto store = read_store(by);
-  const auto held = by.parameters();
+  const auto store = read_store(device);
+  const auto held = device.parameters();
   const std::lock_guard lock(mutex);
   state.store = store;
   state.store_problem = problem;
@@ -352,10 +353,10 @@ void Session::Implementation::carry_out(Device& by, StoreTask task) {
   ++revision;
 }
 
-void Session::Implementation::select(Device& to, const std::vector<protocol::Signal>& selection) {
+void Session::Implementation::select(Device& device, const std::vector<protocol::Signal>& selection) {
   std::optional<std::string> denial;
   try {
-    to.select_signals(selection);
+    device.select_signals(selection);
   } catch (const InUse& error) {  // only the scope is unavailable
     denial = error.what();
   }
@@ -364,8 +365,8 @@ void Session::Implementation::select(Device& to, const std::vector<protocol::Sig
   scope_denied = denial.has_value();
 }
 
-void Session::Implementation::refresh_parameters(Device& from) {
-  const auto held = from.parameters();
+void Session::Implementation::refresh_parameters(Device& device) {
+  const auto held = device.parameters();
   const std::lock_guard lock(mutex);
   if (parameter_set == held) return;
   if (parameter_set && newest)
@@ -374,19 +375,19 @@ void Session::Implementation::refresh_parameters(Device& from) {
   ++revision;
 }
 
-void Session::Implementation::refresh_information(Device& from) {
-  const auto information = from.information();
+void Session::Implementation::refresh_information(Device& device) {
+  const auto information = device.information();
   const std::lock_guard lock(mutex);
   state.information = information;
 }
 
-void Session::Implementation::refresh_store(Device& from) {
+void Session::Implementation::refresh_store(Device& device) {
   auto store = *state.store;  // only this thread changes `state.store`
-  const auto report = from.store_report();
+  const auto report = device.store_report();
   if (report.commands == store.report.commands && report.records_written == store.report.records_written)
     store.report = report;
   else
-    store = read_store(from);
+    store = read_store(device);
   const std::lock_guard lock(mutex);
   state.store = store;
 }
@@ -401,8 +402,8 @@ void Session::Implementation::set_connection(Connection connection, const std::s
 
 void Session::Implementation::forget_device() {
   const std::lock_guard lock(mutex);
-  if (device) events.add(event_now(EventKind::connection, "The device was disconnected.", std::nullopt));
-  device.reset();
+  if (shared_device) events.add(event_now(EventKind::connection, "The device was disconnected.", std::nullopt));
+  shared_device.reset();
   state.information.reset();
   state.store.reset();
   state.is_storing = false;
@@ -415,8 +416,8 @@ void Session::Implementation::forget_device() {
   lost = false;
 }
 
-void Session::Implementation::ask(StoreTask task) {
-  if (device == nullptr) return;
+void Session::Implementation::queue_store_task(StoreTask task) {
+  if (shared_device == nullptr) return;
   requests.store = task;
   state.is_storing = true;
   state.store_problem.reset();
@@ -430,8 +431,8 @@ void Session::Implementation::scope_loop() {
     std::function<void(const ScopeSamples&)> receive;
     {
       std::unique_lock lock(mutex);
-      changed.wait_for(lock, search_interval, [&] { return stopping || device != nullptr; });
-      reading = device;
+      changed.wait_for(lock, search_interval, [&] { return stopping || shared_device != nullptr; });
+      reading = shared_device;
       receive = receive_scope;
     }
     if (reading == nullptr || lost) {
@@ -449,7 +450,7 @@ void Session::Implementation::scope_loop() {
       }
     } catch (const Error&) {
       const std::lock_guard lock(mutex);
-      if (device == reading) lost = true;  // the report thread reconnects, unless it already has
+      if (shared_device == reading) lost = true;  // the report thread reconnects, unless it already has
     }
   }
 }

@@ -42,23 +42,23 @@ struct Session::Implementation {
   /// Logs the losses of one rate window as one event, so that a bad cable does not fill the log. Requires the mutex.
   void note_losses(std::int64_t at_periods);
   /// `before_periods`: time of the previous pose, if any.
-  void follow_fault(Device& from, const Pose& pose, std::optional<std::int64_t> before_periods);
+  void follow_fault(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
   /// Uses the black box, which has the exact period unless it still contains an older fault.
-  static std::int64_t noticed_at_periods(Device& by, const Pose& pose, std::optional<std::int64_t> before_periods);
-  void send_requests(Device& to);
+  static std::int64_t noticed_at_periods(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
+  void send_requests(Device& device);
   /// A refusal by the board is shown to the user and does not close the connection.
-  void carry_out(Device& by, const QueuedCommand& queued);
-  void take_over(Device& from);
+  void carry_out(Device& device, const QueuedCommand& queued);
+  void take_over(Device& device);
   void show_problem(const InUse& error);
   /// Fades the force out when a session that drives the arm closes. Otherwise the board would raise a fault.
-  void let_force_fall(Device& of);
+  void let_force_fall(Device& device);
   /// Releases the arm after this session has not needed it for some time.
-  void release_idle(Device& of, const Pose& pose);
+  void release_idle(Device& device, const Pose& pose);
   /// Queues unsent requests for the next connection, ahead of newer requests.
   void put_back(ParameterRequests unsent);
   /// A refusal by the board is shown to the user and does not close the connection.
-  void carry_out(Device& by, StoreTask task);
-  void select(Device& to, const std::vector<protocol::Signal>& selection);
+  void carry_out(Device& device, StoreTask task);
+  void select(Device& device, const std::vector<protocol::Signal>& selection);
   template <class Transaction>
   void transact(Device& with, Transaction transaction) {
     std::optional<std::string> refused;
@@ -80,17 +80,17 @@ struct Session::Implementation {
     parameter_set = held;
     ++revision;
   }
-  void refresh_parameters(Device& from);
+  void refresh_parameters(Device& device);
   /// Only counters and motor heat are updated.
-  void refresh_information(Device& from);
-  void refresh_driver(Device& from);
+  void refresh_information(Device& device);
+  void refresh_driver(Device& device);
   /// The stored values change only together with the record count.
-  void refresh_store(Device& from);
+  void refresh_store(Device& device);
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
   void set_connection(Connection connection, const std::string& message, const std::string& board_name = {});
   void forget_device();
   /// Requires the mutex. Without a device the request is dropped, because it might reach another device later.
-  void ask(StoreTask task);
+  void queue_store_task(StoreTask task);
 
   // ---- scope thread
   // ---------------------------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ struct Session::Implementation {
   std::condition_variable changed;
   std::atomic<bool> stopping = false;
   std::atomic<bool> lost = false;
-  std::shared_ptr<Device> device;
+  std::shared_ptr<Device> shared_device;
   SessionStatus state;
   std::optional<Pose> newest;
   std::optional<protocol::ParameterSet> parameter_set;
@@ -114,7 +114,7 @@ struct Session::Implementation {
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;
   EventLog events;
-  std::uint64_t told_poses_lost = 0, told_samples_lost = 0;
+  std::uint64_t reported_poses_lost = 0, reported_samples_lost = 0;
   Requests requests;
   std::vector<protocol::Signal> signals;
   bool scope_denied = false;  ///< another program uses the scope

@@ -7,7 +7,7 @@
 namespace inkwell::device {
 
 /// Raises the priority of the calling thread. Without permission the priority does not change.
-inline void ask_for_precedence() {
+inline void request_priority() {
   constexpr int precedence = -10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), precedence);
 }

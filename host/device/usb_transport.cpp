@@ -238,17 +238,17 @@ class UsbTransport : public Transport {
   /// hidapi does not distinguish a refusal from an unplugged device. A connected device that refuses one request
   /// answers another request. An unplugged device soon disappears from the system's list.
   bool is_present() {
-    constexpr int looks = 10;
+    constexpr int attempts = 10;
     std::array<std::byte, feature_report_maximum> buffer;
     if (request_feature(static_cast<std::uint8_t>(protocol::ReportId::information), buffer).length >= 0) return true;
-    for (int i = 0; i < looks; ++i) {
-      if (i > 0) std::this_thread::sleep_for(look_interval);
+    for (int i = 0; i < attempts; ++i) {
+      if (i > 0) std::this_thread::sleep_for(poll_interval);
       if (!is_listed(endpoint_.path)) return false;
     }
     return true;
   }
 
-  static constexpr std::chrono::milliseconds look_interval{20};
+  static constexpr std::chrono::milliseconds poll_interval{20};
 
   Endpoint endpoint_;
   HidHandle inputs_, outputs_, features_;

@@ -154,7 +154,7 @@ void UsbipConnection::control_out(const Setup& setup, std::span<const std::byte>
 }
 
 void UsbipConnection::receive_answers() {
-  ask_for_precedence();
+  request_priority();
   std::string reason;
   try {
     for (;;) receive_answer();

@@ -39,7 +39,7 @@ class UsbipTransport : public Transport {
     try {
       configure();
       if (!is_in_lock_step())
-        for (int i = 0; i < report_transfers; ++i) ask_for_report();
+        for (int i = 0; i < report_transfers; ++i) request_report();
     } catch (...) {
       close();
       throw;
@@ -50,7 +50,7 @@ class UsbipTransport : public Transport {
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     reads_reports_ = true;
-    if (is_in_lock_step() && timeout > 0ms && !is_report_to_come()) ask_for_report();
+    if (is_in_lock_step() && timeout > 0ms && !is_report_to_come()) request_report();
     return read(reports_, report, timeout);
   }
 
@@ -70,9 +70,9 @@ class UsbipTransport : public Transport {
 
   bool wait_until_written(std::chrono::milliseconds timeout) override {
     std::unique_lock lock(writes_mutex_);
-    writes_changed_.wait_for(lock, timeout, [&] { return writes_ == 0 || lost_ || takes_none(); });
+    writes_changed_.wait_for(lock, timeout, [&] { return writes_ == 0 || lost_ || accepts_no_writes(); });
     if (lost_) throw Disconnected(unplugged);
-    if (takes_none()) throw Error(takes_no_commands);
+    if (accepts_no_writes()) throw Error(takes_no_commands);
     return writes_ == 0;
   }
 
@@ -100,7 +100,7 @@ class UsbipTransport : public Transport {
       if (scope_claimed_) return;
       bulk_denied_ = false;
       scope_claimed_ = true;
-      ask_for_bulk();
+      request_bulk();
     }
     // Requests are answered in order, so a refusal of the bulk request arrives before this answer.
     try {
@@ -114,7 +114,7 @@ class UsbipTransport : public Transport {
       scope_claimed_ = false;
       throw InUse(scope_in_use);
     }
-    for (int i = 1; i < bulk_transfers; ++i) ask_for_bulk();
+    for (int i = 1; i < bulk_transfers; ++i) request_bulk();
   }
 
   /// The server releases the scope when a transfer was canceled and no transfer is pending. Completed transfers alone
@@ -125,12 +125,12 @@ class UsbipTransport : public Transport {
     bulk_owed_ = 0;
     bulk_taken_back_ = bulk_denied_ = false;
     const auto is_over = [this] { return bulk_lost_ || bulk_under_way_.empty(); };
-    const auto give_up_at = std::chrono::steady_clock::now() + silence;
-    ask_again([&] {
+    const auto deadline = std::chrono::steady_clock::now() + silence;
+    retry([&] {
       while (!bulk_lost_ && !bulk_taken_back_ && !bulk_denied_) {
-        if (bulk_under_way_.empty()) ask_for_bulk();
+        if (bulk_under_way_.empty()) request_bulk();
         for (const auto sequence : bulk_under_way_) connection_.unlink(sequence);
-        if (!bulk_changed_.wait_until(lock, give_up_at, is_over)) return;
+        if (!bulk_changed_.wait_until(lock, deadline, is_over)) return;
       }
     });
   }
@@ -138,7 +138,7 @@ class UsbipTransport : public Transport {
   std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) override {
     const std::size_t length = read(bulk_, transfer, timeout);
     const std::lock_guard lock(bulk_mutex_);
-    for (; bulk_owed_ > 0 && bulk_.size() < bulk_kept; --bulk_owed_) ask_for_bulk();
+    for (; bulk_owed_ > 0 && bulk_.size() < bulk_kept; --bulk_owed_) request_bulk();
     return length;
   }
 
@@ -146,7 +146,7 @@ class UsbipTransport : public Transport {
 
  private:
   bool is_in_lock_step() const { return endpoint_.lock_step != nullptr; }
-  bool is_report_to_come() const { return reports_asked_ > 0 || reports_.size() > 0; }
+  bool is_report_to_come() const { return reports_requested_ > 0 || reports_.size() > 0; }
 
   /// Executes a control transfer. In lock step, board time passes during the transfer only while a report is requested.
   /// The thread that reads reports cannot request a report during its own transfer, so this function requests the
@@ -160,7 +160,7 @@ class UsbipTransport : public Transport {
       explicit Count(std::atomic<int>& one) : count(one) { ++count; }
       ~Count() { --count; }
     } const counted(requests_out_of_step_);
-    if (!is_report_to_come()) ask_for_report();
+    if (!is_report_to_come()) request_report();
     return transfer();
   }
 
@@ -180,7 +180,7 @@ class UsbipTransport : public Transport {
   }
 
   /// Requires writes_mutex_.
-  bool takes_none() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
+  bool accepts_no_writes() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
 
   void wait_for_room(std::unique_lock<std::mutex>& lock) {
     if (is_in_lock_step()) {  // waiting here might prevent the thread that reads reports from letting time pass
@@ -191,8 +191,9 @@ class UsbipTransport : public Transport {
       return;
     }
     const auto has_room = [&] { return writes_ < writes_under_way; };
-    for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !takes_none(); known = reports_come_) {
-      const bool changed = writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || takes_none(); });
+    for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !accepts_no_writes(); known = reports_come_) {
+      const bool changed =
+          writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || accepts_no_writes(); });
       if (!changed && reports_come_ == known)
         throw Error(
             "The device accepts no commands and is silent. Reset the board, or let a paused virtual board run.");
@@ -207,21 +208,21 @@ class UsbipTransport : public Transport {
     if (++reports_since_taken_ == reports_without_a_taken_write) writes_changed_.notify_all();
   }
 
-  void ask_for_report() {
-    ++reports_asked_;
+  void request_report() {
+    ++reports_requested_;
     connection_.submit_in(layout_.hid_in_endpoint, identity::packet_size, [this](UsbipConnection::Completion done) {
       if (done.status != 0) return lose(unplugged);
       count_report();
       const bool is_empty = done.data.empty();
       if (!is_empty) reports_.push(std::move(done.data));
       if (reports_.size() > reports_kept) reports_.drop_oldest();
-      --reports_asked_;
-      if (is_empty || !is_in_lock_step() || requests_out_of_step_ > 0) ask_again([this] { ask_for_report(); });
+      --reports_requested_;
+      if (is_empty || !is_in_lock_step() || requests_out_of_step_ > 0) retry([this] { request_report(); });
     });
   }
 
   /// Requires bulk_mutex_.
-  void ask_for_bulk() {
+  void request_bulk() {
     const auto place = bulk_under_way_.insert(bulk_under_way_.end(), 0);
     try {
       *place =
@@ -248,18 +249,17 @@ class UsbipTransport : public Transport {
     }
     if (!scope_claimed_) return;
     if (!done.data.empty()) bulk_.push(std::move(done.data));
-    if (bulk_.size() < bulk_kept) return ask_again([this] { ask_for_bulk(); });
+    if (bulk_.size() < bulk_kept) return retry([this] { request_bulk(); });
     // A virtual board waits for a streaming host that is silent, because the computer may be busy. The board does not
     // wait for a host that cancels a request.
-    if (bulk_owed_++ == 0 && !bulk_under_way_.empty())
-      ask_again([this] { connection_.unlink(bulk_under_way_.back()); });
+    if (bulk_owed_++ == 0 && !bulk_under_way_.empty()) retry([this] { connection_.unlink(bulk_under_way_.back()); });
   }
 
   /// Submitting from the receiving thread fails when the connection has failed. `lose` is then called anyway.
-  template <class Ask>
-  void ask_again(Ask ask) {
+  template <class Retried>
+  void retry(Retried retried) {
     try {
-      ask();
+      retried();
     } catch (const Disconnected&) {
     }
   }
@@ -288,7 +288,7 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
-  std::atomic<int> reports_asked_ = 0;  ///< pending requests
+  std::atomic<int> reports_requested_ = 0;  ///< pending requests
   std::atomic<bool> reads_reports_ = false;
   std::atomic<int> requests_out_of_step_ = 0;
   std::mutex bulk_mutex_;  ///< guards the next seven members

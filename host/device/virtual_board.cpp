@@ -183,8 +183,8 @@ struct VirtualBoard::Implementation {
 
   std::string read_ready_line() {
     std::string line;
-    const auto give_up_at = Clock::now() + start_timeout;
-    while (Clock::now() < give_up_at && line.size() < longest_ready_line) {
+    const auto deadline = Clock::now() + start_timeout;
+    while (Clock::now() < deadline && line.size() < longest_ready_line) {
       pollfd descriptor{output.read_end, POLLIN, 0};
       if (poll(&descriptor, 1, 100) <= 0) continue;
       char character;
@@ -203,18 +203,18 @@ struct VirtualBoard::Implementation {
   void stop() {
     if (process < 0) return;
     if (!has_exited(WNOHANG)) kill(process, SIGTERM);
-    const auto give_up_at = Clock::now() + stop_timeout;
-    while (!has_exited(WNOHANG) && Clock::now() < give_up_at) std::this_thread::sleep_for(5ms);
+    const auto deadline = Clock::now() + stop_timeout;
+    while (!has_exited(WNOHANG) && Clock::now() < deadline) std::this_thread::sleep_for(5ms);
     if (!has_exited(WNOHANG)) {
       kill(process, SIGKILL);
       while (!has_exited(WNOHANG)) std::this_thread::sleep_for(5ms);
     }
     if (drain.joinable()) drain.join();
-    remove_left_behind();
+    remove_stale_folders();
   }
 
   /// Removes the sockets and the folder of a board that was killed.
-  void remove_left_behind() {
+  void remove_stale_folders() {
     for (const auto& socket : {usbip, control}) {
       struct stat status {};
       if (!socket.is_unix() || lstat(socket.path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) continue;

@@ -65,7 +65,7 @@ Device::Device(Handle handle, std::string name, const std::string& address)
   require(inkwell_get_information(arm(), &information_));
   facts_ = read_facts(arm());
   claim();
-  look();
+  poll();
   before_ = now_;
   care_thread_ = std::thread([this] { care(); });
 }
@@ -103,11 +103,11 @@ void Device::begin_frame(std::optional<std::uint64_t> tick) {
   if (tick && begun_in_tick_ == tick && capabilities.one_frame_limit) return raise(illegal_begin);
   in_frame_ = true;
   begun_in_tick_ = tick;
-  look();
+  poll();
   note_condition();
 }
 
-void Device::look() {
+void Device::poll() {
   Moment seen;
   seen.pose = now_.pose;
   const auto result = inkwell_get_pose(arm(), &seen.pose);  // the last known pose if the link is lost
@@ -164,13 +164,13 @@ std::optional<Vector> Device::demanded_force(const Command& command, const inkwe
 void Device::end_frame() {
   if (!std::exchange(in_frame_, false)) return raise(illegal_end);
   was_frame_in_tick_ = true;
-  if (now_.command.asks_for_force()) held_ = now_.command;
+  if (now_.command.has_output()) held_ = now_.command;
   if (is_lost_ || !wants_force()) held_ = {};
-  now_.command.force_N = send(now_.command.asks_for_force() ? now_.command : held_, now_.pose);
+  now_.command.force_N = send(now_.command.has_output() ? now_.command : held_, now_.pose);
 }
 
 void Device::renew_force() {
-  if (std::exchange(was_frame_in_tick_, false) || in_frame_ || !held_.asks_for_force()) return;
+  if (std::exchange(was_frame_in_tick_, false) || in_frame_ || !held_.has_output()) return;
   inkwell_pose pose;
   if (inkwell_get_pose(arm(), &pose) != INKWELL_OK || pose.state == INKWELL_FAULT)
     held_ = {};
@@ -201,13 +201,14 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
   // The next frame reports a lost link or a fault with its specific code. FORCE_ERROR shows the program that there is
   // no force.
-  const bool is_new = result != INKWELL_FORCE_LOST || !is_force_told_lost_;
-  is_force_told_lost_ = result == INKWELL_FORCE_LOST;
+  const bool is_new = result != INKWELL_FORCE_LOST || !is_force_loss_reported_;
+  is_force_loss_reported_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;
   held_ = {};
-  const bool is_fault_told = pose.state == INKWELL_FAULT && !is_inherited(pose.fault);
-  const bool is_told_otherwise = result == INKWELL_DISCONNECTED || (result == INKWELL_FORCE_LOST && is_fault_told);
-  if (is_new && !is_told_otherwise) raise(force_error, inkwell_error_text(), result);
+  const bool is_fault_reported = pose.state == INKWELL_FAULT && !is_inherited(pose.fault);
+  const bool is_reported_otherwise =
+      result == INKWELL_DISCONNECTED || (result == INKWELL_FORCE_LOST && is_fault_reported);
+  if (is_new && !is_reported_otherwise) raise(force_error, inkwell_error_text(), result);
   return {};
 }
 
@@ -239,7 +240,7 @@ void Device::follow_force_output() {
   if (!wants_force()) held_ = {};
   const std::lock_guard lock(care_mutex_);
   force_is_wanted_ = wants_force();
-  force_is_asked_for_ = force_is_wanted_;
+  force_is_requested_ = force_is_wanted_;
   fault_is_to_be_cleared_ = force_is_wanted_;
   off_problem_.reset();
   care_changed_.notify_one();
@@ -262,7 +263,7 @@ void Device::care() {
   while (!ends_) {
     const bool wanted = force_is_wanted_;
     clears = std::exchange(fault_is_to_be_cleared_, false) || (clears && wanted);
-    bool asked_for = force_is_asked_for_;
+    bool asked_for = force_is_requested_;
     lock.unlock();
     inkwell_pose pose;
     // A failure means that the link is lost or the arm is not ready. The next frame reports a lost link. The next pass
@@ -312,7 +313,7 @@ void Device::care() {
       off_problem_ = off_problem;
       off_known_.notify_all();
     }
-    if (force_is_wanted_ == wanted && !fault_is_to_be_cleared_) force_is_asked_for_ = asked_for;
+    if (force_is_wanted_ == wanted && !fault_is_to_be_cleared_) force_is_requested_ = asked_for;
     care_changed_.wait_for(lock, care_period, [&] {
       return ends_ || force_is_wanted_ != wanted || fault_is_to_be_cleared_ || (!force_is_wanted_ && !off_problem_);
     });

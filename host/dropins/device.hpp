@@ -22,7 +22,7 @@ namespace inkwell::dropins {
 struct Command {
   std::optional<Vector> force_N, joint_torque_mNm;
   std::optional<std::array<double, 6>> motor_values;
-  bool asks_for_force() const { return force_N || joint_torque_mNm || motor_values; }
+  bool has_output() const { return force_N || joint_torque_mNm || motor_values; }
   Vector torque_mNm{}, gimbal_torque_mNm{};  ///< stored only for reading back: the gimbal has no motors
 };
 
@@ -110,7 +110,7 @@ class Device {
   };
   void raise(ErrorCode code, const std::string& sentence = {}, int internal_code = 0) const;
   void claim();
-  void look();
+  void poll();
   bool is_inherited(int fault) const;
   void note_condition();
   /// Sends the force of `command` within HDAPI's limits and returns it.
@@ -135,7 +135,7 @@ class Device {
   ErrorCode dropped_for_ = success;  ///< reason why the last frame's force was dropped
   bool scheduler_runs_ = false;
   bool was_warm_ = false;
-  bool is_force_told_lost_ = false;
+  bool is_force_loss_reported_ = false;
   int fault_ = 0;
 
   std::atomic<double> motor_heat_[3]{};
@@ -143,7 +143,7 @@ class Device {
   std::mutex care_mutex_;
   std::condition_variable care_changed_, off_known_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
-  bool force_is_asked_for_ = false;  ///< since the last loss
+  bool force_is_requested_ = false;  ///< since the last loss
   /// Reason why the board did not confirm that the force is off; "" after the confirmation. Not set while the force is
   /// requested or the confirmation is pending.
   std::optional<std::string> off_problem_;

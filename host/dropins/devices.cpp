@@ -54,8 +54,8 @@ std::string Devices::address_for(const std::string& name) const {
       return device && device->address() == address;
     });
   };
-  const char* told = std::getenv("INKWELL_DEVICE");
-  if (told != nullptr && *told != '\0' && !is_open(told)) return told;
+  const char* configured = std::getenv("INKWELL_DEVICE");
+  if (configured != nullptr && *configured != '\0' && !is_open(configured)) return configured;
   for (const auto& arm : arms)
     if (!is_open(arm.address)) return arm.address;
   if (!arms.empty())
@@ -85,7 +85,7 @@ Handle Devices::open(const char* given) {
     auto device = std::make_shared<Device>(handle, name, address);
     const std::lock_guard lock(mutex_);
     if (handle == devices_.size()) devices_.emplace_back();
-    handles_given_ = static_cast<Handle>(devices_.size());
+    handles_used_ = static_cast<Handle>(devices_.size());
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = current_here = handle;
@@ -134,7 +134,7 @@ void Devices::wait_until_forces_are_off() {
 }
 
 ParentsDevices Devices::as_parents() const {
-  return handles_given_ > 0 ? ParentsDevices{origin_.process(), handles_given_} : parents_;
+  return handles_used_ > 0 ? ParentsDevices{origin_.process(), handles_used_} : parents_;
 }
 
 Device* Devices::find(Handle handle) {

@@ -61,7 +61,7 @@ class Devices {
 
   const ParentsDevices parents_;
   const process::Origin origin_;
-  std::atomic<Handle> handles_given_ = 0;  ///< upper limit of the used handles
+  std::atomic<Handle> handles_used_ = 0;  ///< upper limit of the used handles
   std::mutex mutex_, opening_;
   std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty entries are closed devices
   Handle current_ = invalid_handle;               ///< for threads that have selected none

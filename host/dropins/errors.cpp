@@ -91,12 +91,12 @@ ErrorInfo take_error() {
   return newest;
 }
 
-bool forget_errors_of(Handle device, ErrorCode looked_for) {
+bool forget_errors_of(Handle device, ErrorCode wanted) {
   auto& self = stack();
   const std::lock_guard lock(stack_mutex);
   bool was_there = false;
   std::erase_if(self.errors, [&](const ErrorInfo& error) {
-    was_there = was_there || (error.device == device && error.code == looked_for);
+    was_there = was_there || (error.device == device && error.code == wanted);
     return error.device == device;
   });
   return was_there;

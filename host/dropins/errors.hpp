@@ -14,8 +14,8 @@ void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int 
 /// Pops the newest error; `success` if there is none.
 ErrorInfo take_error();
 
-/// Removes the errors of one device and returns whether `looked_for` was among them.
-bool forget_errors_of(Handle device, ErrorCode looked_for = success);
+/// Removes the errors of one device and returns whether `wanted` was among them.
+bool forget_errors_of(Handle device, ErrorCode wanted = success);
 
 /// "HD_DEVICE_FAULT: ..." with the newest sentence for this code. Never NULL; remains valid.
 const char* error_text(unsigned code);

@@ -214,7 +214,7 @@ int read_vector(int number, double (Seen::*member)[3], double* x, double* y, dou
   });
 }
 
-bool is_sound(const double* const (&values)[3]) {
+bool is_finite(const double* const (&values)[3]) {
   return std::all_of(values, values + 3, [](const double* value) { return value != nullptr && std::isfinite(*value); });
 }
 
@@ -292,7 +292,7 @@ INKWELL_HD int hdPhantomGetButtons(int number) {
 
 INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, const double* z) {
   const double* const force_N[3]{x, y, z};
-  if (!is_sound(force_N)) return bad;
+  if (!is_finite(force_N)) return bad;
   return set_until_next_tick(number, [&](Phantom& phantom) {
     for (std::size_t axis = 0; axis < 3; ++axis) phantom.force_N[hd_axis[axis]] = *force_N[axis];
     phantom.force_ticks_left = force_ticks;
@@ -302,7 +302,7 @@ INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, c
 /// The stylus has no motors: a torque is accepted and has no effect.
 INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
   const double* const torque_Nm[3]{x, y, z};
-  if (!is_sound(torque_Nm)) return bad;
+  if (!is_finite(torque_Nm)) return bad;
   return set_until_next_tick(number, [](Phantom&) {});
 }
 
@@ -310,7 +310,7 @@ INKWELL_HD int hdPhantomSetForceAndTorque(int number, const double* force_x, con
                                           const double* force_z, const double* torque_x, const double* torque_y,
                                           const double* torque_z) {
   const double* const torque_Nm[3]{torque_x, torque_y, torque_z};
-  return is_sound(torque_Nm) ? hdPhantomSetForce(number, force_x, force_y, force_z) : bad;
+  return is_finite(torque_Nm) ? hdPhantomSetForce(number, force_x, force_y, force_z) : bad;
 }
 
 INKWELL_HD int hdPhantomGetWorkspaceRadius(int number, double* radius_m) {

@@ -14,12 +14,12 @@ namespace {
 
 /// The table row for a call with this type, and the current device if the row needs a device. Raises an error for an
 /// invalid call.
-struct Asked {
+struct Query {
   const Parameter* row = nullptr;
   Device* device = nullptr;
   bool is_last = false;
 
-  Asked(Enum value, unsigned type, const void* values) {
+  Query(Enum value, unsigned type, const void* values) {
     auto& devices = runtime().devices;
     const auto found = find_parameter(value);
     const ErrorCode error = !found                            ? invalid_enum
@@ -45,11 +45,11 @@ template <class Value>
 void get(Enum value, unsigned type, Value* values) {
   guarded([&] {
     const std::lock_guard lock(runtime().devices.mutex());
-    const Asked asked(value, type, values);
-    if (asked.row == nullptr) return;
+    const Query query(value, type, values);
+    if (query.row == nullptr) return;
     double read[values_maximum]{};
-    asked.row->read(asked.source(), read);
-    std::transform(read, read + asked.row->count, values, [](double each) { return static_cast<Value>(each); });
+    query.row->read(query.source(), read);
+    std::transform(read, read + query.row->count, values, [](double each) { return static_cast<Value>(each); });
   });
 }
 
@@ -57,16 +57,16 @@ template <class Value>
 void set(Enum value, unsigned type, const Value* values) {
   guarded([&] {
     const std::lock_guard lock(runtime().devices.mutex());
-    const Asked asked(value, type, values);
-    if (asked.row == nullptr) return;
+    const Query query(value, type, values);
+    if (query.row == nullptr) return;
     const Handle handle = runtime().devices.current_handle();
-    if (asked.row->write == nullptr || asked.is_last) return raise(invalid_operation, handle, "This can not be set.");
-    if (!asked.device->in_frame()) return raise(frame_error, handle);
+    if (query.row->write == nullptr || query.is_last) return raise(invalid_operation, handle, "This can not be set.");
+    if (!query.device->in_frame()) return raise(frame_error, handle);
     double given[values_maximum]{};
-    std::copy_n(values, asked.row->count, given);
+    std::copy_n(values, query.row->count, given);
     const bool is_finite =
-        std::all_of(given, given + asked.row->count, [](double each) { return std::isfinite(each); });
-    if (!is_finite || !asked.row->write(*asked.device, given)) raise(invalid_value, handle);
+        std::all_of(given, given + query.row->count, [](double each) { return std::isfinite(each); });
+    if (!is_finite || !query.row->write(*query.device, given)) raise(invalid_value, handle);
   });
 }
 
@@ -111,8 +111,8 @@ const char* hdGetString(HdEnum parameter) {
   const char* text = "";
   guarded([&] {
     const std::lock_guard lock(runtime().devices.mutex());
-    const Asked asked(parameter, type_string, &text);
-    if (asked.row != nullptr) text = keep(asked.row->text(asked.source()));
+    const Query query(parameter, type_string, &text);
+    if (query.row != nullptr) text = keep(query.row->text(query.source()));
   });
   return text;
 }

@@ -7,7 +7,7 @@
 namespace inkwell::dropins {
 namespace {
 
-constexpr double look_up_s = 0.1;  ///< longest delay of a stop while no poses arrive
+constexpr double poll_s = 0.1;  ///< longest delay of a stop while no poses arrive
 
 }  // namespace
 
@@ -32,7 +32,7 @@ double Pacer::wait(std::uint32_t poses, const std::function<bool()>& ends) {
   before_ = device;
   while (!ends()) {
     inkwell_pose pose;
-    const auto result = inkwell_wait_for_pose(device->arm(), look_up_s, &pose);
+    const auto result = inkwell_wait_for_pose(device->arm(), poll_s, &pose);
     if (result == INKWELL_OK && (is_new || pose.sequence - sequence_ >= poses)) {
       sequence_ = pose.sequence;
       const double passed_s = pose.time_s - std::exchange(time_s_, pose.time_s);

@@ -79,9 +79,9 @@ void PacedDevice::pass(double time_s) {
 
 void PacedDevice::wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise) {
   read_poses(0ms);
-  const auto give_up_at = passed_ + nanoseconds(limit_s);
+  const auto deadline = passed_ + nanoseconds(limit_s);
   while (!condition()) {
-    if (passed_ > give_up_at) throw device::Error(otherwise);
+    if (passed_ > deadline) throw device::Error(otherwise);
     pass_slice();
   }
 }

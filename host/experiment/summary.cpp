@@ -67,10 +67,10 @@ ForceLawError force_law_error(const Recording& recording, const ParameterSet& pa
       expected[axis] = axis_force_N(penetration_m, (*velocity[axis])[i], stiffness, damping);
     }
     if (!in_contact) continue;
-    const double asked_N = magnitude(expected);
-    const double scale = asked_N > limit_N ? limit_N / asked_N : 1.0;
+    const double requested_N = magnitude(expected);
+    const double scale = requested_N > limit_N ? limit_N / requested_N : 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) difference[axis] = (*force[axis])[i] - scale * expected[axis];
-    const double error_N = magnitude(difference), expected_N = scale * asked_N;
+    const double error_N = magnitude(difference), expected_N = scale * requested_N;
     ++error.samples;
     error.maximum_N = std::max(error.maximum_N, error_N);
     if (expected_N > relative_error_floor_N)

@@ -59,21 +59,21 @@ std::vector<Endpoint> loaders_at(const Address& address) {
       fmt::format("{} boards are plugged in. Choose one with --serial NUMBER:{}.", arms.size() + loaders.size(), list));
 }
 
-template <class Look>
-auto wait_for(Look look) -> decltype(look()) {
-  const auto give_up_at = std::chrono::steady_clock::now() + change_patience;
+template <class Attempt>
+auto wait_for(Attempt attempt) -> decltype(attempt()) {
+  const auto deadline = std::chrono::steady_clock::now() + change_patience;
   for (;;) {
-    if (auto found = look()) return found;
-    if (std::chrono::steady_clock::now() > give_up_at) return {};
+    if (auto found = attempt()) return found;
+    if (std::chrono::steady_clock::now() > deadline) return {};
     std::this_thread::sleep_for(look_again);
   }
 }
 
 /// Returns nothing if a server or device does not answer because it is restarting. The caller repeats the call.
-template <class Look>
-auto if_it_answers(Look look) -> decltype(look()) {
+template <class Attempt>
+auto if_it_answers(Attempt attempt) -> decltype(attempt()) {
   try {
-    return look();
+    return attempt();
   } catch (const device::NoPermission&) {
     throw;
   } catch (const device::Error&) {
@@ -82,12 +82,12 @@ auto if_it_answers(Look look) -> decltype(look()) {
 }
 
 /// Waits for a device that has just appeared. A refusal by the system is an error only if it persists.
-template <class Look>
-auto wait_for_admitted(Look look) -> decltype(look()) {
+template <class Attempt>
+auto wait_for_admitted(Attempt attempt) -> decltype(attempt()) {
   std::optional<std::chrono::steady_clock::time_point> refused_at;
-  return wait_for([&]() -> decltype(look()) {
+  return wait_for([&]() -> decltype(attempt()) {
     try {
-      return if_it_answers(look);
+      return if_it_answers(attempt);
     } catch (const device::NoPermission&) {
       const auto now = std::chrono::steady_clock::now();
       if (!refused_at) refused_at = now;
@@ -220,7 +220,7 @@ class Writing {
 };
 
 /// Reads the versions of the new firmware. The versions stay empty if the board does not restart in time.
-void look_at_result(const Address& address, const std::set<std::string>& other_arms, UpdateResult& result) {
+void check_result(const Address& address, const std::set<std::string>& other_arms, UpdateResult& result) {
   wait_for([&] {
     return if_it_answers([&] {
       for (const auto& arm : arms_at(without_number(address))) {
@@ -300,7 +300,7 @@ UpdateResult update(const Address& address, const Image& image, const UpdateOpti
     result.has_set_brown_out = written.has_set_brown_out;
   }
   options.on_progress("waiting for the board to restart", 0.99);
-  look_at_result(address, found.other_arms, result);
+  check_result(address, found.other_arms, result);
   options.on_progress("done", 1);
   return result;
 }

@@ -85,7 +85,7 @@ class IdentifyMotor final : public Step {
         "off.",
         motor_, 2 * (1 + pairs_of_pulses), 1e3f * voltage_pulse_s, first_voltage_V, largest_voltage_V);
   }
-  bool asks_first() const override { return true; }
+  bool needs_consent() const override { return true; }
 
   void begin(const Observation& now, DevicePort& port) override {
     set_ = *now.parameters;
@@ -223,7 +223,7 @@ class TryGains final : public Step {
            " with the suggested gains. The device uses these gains for this test only. It keeps its old gains until "
            "you apply the suggested gains. Leave the stylus in the inkwell.";
   }
-  bool asks_first() const override { return true; }
+  bool needs_consent() const override { return true; }
 
   void begin(const Observation& now, DevicePort& port) override {
     old_ = *now.parameters;

@@ -32,7 +32,7 @@ class PulseMotor final : public Step {
         "ms forward, then the same pulse backward; {} twitches by about a centimeter. The wall force stays off.",
         motor_, pulse_A, 1e3f * pulse_s, joint_name(motor_));
   }
-  bool asks_first() const override { return true; }
+  bool needs_consent() const override { return true; }
   UserTask user_task() const override { return {UserTask::Kind::hold_loosely, motor_}; }
 
   void begin(const Observation& now, DevicePort&) override {
@@ -101,12 +101,12 @@ class PulseMotor final : public Step {
     const auto is_on = [](double reference) { return reference != 0; };
     const auto begin = static_cast<std::size_t>(std::ranges::find_if(reference_A, is_on) - reference_A.begin());
     std::size_t end = begin;
-    double asked_A = 0, measured_A = 0;
+    double requested_A = 0, measured_A = 0;
     for (; end < reference_A.size() && is_on(reference_A[end]); ++end) {
-      asked_A += reference_A[end];
+      requested_A += reference_A[end];
       measured_A += current_A[end];
     }
-    if (std::abs(measured_A - asked_A) > 0.3 * std::abs(asked_A))
+    if (std::abs(measured_A - requested_A) > 0.3 * std::abs(requested_A))
       throw device::Error(
           fmt::format("The current of motor {} does not follow its reference. Check the motor's plug and "
                       "wiring, then tune the current loops.",

@@ -14,7 +14,7 @@ namespace {
 
 const char* phase_name(Phase phase) {
   switch (phase) {
-    case Phase::asks: return "asks";
+    case Phase::awaits_consent: return "asks";
     case Phase::working: return "working";
     case Phase::finished: return "finished";
     case Phase::cancelled: return "cancelled";
@@ -52,11 +52,11 @@ Guide::Guide(std::string name, std::string title, Plan plan)
 void Guide::enter(std::size_t index) {
   index_ = index;
   begun_ = agreed_ = false;
-  phase_ = steps_[index]->asks_first() ? Phase::asks : Phase::working;
+  phase_ = steps_[index]->needs_consent() ? Phase::awaits_consent : Phase::working;
 }
 
 bool Guide::takes_confirmation() const {
-  return phase_ == Phase::asks ? !agreed_ : phase_ == Phase::working && step().takes_confirmation();
+  return phase_ == Phase::awaits_consent ? !agreed_ : phase_ == Phase::working && step().takes_confirmation();
 }
 
 double Guide::progress() const {
@@ -65,7 +65,7 @@ double Guide::progress() const {
 }
 
 void Guide::confirm() {
-  if (phase_ == Phase::asks) agreed_ = true;
+  if (phase_ == Phase::awaits_consent) agreed_ = true;
   if (phase_ == Phase::working && step().takes_confirmation()) steps_[index_]->confirm();
 }
 
@@ -100,7 +100,7 @@ void Guide::run(const Observation& now, DevicePort& port) {
     make_safe(port);
     made_safe_ = true;
   }
-  if (phase_ == Phase::asks) {
+  if (phase_ == Phase::awaits_consent) {
     if (!agreed_) return;
     phase_ = Phase::working;
   }

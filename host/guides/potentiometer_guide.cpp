@@ -96,7 +96,7 @@ class TurnGimbal final : public UserMoves {
   }
 
  protected:
-  void look(const Observation& now, double time_s) override {
+  void observe(const Observation& now, double time_s) override {
     if (now.pose->sequence == sequence_) return;
     sequence_ = now.pose->sequence;
     smoothed_.take(held_curve(*now.parameters, axis_).ratio(static_cast<double>(now.pose->gimbal_rad[axis_ - 1])),

@@ -45,7 +45,7 @@ class MoveJointToStops final : public UserMoves {
   }
 
  protected:
-  void look(const Observation& now, double time_s) override {
+  void observe(const Observation& now, double time_s) override {
     constexpr double still_rad = 0.003, rest_s = 0.3;
     const auto& set = *now.parameters;
     expected_ = {value(set, protocol::lower_stops, joint_), value(set, protocol::upper_stops, joint_)};

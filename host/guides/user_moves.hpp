@@ -29,7 +29,7 @@ class UserMoves : public Step {
     if (pressed && !was_pressed_) confirmed_ = true;
     was_pressed_ = pressed;
     if (since_.seconds(*now.pose) > user_limit_s) throw device::Error(too_late());
-    look(now, since_.seconds(*now.pose));
+    observe(now, since_.seconds(*now.pose));
     if (!confirmed_) return false;
     confirmed_ = false;
     if (!is_complete()) return false;
@@ -38,7 +38,7 @@ class UserMoves : public Step {
   }
 
  protected:
-  virtual void look(const Observation& now, double time_s) = 0;
+  virtual void observe(const Observation& now, double time_s) = 0;
   virtual bool is_complete() const = 0;
   virtual void take(const Observation& now) = 0;
   virtual std::string too_late() const = 0;

@@ -47,13 +47,13 @@ std::vector<inkwell_device> list_devices() {
   std::vector<inkwell_device> devices;
   for (const auto& endpoint : device::find_usb_devices())
     devices.push_back(entry(device::address_of(endpoint), endpoint));
-  const std::string told = environment_address();
-  const auto address = device::parse_address(told);
-  if (address.kind == device::Address::Kind::usbip) devices.push_back(entry(told, device::find_arm(address)));
+  const std::string configured = environment_address();
+  const auto address = device::parse_address(configured);
+  if (address.kind == device::Address::Kind::usbip) devices.push_back(entry(configured, device::find_arm(address)));
   if (address.kind == device::Address::Kind::own_board) {
     device::Endpoint endpoint{};
     endpoint.is_virtual = true;
-    devices.push_back(entry(told, endpoint));
+    devices.push_back(entry(configured, endpoint));
   }
   return devices;
 }

@@ -18,7 +18,7 @@ namespace {
 using protocol::Command;
 
 /// Board time after which enable_force is sent again.
-constexpr double ask_again_s = 0.1;
+constexpr double retry_s = 0.1;
 
 /// After this time without a pose the board counts as reset or paused.
 constexpr double silence_s = 2.0;
@@ -48,7 +48,7 @@ Arm::Arm(const std::string& address)
           [this] { force_.let_go(); }) {}
 
 Arm::~Arm() {
-  servo_.ask_to_end();
+  servo_.request_end();
   force_.stop();  // discards later forces of a servo that is still running
   if (connection_.device().drives() && poses_.loss() != Loss::link) bid_farewell();
 }
@@ -124,7 +124,7 @@ void Arm::enable_force(double timeout_s) {
   for (double waited_s = 0;;) {
     // A board that is not referenced yet drops the request, so it is repeated.
     device().carry_out(Command::enable_force);
-    const double wait_s = std::min(limit_s - waited_s, ask_again_s);
+    const double wait_s = std::min(limit_s - waited_s, retry_s);
     const auto now = poses_.wait(
         [](const auto& newest, Loss) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
         wait_s);

@@ -83,27 +83,27 @@ inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* in
   return guarded([&] {
     required(information, "The pointer to the information");
     const auto& endpoint = arm_of(arm).endpoint();
-    const auto told = arm_of(arm).device().information();
+    const auto device_information = arm_of(arm).device().information();
     *information = {};
-    copy_text(told.serial_number, information->serial_number);
+    copy_text(device_information.serial_number, information->serial_number);
     copy_text(endpoint.product, information->product);
-    copy_text(told.firmware_version, information->firmware_version);
+    copy_text(device_information.firmware_version, information->firmware_version);
     information->is_virtual = endpoint.is_virtual ? 1 : 0;
-    information->servo_rate_Hz = told.report.servo_rate_Hz;
-    information->servo_cycles_longest = told.report.servo_cycles_longest;
-    information->force_reports = told.report.force_reports;
-    information->force_reports_lost = told.report.force_reports_lost;
-    information->force_reports_late = told.report.force_reports_late;
-    information->force_reports_refused = told.report.force_reports_refused;
-    std::copy_n(told.report.motor_heat, 3, information->motor_heat);
+    information->servo_rate_Hz = device_information.report.servo_rate_Hz;
+    information->servo_cycles_longest = device_information.report.servo_cycles_longest;
+    information->force_reports = device_information.report.force_reports;
+    information->force_reports_lost = device_information.report.force_reports_lost;
+    information->force_reports_late = device_information.report.force_reports_late;
+    information->force_reports_refused = device_information.report.force_reports_refused;
+    std::copy_n(device_information.report.motor_heat, 3, information->motor_heat);
   });
 }
 
 inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_NAME_SIZE]) {
   return guarded([&] {
     required(name, "The pointer to the name");
-    const auto told = arm_of(arm).device().information();
-    name[told.board_name.copy(name, INKWELL_BOARD_NAME_SIZE - 1)] = '\0';
+    const auto device_information = arm_of(arm).device().information();
+    name[device_information.board_name.copy(name, INKWELL_BOARD_NAME_SIZE - 1)] = '\0';
   });
 }
 

@@ -125,7 +125,7 @@ inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store) {
 
 namespace {
 
-void tell_test(inkwell_arm* arm, bool is_new, inkwell_test_item* items, size_t capacity, size_t* count) {
+void read_test(inkwell_arm* arm, bool is_new, inkwell_test_item* items, size_t capacity, size_t* count) {
   required(count, "The count");
   if (capacity > 0) required(items, "The pointer to the items");
   device::Device& board = arm_of(arm).device();
@@ -147,11 +147,11 @@ void tell_test(inkwell_arm* arm, bool is_new, inkwell_test_item* items, size_t c
 }  // namespace
 
 inkwell_result inkwell_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity, size_t* count) {
-  return guarded([&] { tell_test(arm, true, items, capacity, count); });
+  return guarded([&] { read_test(arm, true, items, capacity, count); });
 }
 
 inkwell_result inkwell_get_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity, size_t* count) {
-  return guarded([&] { tell_test(arm, false, items, capacity, count); });
+  return guarded([&] { read_test(arm, false, items, capacity, count); });
 }
 
 // ---- scope and recording -----------------------------------------------------------------------------------

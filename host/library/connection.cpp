@@ -106,7 +106,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
 }
 
 void Connection::read_poses(const OnPose& on_pose) {
-  const auto give_up_at = Clock::now() + first_pose_limit;
+  const auto deadline = Clock::now() + first_pose_limit;
   PoseReader reader;  // the board may have restarted
   Clock::duration silence{};
   auto before = Clock::now();
@@ -118,19 +118,19 @@ void Connection::read_poses(const OnPose& on_pose) {
     silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
     before = now;
     if (std::exchange(drove, arm_.device->drives()) && !drove) has_lost_claim = true;
-    if (has_lost_claim) has_lost_claim = !drove && !tell_lost_claim();
+    if (has_lost_claim) has_lost_claim = !drove && !report_lost_claim();
     if (newest) {
       poses_.publish(newest->pose, newest->is_referenced);
       on_pose(*newest);
     } else if (is_open_ && silence > silence_limit && poses_.loss() == Loss::none) {
       poses_.lose(Loss::silence, silent);
     }
-    if (!is_open_ && now > give_up_at)
+    if (!is_open_ && now > deadline)
       throw TimedOut("The device sends no poses. Reset the board, or let a paused virtual board run.");
   }
 }
 
-bool Connection::tell_lost_claim() {
+bool Connection::report_lost_claim() {
   std::optional<device::Driver> driver;
   if (!arm_.device->try_driver(driver)) return false;
   // A release by this program is not a loss.

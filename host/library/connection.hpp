@@ -46,7 +46,7 @@ class Connection {
   /// Reads poses until the arm closes. Throws when the link is lost.
   void read_poses(const OnPose& on_pose);
   /// Reports that another program drives the arm, or that no program drives it. False if the driver is not known yet.
-  bool tell_lost_claim();
+  bool report_lost_claim();
   /// Waits until the arm is connected again and opens it. False if the arm closes before it is connected again.
   bool reopen();
   bool try_to_reopen();

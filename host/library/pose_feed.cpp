@@ -55,7 +55,7 @@ void PoseFeed::let_program_decide() {
 }
 
 bool PoseFeed::begin_turn() {
-  if (!turn_ || is_asked_) return true;
+  if (!turn_ || is_requested_) return true;
   {
     const std::lock_guard lock(mutex_);
     reader_ = std::this_thread::get_id();
@@ -63,7 +63,7 @@ bool PoseFeed::begin_turn() {
   if (!turn_->begin()) return false;
   const std::lock_guard lock(parts_mutex_);
   for (TurnPart* part : parts_) part->before_pose();
-  is_asked_ = true;
+  is_requested_ = true;
   return true;
 }
 
@@ -77,7 +77,7 @@ void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
     note(pose, is_referenced);
     if (!turn_) return release(Waiting::all);
   }
-  is_asked_ = false;
+  is_requested_ = false;
   if (!turn_->meet()) return;
   {
     const std::lock_guard lock(mutex_);
@@ -118,7 +118,7 @@ void PoseFeed::lose(Loss kind, const std::string& cause) {
   }
   if (kind != Loss::link || !turn_) return;
   turn_->pause();
-  is_asked_ = false;
+  is_requested_ = false;
   const std::lock_guard lock(parts_mutex_);
   for (TurnPart* part : parts_) part->lose_link(cause);
 }
@@ -197,7 +197,7 @@ void PoseFeed::release(Waiting which) const {
   for (Waiter* waiter : waiters_) {
     const bool is_servo = waiter->answer == Turns::Answer::servo;
     if (waiter->pose || (which == Waiting::servos && !is_servo) || (which == Waiting::others && is_servo)) continue;
-    if (!waiter->is_over() && seen_.pose.time_s < waiter->give_up_s) continue;
+    if (!waiter->is_over() && seen_.pose.time_s < waiter->deadline_s) continue;
     waiter->pose = seen_.pose;
     end_waiting(*waiter);
   }

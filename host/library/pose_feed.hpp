@@ -155,7 +155,7 @@ class PoseFeed final : public device::LockStep {
  private:
   struct Waiter {
     const std::function<bool()>& is_over;
-    double give_up_s;  ///< board time
+    double deadline_s;  ///< board time
     Turns::Answer answer;
     std::thread::id thread;
     bool is_in_servo = false;               ///< the servo waits for another event before it answers
@@ -207,8 +207,8 @@ class PoseFeed final : public device::LockStep {
   std::shared_ptr<Turns> turns_;      ///< null outside lock step
   std::optional<Turns::Board> turn_;  ///< none outside lock step
   bool is_stepped_ = false;
-  std::thread::id reader_;  ///< set in lock step, from the first turn on
-  bool is_asked_ = false;   ///< a pose was requested; used by the reader only
+  std::thread::id reader_;     ///< set in lock step, from the first turn on
+  bool is_requested_ = false;  ///< a pose was requested; used by the reader only
   std::mutex parts_mutex_;
   std::vector<TurnPart*> parts_;
 };

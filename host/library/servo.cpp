@@ -15,7 +15,7 @@ Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go)
 }
 
 Servo::~Servo() {
-  ask_to_end();
+  request_end();
   {
     const std::lock_guard lock(mutex_);
     closes_ = true;
@@ -37,7 +37,7 @@ void Servo::start(Function function) {
   changed_.notify_all();
 }
 
-void Servo::ask_to_end() {
+void Servo::request_end() {
   is_to_end_ = true;
   poses_.wake();
   poses_.end_answer(thread_.get_id());  // a call that does not return must not prevent the board from removing the

@@ -30,7 +30,7 @@ class Servo {
   /// Throws NotNow if a servo is running.
   void start(Function function);
   /// Requests the stop: a running call is the last call.
-  void ask_to_end();
+  void request_end();
   /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
   void stop();
   bool is_running() const;

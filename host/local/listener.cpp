@@ -50,7 +50,7 @@ Descriptor lock_folder(const fs::path& folder) {
 }
 
 /// Removes the socket of a terminated program. All other files stay.
-void remove_left_behind(const SocketAddress& where, std::string_view option) {
+void remove_stale_socket(const SocketAddress& where, std::string_view option) {
   struct stat status {};
   if (::lstat(where.path.c_str(), &status) != 0) return;
   if (!S_ISSOCK(status.st_mode))
@@ -105,7 +105,7 @@ void Listener::listen_on_path(std::string_view option) {
   const fs::path folder = address_.path.parent_path();
   check_folder(folder, address_, option);
   const Descriptor folder_lock = lock_folder(folder);
-  remove_left_behind(address_, option);
+  remove_stale_socket(address_, option);
   const UnixName name(address_.path);
   // Linux applies the mode of the socket to the file, so other users cannot connect at any moment.
   struct stat status {};

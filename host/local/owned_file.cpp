@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
 
 /// Target of a symbolic link: the file must be replaced, and not the link.
-fs::path behind_links(fs::path path) {
+fs::path resolve_links(fs::path path) {
   constexpr int links_maximum = 40;  // limit of Linux
   std::error_code code;
   for (int i = 0; i < links_maximum && fs::is_symlink(path, code); ++i) {
@@ -90,7 +90,7 @@ void write_all(const Descriptor& file, std::span<const std::byte> content, const
 }  // namespace
 
 OwnedFile::OwnedFile(const fs::path& path, Flock flock_like)
-    : path_(behind_links(path)), next_path_(path_), flock_(flock_like) {
+    : path_(resolve_links(path)), next_path_(path_), flock_(flock_like) {
   next_path_ += ".new";
   acquire();
 }

@@ -105,13 +105,14 @@ Answers close(const Arguments& arguments) {
 }
 
 Answers information(const Arguments& arguments) {
-  inkwell_information told;
+  inkwell_information device_information;
   char board[INKWELL_BOARD_NAME_SIZE];
-  require(inkwell_get_information(find(arguments)->second, &told));
+  require(inkwell_get_information(find(arguments)->second, &device_information));
   require(inkwell_get_board_name(find(arguments)->second, board));
   const char* names[] = {"product", "serial_number", "board", "firmware_version", "is_virtual"};
-  mxArray* values[] = {mxCreateString(told.product), mxCreateString(told.serial_number), mxCreateString(board),
-                       mxCreateString(told.firmware_version), mxCreateLogicalScalar(told.is_virtual != 0)};
+  mxArray* values[] = {mxCreateString(device_information.product), mxCreateString(device_information.serial_number),
+                       mxCreateString(board), mxCreateString(device_information.firmware_version),
+                       mxCreateLogicalScalar(device_information.is_virtual != 0)};
   mxArray* all = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
   for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(all, 0, names[i], values[i]);
   return {all};
@@ -138,7 +139,7 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
                          "button_1",
                          "button_2",
                          "in_inkwell"};
-  mxArray* told = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  mxArray* structure = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
   mxArray* rotation = mxCreateDoubleMatrix(3, 3, mxREAL);
   for (int row = 0; row < 3; ++row)
     for (int each = 0; each < 3; ++each) mxGetPr(rotation)[3 * each + row] = pose.rotation[3 * row + each];
@@ -161,8 +162,8 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
                        mxCreateLogicalScalar(pose.button_1 != 0),
                        mxCreateLogicalScalar(pose.button_2 != 0),
                        mxCreateLogicalScalar(pose.in_inkwell != 0)};
-  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(told, 0, names[i], values[i]);
-  return told;
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(structure, 0, names[i], values[i]);
+  return structure;
 }
 
 Answers pose(const Arguments& arguments) {
@@ -267,9 +268,9 @@ Answers store_state(const Arguments& arguments) {
   mxArray* values[] = {mxCreateString(store.contents >= 0 && store.contents < 4 ? contents[store.contents] : "unknown"),
                        mxCreateDoubleScalar(store.not_stored), mxCreateDoubleScalar(store.stores_left),
                        mxCreateDoubleScalar(store.records_written)};
-  mxArray* told = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
-  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(told, 0, names[i], values[i]);
-  return {told};
+  mxArray* structure = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(structure, 0, names[i], values[i]);
+  return {structure};
 }
 
 Answers self_test(const Arguments& arguments) {
@@ -414,9 +415,9 @@ void mexFunction(int answer_count, mxArray* answers[], int argument_count, const
   const char* identifier = identifier_of(INKWELL_FAILED);
   mexAtExit(close_all);
   try {
-    const Answers told = run(Arguments(arguments, arguments + argument_count));
-    for (std::size_t i = 0; i < told.size() && (i == 0 || i < static_cast<std::size_t>(answer_count)); ++i)
-      answers[i] = told[i];
+    const Answers answers_given = run(Arguments(arguments, arguments + argument_count));
+    for (std::size_t i = 0; i < answers_given.size() && (i == 0 || i < static_cast<std::size_t>(answer_count)); ++i)
+      answers[i] = answers_given[i];
   } catch (const inkwell::Failure& error) {
     std::snprintf(sentence, sizeof sentence, "%s", error.what());
     identifier = identifier_of(error.result);

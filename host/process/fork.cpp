@@ -32,7 +32,7 @@ struct Forks {
   static void in_parent() {
     for_each([](const auto& calls, void* mutex) { calls.unlock(mutex); });
   }
-  static void give_up_descriptors() {
+  static void forget_descriptors() {
     const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
     for (const int descriptor : descriptors()) {
       if (nowhere >= 0)
@@ -43,7 +43,7 @@ struct Forks {
     if (nowhere >= 0) close(nowhere);
   }
   static void in_child() {
-    give_up_descriptors();
+    forget_descriptors();
     descriptors().clear();
     for_each([](const auto& calls, void* mutex) { calls.make_new(mutex); });
   }

@@ -33,7 +33,7 @@ Overlay::Overlay(Recording over, const Recording& base, std::string_view mark) :
   if (!mark.empty()) shift_periods_ = periods_to_mark(base, mark) - periods_to_mark(over_, mark);
 }
 
-device::ScopeSamples Overlay::beside(const device::ScopeSamples& of_base) const {
+device::ScopeSamples Overlay::compared_with(const device::ScopeSamples& of_base) const {
   device::ScopeSamples samples{.signals = over_.information.signals,
                                .first_period = of_base.first_period,
                                .count = of_base.count,
@@ -56,8 +56,8 @@ device::ScopeSamples Overlay::beside(const device::ScopeSamples& of_base) const 
   return samples;
 }
 
-std::pair<std::string, std::string> names_beside_each_other(const std::filesystem::path& one,
-                                                            const std::filesystem::path& other) {
+std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
+                                                   const std::filesystem::path& other) {
   const auto canonical = [](const std::filesystem::path& file) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
   };

@@ -33,8 +33,8 @@ void Replay::seek(double position_s) {
 void Replay::set_speed(double speed) { speed_ = std::clamp(speed, speed_minimum, speed_maximum); }
 
 Replay::Passed Replay::advance(double passed_s, double history_s) {
-  Passed passed{.starts_anew = std::exchange(was_moved_, false), .blocks = {}};
-  if (passed.starts_anew) next_sample_ = recording_.sample_at(position_s_ - history_s);
+  Passed passed{.is_restart = std::exchange(was_moved_, false), .blocks = {}};
+  if (passed.is_restart) next_sample_ = recording_.sample_at(position_s_ - history_s);
   if (is_playing_) position_s_ = std::min(duration_s(), position_s_ + speed_ * std::max(0.0, passed_s));
   if (position_s_ >= duration_s()) is_playing_ = false;
 
@@ -47,7 +47,7 @@ Replay::Passed Replay::advance(double passed_s, double history_s) {
     passed.blocks.push_back(recording_.samples(next_sample_, last));
     next_sample_ = last;
   }
-  if (passed.starts_anew && !passed.blocks.empty()) passed.blocks.front().lost_before = 0;
+  if (passed.is_restart && !passed.blocks.empty()) passed.blocks.front().lost_before = 0;
   return passed;
 }
 

@@ -61,9 +61,9 @@ bool regains(Bench& bench) {
     if (!bench.board.connected() && !bench.board.connect(1.0)) return false;
     // A reported fault or restart withdraws the permission for force. The phase reads fault and restart count before it
     // requests force again.
-    bench.look_closely();
+    bench.check_closely();
     bench.pass(0.02);
-    bench.oracle.ask_for_force();
+    bench.oracle.request_force();
     return campaign::regains_force(bench.board);
   } catch (const device::Error&) {
     return false;
@@ -91,8 +91,8 @@ std::string recover(Bench& bench, Disturbance disturbance) {
     bench.board.reset();
     works = regains(bench);
   }
-  bench.look();
-  bench.look_closely();
+  bench.check_truth();
+  bench.check_closely();
   bench.disturb(Disturbance::none);
   bench.oracle.allow_no_fault();
   if (!works) bench.fail(Complaint::no_way_back, "not even a reset helped");
@@ -106,7 +106,7 @@ std::string pull_cable(Bench& bench) {
   be_in_use(bench, with_force);
   const double out_s = bench.random.from(0.01, 0.5);
   bench.device_may_go = true;
-  bench.oracle.give_up_force(host_timeout_s(bench));
+  bench.oracle.withdraw_force(host_timeout_s(bench));
   bench.board.control().usb(false);
   bench.pass(out_s);
   bench.board.drop_device();
@@ -114,8 +114,8 @@ std::string pull_cable(Bench& bench) {
   bench.connect();
   bench.device_may_go = false;
   if (with_force)
-    bench.oracle.must_have_told(protocol::condition(Fault::usb_gone));
-  else if (bench.oracle.has_told())
+    bench.oracle.require_report_of(protocol::condition(Fault::usb_gone));
+  else if (bench.oracle.has_reported())
     bench.oracle.complain(Complaint::false_trip, "the force was already off");
   bench.go_on();
   return fmt::format("out for {:.3f} s, with the force {}", out_s, with_force ? "on" : "off");
@@ -127,11 +127,11 @@ std::string be_silent(Bench& bench) {
   const double short_s = bench.random.from(0.1, 0.7) * host_timeout_s(bench);
   bench.pass(short_s, false);
   bench.pass(0.02);
-  if (bench.oracle.has_told())
+  if (bench.oracle.has_reported())
     bench.oracle.complain(Complaint::false_trip, fmt::format("after {:.0f} ms of silence", 1e3 * short_s));
   const double long_s = host_timeout_s(bench) + bench.random.from(0.02, 0.4);
   bench.pass(long_s, false);
-  bench.oracle.must_have_told(protocol::condition(Fault::host_silent));
+  bench.oracle.require_report_of(protocol::condition(Fault::host_silent));
   bench.go_on();
   return fmt::format("for {:.0f} and {:.0f} ms", 1e3 * short_s, 1e3 * long_s);
 }
@@ -141,13 +141,13 @@ std::string kill_program(Bench& bench) {
   if (!bench.board.device().drives()) bench.board.device().claim();
   if (bench.random.chance(0.5)) bench.board.device().send_force({.force_N = {2.0f, 0.0f, -1.0f}, .interval_ms = 20});
   bench.device_may_go = true;
-  bench.oracle.give_up_force(host_timeout_s(bench));
+  bench.oracle.withdraw_force(host_timeout_s(bench));
   bench.board.drop_device();
   const double gone_s = bench.random.from(0.0, 0.5);
   bench.pass(gone_s);
   bench.connect();
   bench.device_may_go = false;
-  bench.oracle.must_have_told(host_gone);
+  bench.oracle.require_report_of(host_gone);
   bench.go_on();
   return fmt::format("another program connected after {:.3f} s", gone_s);
 }
@@ -175,7 +175,7 @@ std::string be_too_fast(Bench& bench) {
   // 0.1 m in 0.1 s: at most 1.9 m/s.
   bench.board.control().hand_path({{0.3, there_m}, {0.4, back_m}, {0.5, there_m}});
   bench.pass(0.6);
-  bench.oracle.must_have_told(protocol::condition(Fault::over_speed));
+  bench.oracle.require_report_of(protocol::condition(Fault::over_speed));
   bench.set({Parameter::speed_limit_m_per_s, bench.defaults[Parameter::speed_limit_m_per_s]});
   bench.pass(0.2);
   bench.go_on();
@@ -199,18 +199,18 @@ std::string put_fault_in(Bench& bench) {
   if (bench.random.chance(0.5)) bench.move_hand(bench.free_point_m(), bench.random.from(0.15, 0.5));
   bench.board.control().inject({name, put_in.of, put_in.amount, 0.0, put_in.for_s});
   bench.pass(bench.random.from(0.05, 0.8));
-  const auto told = bench.oracle.told();
+  const auto reported_fault = bench.oracle.last_reported();
   const std::string way = recover(bench, disturbance);
   // The fault may have caused lost counts. Lost counts may be undetected, or detected during the motion to the inkwell.
   if (may_lose_counts(put_in)) bench.oracle.allow_lost_counts();
-  bench.give_up_force();
+  bench.withdraw_force();
   bench.dock();
   bench.oracle.allow_no_fault();
   bench.take_out();
   bench.make_active();
   bench.pass(0.3);
   return fmt::format("{} with the force {}: {}, {}", put_in.name(), with_force ? "on" : "off",
-                     told ? protocol::info(*told).name : "nothing told", way);
+                     reported_fault ? protocol::info(*reported_fault).name : "nothing told", way);
 }
 
 }  // namespace inkwell::soak

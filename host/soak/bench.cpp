@@ -16,8 +16,8 @@ using protocol::Command;
 using protocol::Parameter;
 using protocol::State;
 
-constexpr double look_s = 0.005;
-constexpr double close_look_s = 0.1;
+constexpr double poll_interval_s = 0.005;
+constexpr double close_check_s = 0.1;
 
 /// Status and truth count resets from power-on; the first reset is the watchdog test.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
@@ -43,32 +43,32 @@ void Bench::fail(Complaint complaint, const std::string& text) {
 
 // ---- time ----------------------------------------------------------------------------------------------------
 
-void Bench::pass(double time_s, bool gives_sign_of_life) {
+void Bench::pass(double time_s, bool sends_heartbeats) {
   double left_s = time_s;
   while (left_s > 1e-9) {
     const bool was_connected = board.connected();
-    const double step_s = std::min(left_s, look_s);
-    left_s -= look_s;
-    board.run(step_s, gives_sign_of_life);
-    look();
-    until_close_look_s_ -= step_s;
-    if (until_close_look_s_ <= 0) look_closely();
+    const double step_s = std::min(left_s, poll_interval_s);
+    left_s -= poll_interval_s;
+    board.run(step_s, sends_heartbeats);
+    check_truth();
+    until_close_check_s_ -= step_s;
+    if (until_close_check_s_ <= 0) check_closely();
     if (is_over && is_over()) throw SittingOver();
-    if (was_connected && !board.connected() && is_sound() && !device_may_go)
+    if (was_connected && !board.connected() && is_undisturbed() && !device_may_go)
       fail(Complaint::no_answer, "the device was disconnected");
   }
 }
 
-void Bench::look() {
+void Bench::check_truth() {
   const auto truth = board.control().truth();
   const auto reading = board.control().meter_read();
   board.control().meter_start();
-  oracle.see(Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), restarts_of(truth),
-                  reading.peak_motor_force_N, reading.peak_motor_force_over_ms_N});
+  oracle.see(Snapshot{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), restarts_of(truth),
+                      reading.peak_motor_force_N, reading.peak_motor_force_over_ms_N});
 }
 
-void Bench::look_closely() {
-  until_close_look_s_ = close_look_s;
+void Bench::check_closely() {
+  until_close_check_s_ = close_check_s;
   const auto status = board.control().status().all;
   unsigned long broken_rules = 0;
   std::string rule;
@@ -77,7 +77,7 @@ void Bench::look_closely() {
     rule = fmt::format("{} {}", violation.value("sentence", ""), violation.value("code", ""));
   }
   if (oracle.see_counts(restarts_of(status), broken_rules, rule)) hold(stored);
-  if (is_sound() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
+  if (is_undisturbed() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
 }
 
 /// The pose is slightly older than the truth.
@@ -103,10 +103,10 @@ void Bench::disturb(Disturbance disturbance) {
 }
 
 void Bench::check_all() {
-  look_closely();
+  check_closely();
   if (!board.connected()) fail(Complaint::no_answer, "there is no device at the end of the phase");
   if (board.is(State::fault)) throw PhaseFailed("a fault was reported");  // the next phase must start without a fault
-  pass(look_s);
+  pass(poll_interval_s);
   check_pose();
   check_parameters();
 }
@@ -118,8 +118,8 @@ void Bench::limit_changes(float force_limit_N) {
   const auto limit_N = static_cast<double>(force_limit_N);
   if (limit_N == oracle.force_limit_N()) return;
   if (limit_N < oracle.force_limit_N()) {
-    board.run(look_s);
-    look();
+    board.run(poll_interval_s);
+    check_truth();
   }
   oracle.limit_force(limit_N);
 }
@@ -182,7 +182,7 @@ void Bench::hold(const protocol::ParameterSet& set) {
 void Bench::connect(double limit_s) {
   oracle.connected();
   if (!board.connect(limit_s)) fail(Complaint::no_answer, "the device did not reconnect");
-  pass(2 * look_s);
+  pass(2 * poll_interval_s);
 }
 
 Vector3 Bench::free_point_m() {
@@ -212,37 +212,37 @@ void Bench::take_out() {
 void Bench::dock() {
   // The arm is referenced again after a rest in the inkwell. Lost counts are reported only there, some milliseconds
   // after the switch has closed.
-  constexpr double longest_s = 2.3, look_every_s = 0.02, rest_s = 0.3;
+  constexpr double longest_s = 2.3, close_check_interval_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
   double rested_s = 0;
   double waited_s = 0;
   while (waited_s < longest_s) {
-    pass(look_every_s);
-    waited_s += look_every_s;
+    pass(close_check_interval_s);
+    waited_s += close_check_interval_s;
     // The board detects lost counts only in the inkwell. The oracle decides whether lost counts are allowed.
     if (board.is(State::fault)) {
       rested_s = 0;
-      const protocol::Fault told = board.pose()->fault;
-      if ((lost_counts & protocol::condition(told)) == 0) continue;
+      const protocol::Fault reported_fault = board.pose()->fault;
+      if ((lost_counts & protocol::condition(reported_fault)) == 0) continue;
       board.command(Command::clear_fault);
       // To clear this fault, the inkwell switch must also be open once.
-      if (told == protocol::Fault::inkwell_implausible) {
+      if (reported_fault == protocol::Fault::inkwell_implausible) {
         board.control().dock(false);
-        pass(look_every_s);
+        pass(close_check_interval_s);
         board.control().dock(true);
       }
     }
     const bool rests = board.is(State::ready) && board.control().truth().at("inkwell_switch").get<bool>();
-    rested_s = rests ? rested_s + look_every_s : 0.0;
+    rested_s = rests ? rested_s + close_check_interval_s : 0.0;
     if (rested_s >= rest_s) return;
   }
   fail(Complaint::no_answer, "the board did not find its reference in the inkwell");
 }
 
-void Bench::give_up_force() {
+void Bench::withdraw_force() {
   const auto landing_s = static_cast<double>(accepted[Parameter::soft_landing_s]);
   board.command(Command::disable_force);
-  oracle.give_up_force(landing_s);
+  oracle.withdraw_force(landing_s);
   pass(landing_s + 0.03);
 }
 
@@ -251,7 +251,7 @@ void Bench::make_ready() {
   if (board.is(State::fault))
     fail(Complaint::no_answer,
          fmt::format("the previous phase left the fault {}", protocol::info(board.pose()->fault).name));
-  if (board.force_is_on()) give_up_force();
+  if (board.force_is_on()) withdraw_force();
   if (board.is(State::starting) || board.is(State::testing)) pass(0.3);
   if (board.is(State::unreferenced)) dock();
   const auto truth = board.control().truth();
@@ -262,10 +262,10 @@ void Bench::make_ready() {
 void Bench::make_active() {
   if (!board.connected() || !board.force_is_on()) {
     make_ready();
-    oracle.ask_for_force();
+    oracle.request_force();
     board.command(Command::enable_force);
-    for (double waited_s = 0; waited_s < 0.1 && !(board.pose() && force_on(*board.pose())); waited_s += look_s)
-      pass(look_s);
+    for (double waited_s = 0; waited_s < 0.1 && !(board.pose() && force_on(*board.pose())); waited_s += poll_interval_s)
+      pass(poll_interval_s);
     if (!board.force_is_on()) fail(Complaint::no_answer, "the force did not switch on");
   }
   pass(random.chance(0.5) ? static_cast<double>(accepted[Parameter::force_ramp_s]) : 0.02);
@@ -285,9 +285,9 @@ void Bench::go_on() {
 
 void Bench::reset() {
   oracle.expect_restart();
-  oracle.give_up_force(0.0);
+  oracle.withdraw_force(0.0);
   board.reset();
-  look_closely();
+  check_closely();
   board.control().hand({});
   connect();
 }

@@ -30,19 +30,19 @@ class Bench {
 
   // ---- time, with continuous checks
   /// Lets board time pass, with or without heartbeats. Throws SittingOver at the end of the sitting.
-  void pass(double time_s, bool gives_sign_of_life = true);
+  void pass(double time_s, bool sends_heartbeats = true);
   /// Checks the true quantities at this instant.
-  void look();
+  void check_truth();
   /// Checks rarely read states: restarts, violated rules, and lock-up of the processor.
-  void look_closely();
-  /// Like look_closely(), and checks that the board answers and stores its accepted parameters.
+  void check_closely();
+  /// Like check_closely(), and checks that the board answers and stores its accepted parameters.
   void check_all();
 
   // ---- user actions
   /// Postcondition: connected, no fault, referenced, force off, and the hand holds the stylus in free space.
   void make_ready();
   void make_active();
-  void give_up_force();
+  void withdraw_force();
   void dock();
   void take_out();
   void connect(double limit_s = 1.0);
@@ -79,7 +79,7 @@ class Bench {
   std::function<bool()> is_over;
   /// True while the cable is unplugged or the program is killed.
   bool device_may_go = false;
-  bool is_sound() const { return disturbance_ == Disturbance::none; }
+  bool is_undisturbed() const { return disturbance_ == Disturbance::none; }
   /// Sets the active disturbance; Disturbance::none after it is cleared.
   void disturb(Disturbance disturbance);
 
@@ -88,7 +88,7 @@ class Bench {
   void check_pose();
 
   Disturbance disturbance_ = Disturbance::none;
-  double until_close_look_s_ = 0;
+  double until_close_check_s_ = 0;
 };
 
 /// Runs a phase of this kind. Returns a description in words.

@@ -126,7 +126,7 @@ std::string table_of(const Soak& soak) {
   text += row("peak force of the motors",
               fmt::format("{:.2f} N", largest(soak, [](const auto& s) { return s.peak_motor_force_N; })));
   text += rows_of_press(soak, &Sitting::hardest_press,
-                        fmt::format("  relative to a limit of {} N or more", Oracle::telling_limit_N));
+                        fmt::format("  relative to a limit of {} N or more", Oracle::judged_limit_N));
   text += rows_of_press(soak, &Sitting::hardest_press_with_fault, "  the same with an injected fault");
   text += rows_of_press(soak, &Sitting::hardest_press_with_fault_over_ms, "  the same, mean over a millisecond");
   text += row("longest interrupt as a part of its period",

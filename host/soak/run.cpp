@@ -16,8 +16,8 @@ constexpr double board_lives_s = 1e6;
 class Run {
  public:
   Run(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board,
-      const std::function<void(const std::string&)>& tell, const std::function<bool()>& is_stopped)
-      : bench_(number, choices, board), tell_(tell), is_stopped_(is_stopped) {
+      const std::function<void(const std::string&)>& print, const std::function<bool()>& is_stopped)
+      : bench_(number, choices, board), print_(print), is_stopped_(is_stopped) {
     bench_.is_over = [this] { return is_over(); };
   }
 
@@ -52,7 +52,7 @@ class Run {
     }
     result.duration_s = bench_.oracle.board_time_s() - result.begin_s;
     bench_.sitting.phases.push_back(result);
-    if (tell_) tell_(line_of(bench_.sitting, result) + new_findings());
+    if (print_) print_(line_of(bench_.sitting, result) + new_findings());
     return goes_on;
   }
 
@@ -62,20 +62,20 @@ class Run {
       bench_.check_all();
       return true;
     } catch (const PhaseFailed& failure) {
-      return begin_anew();
+      return restart();
     } catch (const device::Error& error) {
       bench_.oracle.complain(Complaint::no_answer, error.what());
-      return begin_anew();
+      return restart();
     }
   }
 
   /// Restarts after a failed phase, so that the failure does not affect the next phase.
-  bool begin_anew() {
+  bool restart() {
     try {
       bench_.device_may_go = false;
       bench_.board.control().heal_all();
       bench_.board.control().usb(true);
-      bench_.look_closely();
+      bench_.check_closely();
     } catch (const device::Error&) {  // already recorded
     }
     try {
@@ -92,9 +92,9 @@ class Run {
   std::string new_findings() {
     std::string text;
     const auto& findings = bench_.oracle.findings();
-    for (; told_ < findings.size(); ++told_)
-      text += fmt::format("    {} at {:.3f} s: {}\n", findings[told_].complaint, findings[told_].board_time_s,
-                          findings[told_].text);
+    for (; printed_ < findings.size(); ++printed_)
+      text += fmt::format("    {} at {:.3f} s: {}\n", findings[printed_].complaint, findings[printed_].board_time_s,
+                          findings[printed_].text);
     return text;
   }
 
@@ -103,7 +103,7 @@ class Run {
     const Oracle& oracle = bench_.oracle;
     sitting.board_time_s = oracle.board_time_s();
     sitting.findings = oracle.findings();
-    sitting.faults_told = oracle.faults_told();
+    sitting.faults_told = oracle.faults_reported();
     sitting.restarts = oracle.restarts();
     sitting.peak_motor_force_N = oracle.peak_motor_force_N();
     sitting.hardest_press = oracle.hardest_press();
@@ -117,21 +117,21 @@ class Run {
   }
 
   Bench bench_;
-  const std::function<void(const std::string&)>& tell_;
+  const std::function<void(const std::string&)>& print_;
   const std::function<bool()>& is_stopped_;
-  std::size_t told_ = 0;
+  std::size_t printed_ = 0;
 };
 
 }  // namespace
 
 Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoardOptions board,
-                    const std::function<void(const std::string&)>& tell, const std::function<bool()>& is_stopped) {
+                    const std::function<void(const std::string&)>& print, const std::function<bool()>& is_stopped) {
   board.real_time = false;
   board.paused = true;
   board.seconds = board_lives_s;
   board.brown_out_level = 3;  // setting of a flashed board
   board.seed = choices.seed + number;
-  return Run(number, choices, board, tell, is_stopped).all();
+  return Run(number, choices, board, print, is_stopped).all();
 }
 
 unsigned sittings_in(double board_time_s, const Choices& choices) {

@@ -55,7 +55,7 @@ std::string store_parameters(Bench& bench) {
   bench.make_active();
   change();
   expect(bench, Command::store_parameters, StoreResult::force_is_on);
-  bench.give_up_force();
+  bench.withdraw_force();
   bench.pass(0.1);
   if (is_stored) {
     bench.board.device().restore_stored_parameters();

@@ -208,14 +208,14 @@ std::string use_docking(Bench& bench) {
   bench.pass(bench.random.from(0.05, 0.3));
   bench.take_out();
   bench.make_active();
-  bench.give_up_force();
+  bench.withdraw_force();
   return "";
 }
 
 std::string use_free_space(Bench& bench, double time_s) {
   bench.make_active();
   wander(bench, time_s, slow_m_per_s, [&] { return bench.free_point_m(); });
-  if (bench.random.chance(0.5)) bench.give_up_force();
+  if (bench.random.chance(0.5)) bench.withdraw_force();
   return "";
 }
 

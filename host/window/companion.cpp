@@ -204,7 +204,7 @@ bool Companion::has_card() const {
 
 void Companion::draw_card(const WindowLayout& layout) {
   const DeviceView& view = desk_.view();
-  updater_.look_for_boot_loader(!view.connected());
+  updater_.search_boot_loader(!view.connected());
   updater_.meet(view.status.board_name);
   const auto firmware = updater_.sight();
   if (!has_card()) return;
@@ -248,15 +248,15 @@ void Companion::draw_scope(const WindowLayout& layout) {
 }
 
 void Companion::judge_motion() {
-  const bool scene_moves = looks_different(drawn_pose_, pose_);
+  const bool scene_moves = differs_visibly(drawn_pose_, pose_);
   const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
   is_moving_ = scene_moves || is_updating || column_.is_moving() || replay_bar_.is_playing() ||
                (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose_;
 }
 
-bool Companion::asks_for_frame() const {
-  return column_.is_moving() || (!replay_bar_.is_open() && looks_different(drawn_pose_, desk_.newest_pose()));
+bool Companion::needs_frame() const {
+  return column_.is_moving() || (!replay_bar_.is_open() && differs_visibly(drawn_pose_, desk_.newest_pose()));
 }
 
 std::uint64_t Companion::canvas_digest() const {

@@ -33,7 +33,7 @@ class Companion final : public FrameContent {
   /// Handles the keys. Escape, F12 and the space bar switch the force off immediately. The space bar has no effect in
   /// text fields.
   void key(const KeyEvent& event) override;
-  bool asks_for_frame() const override;
+  bool needs_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
   /// True once the user requests a virtual board. The window then restarts with the virtual board.

@@ -94,7 +94,7 @@ TEST_CASE("a stylus that is too fast is told once, not at each frame") {
   forget_errors();
   held.control.hand_path({{0.0, held.rest_m}, {2.0, {held.rest_m[0] - 0.06, held.rest_m[1], held.rest_m[2]}}});
   const double limit_mm_per_s[]{5};
-  int fast_frames = 0, told = 0;
+  int fast_frames = 0, reported_errors = 0;
   CHECK(until([&] {
     double velocity_mm_per_s[3];
     held.frame([&] {
@@ -103,11 +103,11 @@ TEST_CASE("a stylus that is too fast is told once, not at each frame") {
       set_force({0.1, 0, 0});
     });
     fast_frames += velocity_mm_per_s[0] < -2 * limit_mm_per_s[0] ? 1 : 0;
-    while (const auto error = hdGetError().errorCode) told += error == HD_EXCEEDED_MAX_VELOCITY ? 1 : 0;
+    while (const auto error = hdGetError().errorCode) reported_errors += error == HD_EXCEEDED_MAX_VELOCITY ? 1 : 0;
     return fast_frames == 200;
   }));
-  CHECK(told >= 1);
-  CHECK(told < 20);  // near the limit the speed may cross it several times
+  CHECK(reported_errors >= 1);
+  CHECK(reported_errors < 20);  // near the limit the speed may cross it several times
 }
 
 TEST_CASE("a callback that sleeps loses the force, and it comes back") {
@@ -231,13 +231,13 @@ TEST_CASE("another program's stop is reported once, and the force stays off unti
   forget_errors();
   const auto other = device::Device::open(*held.board.find());
   other->send(protocol::Command::stop);
-  int told = 0, ticks = 0;
+  int reported_errors = 0, ticks = 0;
   CHECK(until([&] {
     held.frame(push);
-    while (const auto error = hdGetError().errorCode) told += error == HD_FORCE_ERROR ? 1 : 100;
-    return told > 0 && ++ticks == 1000;
+    while (const auto error = hdGetError().errorCode) reported_errors += error == HD_FORCE_ERROR ? 1 : 100;
+    return reported_errors > 0 && ++ticks == 1000;
   }));
-  CHECK(told == 1);
+  CHECK(reported_errors == 1);
   CHECK(says(HD_FORCE_ERROR, "Another program switched the force off"));
   CHECK(std::abs(held.pulled_m(0)) < 0.0015);
   hdEnable(HD_FORCE_OUTPUT);

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 std::string program(const std::string& name) { return build_directory() + "/" + name; }
 
 /// Rest of the line that begins with this word.
-std::string told(const std::string& text, const std::string& word) {
+std::string value_of(const std::string& text, const std::string& word) {
   const auto begin = text.find(word + " ");
   return begin == std::string::npos
              ? ""
@@ -39,17 +39,17 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   const auto held = run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d")});
   INFO(held.out, held.err);
   REQUIRE(held.exit_code == 0);
-  CHECK(told(held.out, "devices") == "1");
-  CHECK(told(held.out, "early") == "-1");
-  CHECK(told(held.out, "radius") == "0 0.1368");  // of a box of 160, 180 and 130 mm
-  CHECK(told(held.out, "type") == "0 PHANTOM Omni");
-  CHECK(told(held.out, "open") == "-1 0");
-  CHECK(told(held.out, "refused") == "0");
-  CHECK(told(held.out, "buttons") == "0");
-  CHECK(told(held.out, "error") == "0x104 77");  // libhdPhantom must not consume this error
-  CHECK(told(held.out, "close") == "0");
-  CHECK(told(held.out, "late") == "-1");
-  const Place place(told(held.out, "position")), turn(told(held.out, "rotation"));
+  CHECK(value_of(held.out, "devices") == "1");
+  CHECK(value_of(held.out, "early") == "-1");
+  CHECK(value_of(held.out, "radius") == "0 0.1368");  // of a box of 160, 180 and 130 mm
+  CHECK(value_of(held.out, "type") == "0 PHANTOM Omni");
+  CHECK(value_of(held.out, "open") == "-1 0");
+  CHECK(value_of(held.out, "refused") == "0");
+  CHECK(value_of(held.out, "buttons") == "0");
+  CHECK(value_of(held.out, "error") == "0x104 77");  // libhdPhantom must not consume this error
+  CHECK(value_of(held.out, "close") == "0");
+  CHECK(value_of(held.out, "late") == "-1");
+  const Place place(value_of(held.out, "position")), turn(value_of(held.out, "rotation"));
   CHECK(place.result == 0);
   CHECK(std::abs(place.x - held_point_m[2]) < 0.005);
   CHECK(std::abs(place.y - held_point_m[0]) < 0.005);
@@ -59,14 +59,15 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   const auto pulled =
       run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d"), "1.0"});
   INFO(pulled.out, pulled.err);
-  CHECK(Place(told(pulled.out, "position")).y - place.y == doctest::Approx(1.0 / hand_N_per_m).scale(0).epsilon(0.2));
+  CHECK(Place(value_of(pulled.out, "position")).y - place.y ==
+        doctest::Approx(1.0 / hand_N_per_m).scale(0).epsilon(0.2));
 }
 
 TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and ends as the program does") {
   const auto run = run_program("inkwell", {"run", "--virtual", program("drop-in-as-chai3d")});
   INFO(run.out, run.err);
   CHECK(run.exit_code == 0);
-  CHECK(told(run.out, "position").substr(0, 2) == "0 ");
+  CHECK(value_of(run.out, "position").substr(0, 2) == "0 ");
   CHECK(run.err.find("the program uses the arm") != std::string::npos);
   CHECK(run.err.find("a simulation") != std::string::npos);
   CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "exit 7"}).exit_code == 7);

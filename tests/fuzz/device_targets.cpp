@@ -90,8 +90,8 @@ const Registered scope_frames{
       device::ScopeDecoder decoder;
       decoder.expect(token, {Signal::position_x_m, Signal::current_1_A, Signal::duty_2, Signal::supply_V});
       while (input.size() >= 2) {
-        const auto told = std::to_integer<std::size_t>(input[0]) | std::to_integer<std::size_t>(input[1]) << 8;
-        const std::size_t length = std::min(told, input.size() - 2);
+        const auto declared = std::to_integer<std::size_t>(input[0]) | std::to_integer<std::size_t>(input[1]) << 8;
+        const std::size_t length = std::min(declared, input.size() - 2);
         if (const auto samples = decoder.decode(input.subspan(2, length)))
           if (samples->values.size() != samples->count * samples->signals.size())
             throw std::logic_error("values are missing");

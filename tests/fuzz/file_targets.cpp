@@ -131,7 +131,7 @@ const Registered typed_formula{"formula",
                                  window::FormulaValues values(formula);
                                  const std::vector<float> row(values.inputs().size(), 0.5f);
                                  for (int i = 0; i < 3; ++i) values.next(row);
-                                 window::unit_told_by(formula.text);
+                                 window::find_unit(formula.text);
                                },
                                [] {
                                  return std::vector<Bytes>{bytes_of("force_x_N - program_force_x_N"),

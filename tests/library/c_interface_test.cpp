@@ -85,9 +85,9 @@ TEST_CASE("parameters are stored, restored and forgotten, but not while the forc
     return value_m;
   };
   const auto store = [&] {
-    inkwell_store told;
-    REQUIRE(inkwell_get_store(arm, &told) == INKWELL_OK);
-    return told;
+    inkwell_store store_state;
+    REQUIRE(inkwell_get_store(arm, &store_state) == INKWELL_OK);
+    return store_state;
   };
   const auto reach_m = [&] {
     const double joint_rad[3]{};

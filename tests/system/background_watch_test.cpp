@@ -32,11 +32,12 @@ namespace {
 void swing(BoardRig& rig, int times) {
   std::vector<device::HandWaypoint> path;
   for (int i = 1; i <= times; ++i)
-    path.push_back({0.15 * i, i % 2 == 0 ? beside(-0.03, -0.03, -0.03) : beside(0.03, 0.03, 0.03)});
+    path.push_back({0.15 * i, i % 2 == 0 ? offset_from_free_point(-0.03, -0.03, -0.03)
+                                         : offset_from_free_point(0.03, 0.03, 0.03)});
   rig.control.hand_path(path);
 }
 
-void check_told(BoardRig& rig, Fault fault) {
+void check_reported(BoardRig& rig, Fault fault) {
   rig.run(0.01);
   CHECK(rig.pose().state == State::fault);
   CHECK(protocol::info(rig.pose().fault).name == protocol::info(fault).name);
@@ -72,7 +73,7 @@ TEST_CASE("a supply that swings by three volts is noticed within 50 ms, one that
   CHECK(protocol::force_is_on(rig.pose().state));
   rig.control.inject({.fault = "supply_ripple"});
   CHECK(off_after_s(rig, 0.05) < 0.0501);
-  check_told(rig, Fault::supply_ripple);
+  check_reported(rig, Fault::supply_ripple);
   CHECK(largest_current_A(rig.control) < 0.02);
   check_clears_when_gone(rig, State::ready);
 }
@@ -94,9 +95,10 @@ TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, an
     CHECK(off_after_s(rig, 0.25) < 0.2501);
     // The second joint is so fast that its motor voltage may reveal the motion first.
     rig.run(0.01);
-    const Fault told = rig.pose().fault;
-    check_told(rig,
-               wires[i].starts_with("encoders[1]") && told == Fault::motor_implausible ? told : Fault::encoder_wire);
+    const Fault reported = rig.pose().fault;
+    check_reported(rig, wires[i].starts_with("encoders[1]") && reported == Fault::motor_implausible
+                            ? reported
+                            : Fault::encoder_wire);
     rig.command(protocol::Command::clear_fault);
     rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
   }
@@ -109,7 +111,7 @@ TEST_CASE("without the force a dead wire of an encoder is noticed too, once the 
   rig.control.inject({.fault = "wire_low", .of = "encoders[1].a"});
   swing(rig, 4);
   rig.run(0.3);
-  check_told(rig, Fault::encoder_wire);
+  check_reported(rig, Fault::encoder_wire);
 }
 
 TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are off, one that is low stays as it is") {
@@ -126,7 +128,7 @@ TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are of
     rig.control.inject({.fault = "wire_high", .of = wire});
     rig.control.run(12 * control_period_s);
     rig.command(protocol::Command::enable_force);  // too late to have an effect
-    check_told(rig, Fault::bridge_wire);
+    check_reported(rig, Fault::bridge_wire);
     check_clears_when_gone(rig, State::ready);
   }
 }
@@ -151,7 +153,7 @@ TEST_CASE("before the arm knows its place a wire of the bridges is watched as we
   rig.control.reset();
   rig.control.inject({.fault = "wire_high", .of = "bridges[2].leg_b"});
   reconnect(rig);
-  check_told(rig, Fault::bridge_wire);
+  check_reported(rig, Fault::bridge_wire);
   check_clears_when_gone(rig, State::unreferenced);
 }
 
@@ -162,12 +164,12 @@ TEST_CASE(
   rig.control.inject({.fault = "wire_high", .of = "bridge_heartbeat"});
   rig.control.run(2 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));
-  check_told(rig, Fault::heartbeat_missed);
+  check_reported(rig, Fault::heartbeat_missed);
   rig.control.heal("wire_high");
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.control.inject({.fault = "wire_high", .of = "bridge_heartbeat"});
-  check_told(rig, Fault::bridge_wire);
+  check_reported(rig, Fault::bridge_wire);
 }
 
 TEST_CASE("bridges that let go by themselves take the force away for good, as does the wire that tells of it") {
@@ -183,7 +185,7 @@ TEST_CASE("bridges that let go by themselves take the force away for good, as do
     rig.control.inject({.fault = fault, .of = wire});
     rig.control.run(4 * control_period_s);
     CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
-    check_told(rig, Fault::heartbeat_missed);
+    check_reported(rig, Fault::heartbeat_missed);
     CHECK_FALSE(bridges_enabled(rig.control));
   }
 }
@@ -203,7 +205,7 @@ TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coa
   for (int i = 0; i < 1'000 && pause_s() < control_period_s; ++i) rig.control.run(control_period_s / 10);
   rig.control.run(1.1 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));
-  check_told(rig, Fault::bridge_wire);
+  check_reported(rig, Fault::bridge_wire);
 }
 
 TEST_CASE("an enable wire that touches ground is noticed within two control periods of the force") {
@@ -212,7 +214,7 @@ TEST_CASE("an enable wire that touches ground is noticed within two control peri
   rig.control.inject({.fault = "wire_low", .of = "bridge_enable"});
   rig.control.run(2 * control_period_s);
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
-  check_told(rig, Fault::heartbeat_missed);
+  check_reported(rig, Fault::heartbeat_missed);
   // With the bridges off, low is the correct level of the enable wire.
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
@@ -228,7 +230,7 @@ TEST_CASE("a reference that is 4.5 % off is borne, one that is 5.5 % off is noti
     CHECK(protocol::force_is_on(rig.pose().state));
     rig.control.inject({.fault = "analog_sag", .amount = 3.3 * (1.0 + 0.055 * sign)});
     CHECK(off_after_s(rig, 0.005) < 0.00501);
-    check_told(rig, Fault::analog_supply);
+    check_reported(rig, Fault::analog_supply);
     check_clears_when_gone(rig, State::ready);
   }
 }
@@ -240,7 +242,7 @@ TEST_CASE("a supply of the chip that falls switches the bridges off within two c
     rig.control.run(0.37 * i * control_period_s);
     rig.control.inject({.fault = "logic_sag", .amount = 2.9});
     CHECK(off_after_s(rig, 1e-4) <= 2.0 * control_period_s + 1e-9);
-    check_told(rig, Fault::logic_supply_low);
+    check_reported(rig, Fault::logic_supply_low);
     check_clears_when_gone(rig, State::ready);
   }
 }
@@ -310,7 +312,7 @@ class HonestRig : public BoardRig {
         CHECK(pose->fault == Fault::none);
         force_is_on = protocol::force_is_on(pose->state);
       }
-      while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+      while (const auto samples = device->read_scope(0ms)) check_samples(*samples);
     }
     look_at_supply();
   }
@@ -333,7 +335,7 @@ class HonestRig : public BoardRig {
   }
 
  private:
-  void look_at(const device::ScopeSamples& samples) {
+  void check_samples(const device::ScopeSamples& samples) {
     REQUIRE(samples.lost_before == 0);
     for (std::size_t row = 0; row < samples.count; ++row, ++period_)
       for (std::size_t i = 0; i < 3; ++i) {
@@ -389,7 +391,9 @@ TEST_CASE("a hand that shakes the arm, and one that knocks on the hardest walls,
   rig.use(0.6);
   rig.check("shaken");
   rig.control.hand({true, free_point_m, 1'500, 12});
-  rig.control.hand_path({{0.1, beside(0.0, 0.0, -0.10)}, {0.2, free_point_m}, {0.3, beside(0.0, 0.0, -0.10)}});
+  rig.control.hand_path({{0.1, offset_from_free_point(0.0, 0.0, -0.10)},
+                         {0.2, free_point_m},
+                         {0.3, offset_from_free_point(0.0, 0.0, -0.10)}});
   rig.use(0.4);
   rig.check("knocked on a wall");
   // The hand holds the probe loosely at the edge of the walls, where vibrations are most likely.

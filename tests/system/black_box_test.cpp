@@ -176,7 +176,7 @@ TEST_CASE("a crash while the black box of another fault is kept is told beside i
   rig.run(0.2);
   const auto address = rig.board.usbip().text();
   const auto image = (std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf").string();
-  const auto told = [&](std::vector<std::string> more) {
+  const auto output_of = [&](std::vector<std::string> more) {
     rig.device.reset();
     rig.control.resume();
     more.insert(more.begin(), {"fault", "--usbip", address});
@@ -187,7 +187,7 @@ TEST_CASE("a crash while the black box of another fault is kept is told beside i
     rig.connect();
     return shown.out;
   };
-  CHECK(told({"--elf", image}).find("No firmware crash is recorded") != std::string::npos);
+  CHECK(output_of({"--elf", image}).find("No firmware crash is recorded") != std::string::npos);
   for (const std::uint32_t astray : {0x60000000u, 0x64000000u}) {
     CAPTURE(astray);
     rig.control.inject({"program_astray", std::to_string(astray)});
@@ -198,7 +198,7 @@ TEST_CASE("a crash while the black box of another fault is kept is told beside i
     CHECK(box.fault == Fault::bridge_fault);
     CHECK(box.later_crashes == (astray == 0x60000000u ? 1 : 2));
     CHECK(box.crash.program_counter == astray);
-    const std::string text = told({});
+    const std::string text = output_of({});
     CHECK(text.find("every signal around bridge_fault") != std::string::npos);
     CHECK(text.find(astray == 0x60000000u ? "After that fault the board restarted once."
                                           : "After that fault the board restarted 2 times") != std::string::npos);
@@ -218,7 +218,7 @@ TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   rig.control.run(2e-6);
   rig.control.inject({"program_astray", std::to_string(loop)});
   rig.control.run(0.04);
-  CHECK(watchdog_bites(rig.control) == 1);
+  CHECK(watchdog_expires(rig.control) == 1);
   reconnect(rig);
   rig.run(0.3);
   CHECK(rig.pose().fault == Fault::watchdog);
@@ -257,12 +257,12 @@ TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it 
   // The watchdog expires while the core is stalled.
   rig.control.inject({"core_stalled", "", 0.04});
   rig.control.run(0.05);
-  REQUIRE(watchdog_bites(rig.control) == 1);
+  REQUIRE(watchdog_expires(rig.control) == 1);
   expect_no_place();
   // The main loop hangs, but an external reset precedes the watchdog.
   rig.control.inject({"main_loop_stalled", "", 10.0});
   rig.control.run(longer_s);
-  REQUIRE(watchdog_bites(rig.control) == 1);
+  REQUIRE(watchdog_expires(rig.control) == 1);
   rig.control.heal_all();
   rig.control.reset();
   expect_no_place();

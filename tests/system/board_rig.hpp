@@ -66,7 +66,7 @@ double largest_current_A(device::ControlClient& control);
 /// The center of the default arm's box, within its reach.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
 /// Returns the point at this distance from free_point_m.
-constexpr device::Vector3 beside(double x_m, double y_m, double z_m) {
+constexpr device::Vector3 offset_from_free_point(double x_m, double y_m, double z_m) {
   return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
 }
 

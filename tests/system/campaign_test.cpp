@@ -74,12 +74,12 @@ TEST_CASE("the force that rises, falls or is held back is less than, or as much 
 }
 
 TEST_CASE("the self-test's pulses end by themselves, and the second motor's find what came during the first's") {
-  const Result sound = result_of("none testing 1");
-  CHECK(sound.bridges_were_on);
-  CHECK(sound.off_after_s.value() > 0.0095);  // the remaining pulses of the self-test
-  CHECK(sound.off_after_s.value() < 0.014);
-  CHECK(sound.detected_as.empty());
-  CHECK(sound.recovery == "none needed");
+  const Result fault_free = result_of("none testing 1");
+  CHECK(fault_free.bridges_were_on);
+  CHECK(fault_free.off_after_s.value() > 0.0095);  // the remaining pulses of the self-test
+  CHECK(fault_free.off_after_s.value() < 0.014);
+  CHECK(fault_free.detected_as.empty());
+  CHECK(fault_free.recovery == "none needed");
   const Result open = result_of("motor_open:2 testing 1");
   CHECK(open.detected_as == "self_test_failed");
   CHECK(open.recovery == "clear_fault");
@@ -120,10 +120,10 @@ TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound
   CHECK(stuck.noticed_in_use_s.value() < 1.5);
   CHECK(stuck.recovery == "clear_fault");
   CHECK(stuck.fault_on_healing.empty());
-  const Result sound = result_of("none motion 3");
-  CHECK(sound.noticed_in_use_as.empty());
-  CHECK_FALSE(sound.noticed_in_use_s);
-  CHECK(sound.peak_force_in_use_N.value() == doctest::Approx(sound.force_limit_N).epsilon(0.1));
+  const Result fault_free = result_of("none motion 3");
+  CHECK(fault_free.noticed_in_use_as.empty());
+  CHECK_FALSE(fault_free.noticed_in_use_s);
+  CHECK(fault_free.peak_force_in_use_N.value() == doctest::Approx(fault_free.force_limit_N).epsilon(0.1));
 }
 
 TEST_CASE("the interrupts that are lost and late in the campaign are those that the firmware has a handler of") {
@@ -279,9 +279,9 @@ TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed bo
 }
 
 TEST_CASE("what an unnoticed fault gives the hand in use is measured, and for a sound arm, too") {
-  const Result sound = result_of("none rest 1");
-  CHECK(sound.energy_in_use_J.value_or(0.0) > 0.01);
-  CHECK(sound.energy_in_use_J.value_or(0.0) > sound.energy_J);
+  const Result fault_free = result_of("none rest 1");
+  CHECK(fault_free.energy_in_use_J.value_or(0.0) > 0.01);
+  CHECK(fault_free.energy_in_use_J.value_or(0.0) > fault_free.energy_J);
 }
 
 TEST_CASE("without force nothing goes on, and the arm finds its place in the inkwell afterwards") {
@@ -295,33 +295,33 @@ TEST_CASE("without force nothing goes on, and the arm finds its place in the ink
 TEST_CASE("a fault that is told stays told, and the next one is told once it is cleared; the black box keeps it else") {
   const Result tripped = result_of("bridge_fault fault 1");
   CHECK(tripped.told_before == "host_silent");
-  CHECK(tripped.first_fault == campaign::FirstFault::told);
+  CHECK(tripped.first_fault == campaign::FirstFault::reported);
   CHECK(tripped.detected_as.empty());
   CHECK(tripped.told_once_cleared == "bridge_fault");
   CHECK_FALSE(tripped.bridges_were_on);
   CHECK_FALSE(tripped.bridges_went_on);
   CHECK(tripped.fault_on_healing.empty());
   CHECK(tripped.recovery == "clear_fault");
-  const Result sound = result_of("none fault 1");
-  CHECK(sound.first_fault == campaign::FirstFault::told);
-  CHECK_FALSE(campaign::is_detected(sound));
-  CHECK(sound.recovery == "none needed");
+  const Result fault_free = result_of("none fault 1");
+  CHECK(fault_free.first_fault == campaign::FirstFault::reported);
+  CHECK_FALSE(campaign::is_detected(fault_free));
+  CHECK(fault_free.recovery == "none needed");
   const Result restarted = result_of("core_stalled fault 1");
   CHECK(restarted.first_fault == campaign::FirstFault::black_box);
   CHECK(restarted.detected_as == "watchdog");
   CHECK(restarted.restarts == 1);
   const Result unheard = result_of("usb_cut fault 1");
-  CHECK(unheard.first_fault == campaign::FirstFault::told);
+  CHECK(unheard.first_fault == campaign::FirstFault::reported);
   CHECK(unheard.told_once_cleared.empty());
   CHECK(result_of("bus_suspended fault 1").told_once_cleared.empty());
 }
 
 TEST_CASE("a board on the way to its boot loader gets there, and its firmware tells afterwards what broke meanwhile") {
-  const Result sound = result_of("none update 1");
-  CHECK_FALSE(sound.missed_boot_loader);
-  CHECK_FALSE(campaign::is_detected(sound));
-  CHECK_FALSE(sound.bridges_went_on);
-  CHECK(sound.recovery == "none needed");
+  const Result fault_free = result_of("none update 1");
+  CHECK_FALSE(fault_free.missed_boot_loader);
+  CHECK_FALSE(campaign::is_detected(fault_free));
+  CHECK_FALSE(fault_free.bridges_went_on);
+  CHECK(fault_free.recovery == "none needed");
   const Result broken = result_of("wire_high:bridge_enable update 1");
   CHECK_FALSE(broken.missed_boot_loader);
   CHECK(broken.detected_as == "bridge_wire");
@@ -340,13 +340,13 @@ TEST_CASE("a board on the way to its boot loader gets there, and its firmware te
 TEST_CASE("what is broken before the power comes, or breaks while the board starts, is told by it") {
   for (const char* name : {"none starting 1", "none starting 2", "none starting 3"}) {
     CAPTURE(name);
-    const Result sound = result_of(name);
-    CHECK(sound.bridges_were_on == (name == std::string_view("none starting 2")));  // pulses of the self-test
-    CHECK_FALSE(sound.bridges_went_on);                                             // except for the pulses of the
-                                                                                    // self-test
-    CHECK_FALSE(campaign::is_detected(sound));
-    CHECK(sound.peak_force_N < 1);
-    CHECK(sound.recovery == "none needed");
+    const Result fault_free = result_of(name);
+    CHECK(fault_free.bridges_were_on == (name == std::string_view("none starting 2")));  // pulses of the self-test
+    CHECK_FALSE(fault_free.bridges_went_on);                                             // except for the pulses of the
+                                                                                         // self-test
+    CHECK_FALSE(campaign::is_detected(fault_free));
+    CHECK(fault_free.peak_force_N < 1);
+    CHECK(fault_free.recovery == "none needed");
   }
   CHECK(result_of("none starting 1").injected_at_s == 0);
   CHECK(result_of("motor_open:2 starting 1").detected_as == "self_test_failed");

@@ -66,7 +66,7 @@ TEST_CASE("a control interrupt that never ends leaves the motors without voltage
   CHECK(restarts(rig.control) == 0);
   CHECK_FALSE(any_motor_driven(rig.control));
   rig.control.run(0.04);
-  CHECK(watchdog_bites(rig.control) == 1);
+  CHECK(watchdog_expires(rig.control) == 1);
   check_bridges_off(rig);
   check_fault_after_restart(rig, Fault::watchdog);
 }
@@ -139,10 +139,10 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   press_into_wall(rig);
   rig.control.inject({"exception_lost", std::to_string(control_interrupt)});
   rig.control.run(0.0001);
-  CHECK(watchdog_bites(rig.control) == 0);
+  CHECK(watchdog_expires(rig.control) == 0);
   CHECK_FALSE(bridges_enabled(rig.control));  // no heartbeat
   rig.control.run(0.04);                      // the slowest watchdog of the data sheet expires after 38 ms
-  CHECK(watchdog_bites(rig.control) == 1);
+  CHECK(watchdog_expires(rig.control) == 1);
   check_bridges_off(rig);
   rig.control.heal("exception_lost");
   rig.control.run(0.04);  // the restart may also have been affected by the lost interrupt
@@ -169,9 +169,9 @@ TEST_CASE("a main loop that hangs is missed by the control interrupt after 10 ms
   CHECK(bridges_enabled(rig.control));
   rig.control.run(0.05 * patience_s + 2 * control_period_s);
   check_bridges_off(rig);
-  CHECK(watchdog_bites(rig.control) == 0);
+  CHECK(watchdog_expires(rig.control) == 0);
   rig.control.run(0.04);  // the slowest watchdog of the data sheet expires after 38 ms
-  CHECK(watchdog_bites(rig.control) == 1);
+  CHECK(watchdog_expires(rig.control) == 1);
   check_fault_after_restart(rig, Fault::watchdog);
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("a main loop that comes back before the watchdog bites says that it wa
   rig.run(0.1);
   CHECK(rig.pose().state == State::fault);
   CHECK(rig.pose().fault == Fault::main_loop_stalled);
-  CHECK(watchdog_bites(rig.control) == 0);
+  CHECK(watchdog_expires(rig.control) == 0);
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
 }
@@ -200,7 +200,7 @@ TEST_CASE("a crystal that stops switches the bridges off at once; the board star
 
   rig.control.heal("crystal_stop");
   check_fault_after_restart(rig, Fault::crystal_failed);
-  check_tells(told_by_info(rig), Fault::crystal_failed);
+  check_reports(reported_by_info(rig), Fault::crystal_failed);
   rig.control.reset();
   reconnect(rig);
   rig.run_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::unreferenced; });

@@ -29,7 +29,7 @@ constexpr std::int64_t periods_per_frame = protocol::servo_rate_Hz / protocol::p
 constexpr float program_N = 0.5f;
 /// Tolerance for the tremor of the hand and the noise of the sensors.
 constexpr double force_tolerance_N = 0.05;
-constexpr device::Vector3 begin_m = beside(-0.025, 0, 0), end_m = beside(0.025, 0, 0);
+constexpr device::Vector3 begin_m = offset_from_free_point(-0.025, 0, 0), end_m = offset_from_free_point(0.025, 0, 0);
 /// A minimum-jerk movement between both points. The peak speed occurs in the middle, at the first wrap.
 constexpr double moves_for_s = 1.0, fastest_m_per_s = 1.875 * 0.05 / moves_for_s;
 constexpr std::size_t frames_before = 200, frames_after = 100;
@@ -93,8 +93,8 @@ Story play() {
 }
 
 const Story& story() {
-  static const Story told = play();
-  return told;
+  static const Story first_story = play();
+  return first_story;
 }
 
 double magnitude_N(const device::Pose& pose) { return std::hypot(pose.force_N[0], pose.force_N[1], pose.force_N[2]); }

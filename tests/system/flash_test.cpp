@@ -41,9 +41,9 @@ class FreeBoard {
   bool runs() const { return !device::find_arms(address()).empty(); }
   bool is_in_boot_loader() const { return !device::find_boot_loaders(address()).empty(); }
   void wait_until(bool (FreeBoard::*condition)() const) const {
-    const auto give_up_at = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     while (!(this->*condition)()) {
-      REQUIRE(std::chrono::steady_clock::now() < give_up_at);
+      REQUIRE(std::chrono::steady_clock::now() < deadline);
       std::this_thread::sleep_for(20ms);
     }
   }
@@ -277,15 +277,15 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";
   std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
   const std::string path = "PATH=" + directory.path() + ":/usr/bin:/bin", companion = build_directory() + "/inkwell";
-  const auto told = [&] {
+  const auto output_of = [&] {
     std::ifstream file(called);
     return std::string{std::istreambuf_iterator<char>(file), {}};
   };
   const auto done =
       run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--interface", "jlink", image("inkwell.elf")});
   CHECK(done.exit_code == 0);
-  CHECK(contains(told(), "interface/jlink.cfg"));
-  CHECK(contains(told(), "6E695F647269766572"));  // ni_driver
+  CHECK(contains(output_of(), "interface/jlink.cfg"));
+  CHECK(contains(output_of(), "6E695F647269766572"));  // ni_driver
   const auto failed =
       run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd", "--board", "omni_driver"});
   CHECK(failed.exit_code == 1);
@@ -294,7 +294,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   // With a board name, the image installed with this program is used. Without a board name, the board is not guessed
   // and openocd is not called.
   CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
-  CHECK(contains(told(), "6E63685F6D6F64756C6573"));  // nch_modules
+  CHECK(contains(output_of(), "6E63685F6D6F64756C6573"));  // nch_modules
   std::filesystem::remove(called);
   const auto nameless = run_program("/usr/bin/env", {path, companion, "flash", "--swd"});
   CHECK(nameless.exit_code == 2);

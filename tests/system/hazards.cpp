@@ -47,14 +47,14 @@ void press_into_wall(BoardRig& rig) {
   REQUIRE(any_leg_high_within(rig.control, control_period_s));
 }
 
-std::string told_by_info(BoardRig& rig) {
+std::string reported_by_info(BoardRig& rig) {
   rig.device.reset();
   const auto result = run_program("inkwell", {"info", "--usbip", rig.board.usbip().text()});
   CHECK(result.exit_code == 0);
   return result.out;
 }
 
-void check_tells(const std::string& text, protocol::Fault fault) {
+void check_reports(const std::string& text, protocol::Fault fault) {
   INFO("inkwell info: ", text);
   CHECK(text.find(device::fault_line(fault)) != std::string::npos);
 }
@@ -63,7 +63,7 @@ namespace {
 constexpr int of_trial = 1;
 }
 int restarts(device::ControlClient& control) { return control.status().all.at("resets").get<int>() - of_trial; }
-int watchdog_bites(device::ControlClient& control) {
+int watchdog_expires(device::ControlClient& control) {
   return control.status().all.at("watchdog_resets").get<int>() - of_trial;
 }
 

@@ -24,10 +24,10 @@ void press_into_wall(BoardRig& rig);
 
 /// Counts since power-on, without the expiry in the watchdog test (firmware/application/watchdog_trial.hpp).
 int restarts(device::ControlClient& control);
-int watchdog_bites(device::ControlClient& control);
+int watchdog_expires(device::ControlClient& control);
 
 /// Returns the output of `inkwell info` for this device.
-std::string told_by_info(BoardRig& rig);
-void check_tells(const std::string& text, protocol::Fault fault);
+std::string reported_by_info(BoardRig& rig);
+void check_reports(const std::string& text, protocol::Fault fault);
 
 }  // namespace inkwell::tests

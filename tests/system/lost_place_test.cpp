@@ -13,7 +13,7 @@ using protocol::State;
 
 namespace {
 
-void check_told(BoardRig& rig, Fault fault) {
+void check_reported(BoardRig& rig, Fault fault) {
   rig.run(0.02);
   CHECK(rig.pose().state == State::fault);
   CHECK(protocol::info(rig.pose().fault).name == protocol::info(fault).name);
@@ -46,7 +46,7 @@ TEST_CASE("an encoder that jumps is told as that, in whatever part of a control 
                         .of = std::to_string(1 + part % 3),
                         .amount = part % 2 == 0 ? 400.0 : -400.0,
                         .after_s = control_period_s * part / parts});
-    check_told(rig, Fault::encoder_implausible);
+    check_reported(rig, Fault::encoder_implausible);
     clear(rig);
     CHECK(rig.pose().state == State::unreferenced);
     put_into_inkwell(rig);
@@ -58,9 +58,9 @@ TEST_CASE("an encoder that jumps while another fault is told voids the place of 
   rig.make_active();
   rig.take_to(free_point_m);
   rig.control.inject({.fault = "bridge_fault", .for_s = 0.01});
-  check_told(rig, Fault::bridge_fault);
+  check_reported(rig, Fault::bridge_fault);
   rig.control.inject({.fault = "encoder_slip", .of = "2"});
-  check_told(rig, Fault::bridge_fault);
+  check_reported(rig, Fault::bridge_fault);
   clear(rig);
   CHECK(rig.pose().state == State::unreferenced);
 }
@@ -75,7 +75,7 @@ TEST_CASE("an inkwell's switch whose wire touches ground is told, and gives no r
       rig.run_until([](const auto& pose) { return pose.state == State::ready; });
     rig.take_to(free_point_m);
     rig.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
-    check_told(rig, Fault::inkwell_implausible);
+    check_reported(rig, Fault::inkwell_implausible);
     clear(rig);
     CHECK(rig.pose().state == State::unreferenced);
     rig.run(0.5);
@@ -92,5 +92,5 @@ TEST_CASE(
   rig.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.take_to(free_point_m);
-  check_told(rig, Fault::inkwell_implausible);
+  check_reported(rig, Fault::inkwell_implausible);
 }

@@ -149,7 +149,7 @@ TEST_CASE("a bit that flips in the flash switches the force off, and no reset br
   rig.run_until(is_in_fault);
   CHECK(rig.pose().fault == Fault::memory_damaged);
   CHECK_FALSE(bridges_enabled(rig.control));
-  check_tells(told_by_info(rig), Fault::memory_damaged);
+  check_reports(reported_by_info(rig), Fault::memory_damaged);
 
   rig.control.reset();
   rig.control.dock(true);

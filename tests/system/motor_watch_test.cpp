@@ -53,7 +53,7 @@ class WatchedRig : public BoardRig {
         Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3, Signal::current_reference_1_A,
         Signal::current_reference_2_A, Signal::current_reference_3_A});
     watch(0.05);
-    start_anew();
+    restart();
   }
 
   void heat(double hotter_K) {
@@ -62,7 +62,7 @@ class WatchedRig : public BoardRig {
     for (const char* motor : {"1", "2", "3"}) control.inject({.fault = "motor_hot", .of = motor, .amount = hotter_K});
   }
 
-  void start_anew() {
+  void restart() {
     watch_ = {};
     previous_V_.clear();
     nearest_V = largest_left_V = largest_beyond_V = fastest_rad_per_s = strongest_N = 0.0f;
@@ -110,10 +110,10 @@ class WatchedRig : public BoardRig {
       strongest_N = std::max(strongest_N, std::hypot(pose->force_N[0], pose->force_N[1], pose->force_N[2]));
       force_is_on = protocol::force_is_on(pose->state);
     }
-    while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+    while (const auto samples = device->read_scope(0ms)) check_samples(*samples);
   }
 
-  void look_at(const device::ScopeSamples& samples) {
+  void check_samples(const device::ScopeSamples& samples) {
     REQUIRE(samples.lost_before == 0);
     const std::size_t width = samples.signals.size();
     for (std::size_t row = 0; row < samples.count; ++row, ++period_) {
@@ -171,7 +171,7 @@ void check(WatchedRig& rig, const std::string& what) {
   CHECK(rig.largest_change_A > 0.01f);
   CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::tolerance_A);
   CHECK(rig.nearest_V < 0.2f * MotorWatch::tolerance_sum_V);
-  rig.start_anew();
+  rig.restart();
 }
 
 /// Moves the hand back and forth between two points, `times` times.
@@ -185,19 +185,20 @@ void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double
 }
 
 void shake(WatchedRig& rig, const std::string& how) {
-  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.045, 12, 4000, 30);
+  swing(rig, offset_from_free_point(-0.05, -0.02, -0.02), offset_from_free_point(0.05, 0.03, 0.02), 0.045, 12, 4000,
+        30);
   check(rig, how + "shaken");
 }
 
 void knock_on_a_stiff_wall(WatchedRig& rig, const std::string& how) {
   rig.change({{Parameter::wall_stiffness_N_per_m, 3000.0f}, {Parameter::force_limit_N, 8.0f}});
   rig.watch(0.2);
-  swing(rig, free_point_m, beside(0.0, 0.0, -0.10), 0.1, 4);
+  swing(rig, free_point_m, offset_from_free_point(0.0, 0.0, -0.10), 0.1, 4);
   check(rig, how + "knocked on a stiff wall");
 }
 
 void press_into_three_walls(WatchedRig& rig, const std::string& how) {
-  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.3, 2);
+  swing(rig, free_point_m, offset_from_free_point(0.12, -0.12, -0.12), 0.3, 2);
   check(rig, how + "pressed into three walls");
 }
 
@@ -224,7 +225,7 @@ TEST_CASE("sound motors keep far from a fault") {
   drive_to_and_fro(rig, "");
   rig.change({{Parameter::voltage_limit_V, 5.0f}});
   rig.watch(0.1);
-  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.08, 4, 4000, 30);
+  swing(rig, offset_from_free_point(-0.05, -0.02, -0.02), offset_from_free_point(0.05, 0.03, 0.02), 0.08, 4, 4000, 30);
   press_into_three_walls(rig, "with loops that get too little voltage, ");
   rig.change({{Parameter::voltage_limit_V, 16.0f}});
   rig.control.hand({false, {}, 0, 0});

@@ -69,7 +69,7 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
   RunningProgram program({build_directory() + "/inkwell", "run", "--usbip", rig.board.usbip().text(),
                           build_directory() + "/drop-in-well"});
   program.read_line();
-  rig.look_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
+  rig.wait_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
   // The hand slows down gradually and finally rests.
   for (int step = 1; step <= 60; ++step) {
     const double part = step / 60.0, angle_rad = 3 * std::numbers::pi * part * (2 - part);
@@ -116,12 +116,12 @@ TEST_CASE("pictures: a soft wall, what the proxy is, and a fault that was put in
   rig.control.hand_path({{0.0, start_m}, {0.8, {0.0, 0.0, -0.03}}, {1.6, {0.095, 0.0, -0.03}}});
   rig.control.run(2.0);
   rig.control.resume();
-  rig.look_until("it presses", [](const Sight& now) { return now.has("scene/proxy"); });
+  rig.wait_until("it presses", [](const Sight& now) { return now.has("scene/proxy"); });
   rig.move_to(rig.look().item("scene/proxy").centre());
   rig.picture(picture_file("proxy"));
   rig.move_to(aside);
   rig.control.inject({.fault = "shunt_high", .of = "1"});
-  rig.look_until("it is noticed",
+  rig.wait_until("it is noticed",
                  [](const Sight& now) { return now.state() == "fault" && now.says("Reported fault: "); });
   rig.picture(picture_file("injected-fault"));
 }
@@ -187,7 +187,7 @@ TEST_CASE("pictures: values that are not stored, the questions, and a reconnecti
         rig.picture(picture_file(name + ", " + what));
       };
       rig.click("tuning/Stiff");
-      rig.look_until("they wait", [](const Sight& now) { return now.says("3 values are not stored"); });
+      rig.wait_until("they wait", [](const Sight& now) { return now.says("3 values are not stored"); });
       photograph("waiting");
       rig.switch_force_on();
       photograph("force on");
@@ -196,14 +196,14 @@ TEST_CASE("pictures: values that are not stored, the questions, and a reconnecti
       rig.picture(picture_file(name + ", question"));
       rig.click("factory reset/Cancel");
       rig.control.reset();
-      rig.look_until("it is back", [](const Sight& now) { return now.says("values have changed"); });
+      rig.wait_until("it is back", [](const Sight& now) { return now.says("values have changed"); });
       photograph("again");
       rig.click("returned/Restore old values");
       rig.click("tuning/Store on board");
-      rig.look_until("they are stored", [](const Sight& now) { return now.says("All values are stored"); });
+      rig.wait_until("they are stored", [](const Sight& now) { return now.says("All values are stored"); });
       photograph("stored");
       rig.control.reset();
-      rig.look_until("it is back", [](const Sight& now) { return now.says("No value has changed"); });
+      rig.wait_until("it is back", [](const Sight& now) { return now.says("No value has changed"); });
       photograph("the same");
     }
 }
@@ -219,7 +219,7 @@ TEST_CASE("pictures: a guide with its result, in a small window too" * doctest::
     photograph("guides");
     rig.scroll_down(rig.look().item("guides/Directions").centre(), 20);
     rig.click("guides/Current-loop tuning");
-    rig.look_until("the guide has finished", [&](const Sight& now) {
+    rig.wait_until("the guide has finished", [&](const Sight& now) {
       if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
       return now.has("guides/Apply");
     });
@@ -227,7 +227,7 @@ TEST_CASE("pictures: a guide with its result, in a small window too" * doctest::
     rig.scroll_down(rig.look().item("guides/Apply").at(0.5, -3), 20);
     photograph("guide, the rest");
     rig.click("guides/Apply");
-    rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on board"); });
+    rig.wait_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on board"); });
     photograph("guide, applied");
   }
 }
@@ -244,15 +244,15 @@ TEST_CASE("pictures: faults put into the simulation, dark and light, large and s
       rig.switch_force_on();
       rig.control.inject({.fault = "encoder_lost_counts", .of = "2"});
       rig.control.inject({.fault = "shunt_high", .of = "1"});
-      rig.look_until("it is noticed", [](const Sight& now) { return now.says("Reported fault: "); });
+      rig.wait_until("it is noticed", [](const Sight& now) { return now.says("Reported fault: "); });
       rig.enter("faults/search", "leg");
       rig.press_key("Down");
       rig.press_key("Down");
       rig.press_key("Return");
-      rig.look_until("the place is asked for", [](const Sight& now) { return now.is_active("faults/place"); });
+      rig.wait_until("the place is asked for", [](const Sight& now) { return now.is_active("faults/place"); });
       rig.type("9Z");
       rig.press_key("Return");
-      rig.look_until("it is refused", [](const Sight& now) { return now.says("is no leg"); });
+      rig.wait_until("it is refused", [](const Sight& now) { return now.says("is no leg"); });
       rig.move_to(aside);
       rig.picture(picture_file(name));
     }
@@ -272,10 +272,10 @@ TEST_CASE("pictures: recording and replay" * doctest::skip()) {
   rig.picture(picture_file("recording"));
   rig.click("recording/Stop recording");
   rig.click("recording/Replay last recording");
-  rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
+  rig.wait_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
   rig.picture(picture_file("question"));
   rig.click("force before replay/Stop and replay");
-  rig.look_until("it plays", [](const Sight& now) { return now.says("REPLAY"); });
+  rig.wait_until("it plays", [](const Sight& now) { return now.says("REPLAY"); });
   rig.move_to(aside);
   rig.control.run(2.0);
   rig.control.resume();
@@ -289,9 +289,9 @@ TEST_CASE("pictures: a fault, no device, and choosing a file" * doctest::skip())
   rig.click("choose a file/Cancel");
   rig.move_to(aside);
   rig.control.supply(6.0);
-  rig.look_until("a fault", [](const Sight& now) { return now.state() == "fault"; });
+  rig.wait_until("a fault", [](const Sight& now) { return now.state() == "fault"; });
   rig.picture(picture_file("fault"));
   rig.control.usb(false);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found"); });
+  rig.wait_until("it says so", [](const Sight& now) { return now.says("No arm was found"); });
   rig.picture(picture_file("unplugged"));
 }

@@ -135,8 +135,8 @@ TEST_CASE("a board that a program starts has no TCP port, and leaves nothing beh
   CHECK(fs::is_socket(folder / "usbip"));
   CHECK(fs::is_socket(folder / "control"));
   kill(program.process(), SIGKILL);
-  const auto give_up_at = std::chrono::steady_clock::now() + patience;
-  while (files_in(runtime.path()) > 0 && std::chrono::steady_clock::now() < give_up_at)
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (files_in(runtime.path()) > 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK(files_in(runtime.path()) == 0);
 }

@@ -105,14 +105,14 @@ void RunningProgram::write_line(const std::string& line) {
 }
 
 std::string RunningProgram::read_line(std::chrono::seconds limit) {
-  const auto give_up_at = std::chrono::steady_clock::now() + limit;
+  const auto deadline = std::chrono::steady_clock::now() + limit;
   for (;;) {
     if (const auto end = received_.find('\n'); end != std::string::npos) {
       std::string line = received_.substr(0, end);
       received_.erase(0, end + 1);
       return line;
     }
-    if (std::chrono::steady_clock::now() > give_up_at) throw std::runtime_error(name_ + " does not answer");
+    if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(name_ + " does not answer");
     pollfd output{output_, POLLIN, 0};
     if (poll(&output, 1, 100) <= 0) continue;
     char chunk[4096];
@@ -123,10 +123,10 @@ std::string RunningProgram::read_line(std::chrono::seconds limit) {
 }
 
 std::optional<int> RunningProgram::wait(std::chrono::seconds limit) {
-  const auto give_up_at = std::chrono::steady_clock::now() + limit;
+  const auto deadline = std::chrono::steady_clock::now() + limit;
   int status = 0;
   while (waitpid(process_, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > give_up_at) return std::nullopt;
+    if (std::chrono::steady_clock::now() > deadline) return std::nullopt;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   process_ = -1;

@@ -128,7 +128,7 @@ TEST_CASE("what the board would refuse is refused with a sentence before it is s
 }
 
 TEST_CASE("a program that pushes along with every motion gives the hand no more than the reserve") {
-  const auto given_J = [](float power_given_W) {
+  const auto delivered_J = [](float power_given_W) {
     ProgramRig rig;
     rig.set({{Parameter::power_given_W, power_given_W}});
     std::vector<device::HandWaypoint> path;
@@ -137,18 +137,18 @@ TEST_CASE("a program that pushes along with every motion gives the hand no more 
     rig.control.hand_path(path);
     rig.control.meter_start();
     double before_m = free_point_m[0];
-    bool told = false;
+    bool reported = false;
     for (int i = 0; i < 1200; ++i) {
       const double moved_m = rig.newest.position_m[0] - before_m;
       before_m = rig.newest.position_m[0];
       const float push_N = moved_m < 0.0 ? -2.5f : 2.5f;
       rig.device->send_force({.force_N = {push_N, 0.0f, 0.0f}, .mode = ForceMode::instead_of_walls});
-      for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::energy);
+      for (const auto& seen : rig.millisecond()) reported |= protocol::is_reached(seen.limits, protocol::Limit::energy);
     }
-    CHECK(told == (power_given_W == 0.0f));
+    CHECK(reported == (power_given_W == 0.0f));
     return rig.control.meter_read().energy_J;
   };
-  const double bounded_J = given_J(0.0f), unbounded_J = given_J(20.0f);
+  const double bounded_J = delivered_J(0.0f), unbounded_J = delivered_J(20.0f);
   MESSAGE("simulation: given to the hand in 1.2 s: ", bounded_J, " J, without the bound ", unbounded_J, " J");
   CHECK(bounded_J < 0.5 * unbounded_J);
 }
@@ -159,19 +159,19 @@ TEST_CASE("a program that pushes an arm which nobody holds makes it no faster th
     rig.set({{Parameter::speed_limit_m_per_s, speed_limit_m_per_s}, {Parameter::power_given_W, 20.0f}});
     rig.control.hand({false, {}, 0, 0});
     double fastest = 0.0;
-    bool told = false;
+    bool reported = false;
     for (int i = 0; i < 1500; ++i) {
       // The force always points to the center, so the probe oscillates around the center.
       const double x_m = rig.newest.position_m[0] - free_point_m[0];
       rig.device->send_force({.force_N = {x_m > 0.0 ? -3.0f : 3.0f, 0.0f, 0.5f}, .mode = ForceMode::beside_walls});
-      for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::speed);
+      for (const auto& seen : rig.millisecond()) reported |= protocol::is_reached(seen.limits, protocol::Limit::speed);
       const auto truth = rig.control.truth();
       const auto speed = [&](const char* name) { return truth.at(name).get<double>(); };
       fastest = std::max(fastest, std::hypot(speed("true_velocity_x_m_s"), speed("true_velocity_y_m_s"),
                                              speed("true_velocity_z_m_s")));
     }
     CHECK(rig.newest.fault == protocol::Fault::none);
-    CHECK(told == (speed_limit_m_per_s < 3.0f));
+    CHECK(reported == (speed_limit_m_per_s < 3.0f));
     return fastest;
   };
   const double held_m_per_s = fastest_m_per_s(2.0f), free_m_per_s = fastest_m_per_s(10.0f);

@@ -109,12 +109,12 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   changes.count = 1;
   changes.entries[0] = {info(Parameter::wall_stiffness_N_per_m).id, 0, 123.0f};
   transport->set_feature(std::as_bytes(std::span(&changes, 1)).first(protocol::parameters_report_size(1)));
-  protocol::TransactionReport told{};
+  protocol::TransactionReport transaction_report{};
   do {
-    told = feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction);
-  } while (told.transactions == transactions);
-  CHECK(told.refusal == protocol::Refusal::wrong_version);
-  CHECK(std::string(info(told.refusal).remedy).find("companion") != std::string::npos);
+    transaction_report = feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction);
+  } while (transaction_report.transactions == transactions);
+  CHECK(transaction_report.refusal == protocol::Refusal::wrong_version);
+  CHECK(std::string(info(transaction_report.refusal).remedy).find("companion") != std::string::npos);
 
   // A command with this version is not executed: its token is not returned, and the force remains off.
   protocol::CommandReport enable{};

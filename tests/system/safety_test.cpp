@@ -122,7 +122,7 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
 
   rig.control.inject({"bridge_fault"});
   rig.run(0.05);
-  check_tells(told_by_info(rig), protocol::Fault::bridge_fault);
+  check_reports(reported_by_info(rig), protocol::Fault::bridge_fault);
 }
 
 TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it is slow, and then let go") {
@@ -232,13 +232,13 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);
   CHECK(restarts(rig.control) == 1);
-  CHECK(watchdog_bites(rig.control) == 0);
+  CHECK(watchdog_expires(rig.control) == 0);
 
   reconnect(rig);
   rig.run(0.3);
   CHECK(rig.pose().state == State::fault);
   CHECK(rig.pose().fault == protocol::Fault::processor_fault);
-  check_tells(told_by_info(rig), protocol::Fault::processor_fault);
+  check_reports(reported_by_info(rig), protocol::Fault::processor_fault);
 }
 
 TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog, and says so") {
@@ -246,7 +246,7 @@ TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog,
   press_into_wall(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(0.04);  // the slowest watchdog of the data sheet expires after 38 ms
-  CHECK(watchdog_bites(rig.control) == 1);
+  CHECK(watchdog_expires(rig.control) == 1);
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);
@@ -255,5 +255,5 @@ TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog,
   rig.run(0.3);
   CHECK(rig.pose().state == State::fault);
   CHECK(rig.pose().fault == protocol::Fault::watchdog);
-  check_tells(told_by_info(rig), protocol::Fault::watchdog);
+  check_reports(reported_by_info(rig), protocol::Fault::watchdog);
 }

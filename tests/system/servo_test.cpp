@@ -51,7 +51,7 @@ namespace {
 
 /// Half of the period, plus a margin for the energy and rate limits, a simultaneous state change, and the code
 /// placement.
-constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 500;
+constexpr std::uint32_t tolerated_cycles = board::servo_cycles / 2 + 500;
 
 }  // namespace
 
@@ -74,14 +74,14 @@ TEST_CASE(
   MESSAGE("simulation: longest control interrupt ", report.servo_cycles_longest, " of ", board::servo_cycles,
           " cycles");
   CHECK(report.servo_cycles_longest > 500);  // the interrupt ran and was measured
-  CHECK(report.servo_cycles_longest < bearable_cycles);
+  CHECK(report.servo_cycles_longest < tolerated_cycles);
   check_figure_on_cycles_page("longest control interrupt", report.servo_cycles_longest);
   CHECK(report.servo_overruns == 0);
   // Each pose also contains the longest interrupt time, in units of 1/255 period.
   const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
-  const double told_cycles = largest / 255.0 * board::servo_cycles;
-  CHECK(told_cycles <= report.servo_cycles_longest);
-  CHECK(told_cycles > 0.9 * report.servo_cycles_longest);
+  const double reported_cycles = largest / 255.0 * board::servo_cycles;
+  CHECK(reported_cycles <= report.servo_cycles_longest);
+  CHECK(reported_cycles > 0.9 * report.servo_cycles_longest);
   // The main loop benefits from flash prefetch and cache; the interrupts run without them.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
@@ -255,7 +255,7 @@ TEST_CASE("a motor that was warm before a restart is as warm after it, but not a
     rig.control.inject({"main_loop_stalled", "", 10.0});
     rig.control.run(0.06);
     reconnect(rig);
-    CHECK(watchdog_bites(rig.control) == 1);
+    CHECK(watchdog_expires(rig.control) == 1);
     is_kept(warm);
   }
   rig.control.cut_power();

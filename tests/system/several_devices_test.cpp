@@ -116,9 +116,9 @@ TEST_CASE("two arms: commands list, record and switch the force of the one that 
   CHECK(first.wait() == 0);
   CHECK(second.wait() == 0);
   for (unsigned i : {0u, 1u}) {
-    const auto told = run_program("inkwell", {"replay", directory.file(fmt::format("{}.h5", i)), "--json"});
-    REQUIRE(told.exit_code == 0);
-    CHECK(nlohmann::json::parse(told.out).at("serial_number") == numbers[i]);
+    const auto printed = run_program("inkwell", {"replay", directory.file(fmt::format("{}.h5", i)), "--json"});
+    REQUIRE(printed.exit_code == 0);
+    CHECK(nlohmann::json::parse(printed.out).at("serial_number") == numbers[i]);
   }
 
   auto on_words = words(0, {"force", "on"});

@@ -107,9 +107,9 @@ TEST_CASE("what is not stored is marked, counted and listed with the value that 
   CHECK(stored.at("records_written") == 1);
   CHECK(stored.at("at_start").at("contents") == "nothing");
   CHECK(board.run({"parameters", "stored"}).out.find("wall_stiffness_N_per_m") != std::string::npos);
-  const auto told = board.json({"info"});
-  CHECK(told.at("stored") == "parameters");
-  CHECK(told.at("not_stored") == 1);
+  const auto information = board.json({"info"});
+  CHECK(information.at("stored") == "parameters");
+  CHECK(information.at("not_stored") == 1);
 
   board.restart();
   const auto after = board.json({"parameters", "stored"});

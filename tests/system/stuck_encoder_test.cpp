@@ -51,19 +51,19 @@ TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it aw
     std::array<float, 3> along;  ///< a direction in which this motor contributes much of the force
   };
   for (const Pulled& pulled : {Pulled{"1", {1.0f, 0.0f, 0.0f}}, {"2", {0.0f, 0.7f, -0.7f}}, {"3", {0.0f, 0.7f, 0.7f}}})
-    for (const bool sound : {true, false}) {
+    for (const bool healthy : {true, false}) {
       CAPTURE(pulled.joint);
-      CAPTURE(sound);
+      CAPTURE(healthy);
       BoardRig rig;
       make_strong(rig);
-      if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = pulled.joint});
+      if (!healthy) rig.control.inject({.fault = "encoder_stuck", .of = pulled.joint});
       rig.run(0.2);
       REQUIRE(protocol::force_is_on(rig.pose().state));
       pull(rig, pulled.along);
       CHECK(protocol::info(fault_of(rig)).name ==
-            protocol::info(sound ? Fault::none : Fault::encoder_implausible).name);
-      CHECK(bridges_enabled(rig.control) == sound);
-      if (sound) continue;
+            protocol::info(healthy ? Fault::none : Fault::encoder_implausible).name);
+      CHECK(bridges_enabled(rig.control) == healthy);
+      if (healthy) continue;
       rig.command(protocol::Command::clear_fault);
       rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
     }
@@ -71,8 +71,8 @@ TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it aw
 
 TEST_CASE(
     "slow motion at the usual force limit: pressed into a wall, let go and pressed again, a stuck encoder is told") {
-  for (const bool sound : {true, false}) {
-    CAPTURE(sound);
+  for (const bool healthy : {true, false}) {
+    CAPTURE(healthy);
     BoardRig rig;
     rig.make_active();
     const auto pressed_m = campaign::beyond_forward_wall_m(rig.device->parameters(), 1.0);
@@ -80,7 +80,7 @@ TEST_CASE(
     let_go_m[2] -= 0.012;
     rig.take_to(let_go_m);
     rig.run(0.3);
-    if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = "2"});
+    if (!healthy) rig.control.inject({.fault = "encoder_stuck", .of = "2"});
     std::vector<device::HandWaypoint> path;
     for (int i = 0; i < 6; ++i) path.push_back({0.4 * (i + 1), i % 2 == 0 ? pressed_m : let_go_m});
     rig.control.hand_path(path);
@@ -90,26 +90,28 @@ TEST_CASE(
       peak_N = std::max(peak_N, rig.pose().force_N[2] * -1.0f);
     }
     CHECK(peak_N > 2.9f);
-    CHECK(protocol::info(fault_of(rig)).name == protocol::info(sound ? Fault::none : Fault::encoder_implausible).name);
-    CHECK(bridges_enabled(rig.control) == sound);
+    CHECK(protocol::info(fault_of(rig)).name ==
+          protocol::info(healthy ? Fault::none : Fault::encoder_implausible).name);
+    CHECK(bridges_enabled(rig.control) == healthy);
   }
 }
 
 TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the place of the arm away") {
   for (const std::string joint : {"1", "2", "3", "none"}) {
     CAPTURE(joint);
-    const bool sound = joint == "none";
+    const bool healthy = joint == "none";
     BoardRig rig;
     make_strong(rig);
-    if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = joint});
+    if (!healthy) rig.control.inject({.fault = "encoder_stuck", .of = joint});
     std::vector<device::HandWaypoint> path;
     for (int i = 1; i <= 6; ++i)
-      path.push_back({0.09 * i, i % 2 == 0 ? beside(-0.04, -0.03, -0.03) : beside(0.04, 0.03, 0.03)});
+      path.push_back({0.09 * i, i % 2 == 0 ? offset_from_free_point(-0.04, -0.03, -0.03)
+                                           : offset_from_free_point(0.04, 0.03, 0.03)});
     rig.control.hand_path(path);
     rig.run(0.5);
-    CHECK(protocol::info(fault_of(rig)).name == protocol::info(sound ? Fault::none : Fault::motor_implausible).name);
-    CHECK(bridges_enabled(rig.control) == sound);
-    if (sound) continue;
+    CHECK(protocol::info(fault_of(rig)).name == protocol::info(healthy ? Fault::none : Fault::motor_implausible).name);
+    CHECK(bridges_enabled(rig.control) == healthy);
+    if (healthy) continue;
     rig.command(protocol::Command::clear_fault);
     rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
   }

@@ -16,12 +16,12 @@ namespace {
 
 void unplug(WindowRig& rig) {
   rig.control.usb(false);
-  rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
+  rig.wait_until("the window notices", [](const Sight& now) { return !now.connected(); });
 }
 
 void plug_in(WindowRig& rig, const std::string& state = "ready") {
   rig.control.usb(true);
-  rig.look_until("the window is connected again", [&](const Sight& now) { return now.state() == state; });
+  rig.wait_until("the window is connected again", [&](const Sight& now) { return now.state() == state; });
 }
 
 }  // namespace
@@ -30,13 +30,13 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   WindowRig rig;
   rig.switch_force_on();
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug in an arm"); });
+  rig.wait_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug in an arm"); });
   CHECK_FALSE(rig.look().can_click("status/Switch force on"));
   plug_in(rig, "fault");
   CHECK(rig.look().says("The USB connection was lost while the force was on"));
   rig.click("banner/Clear fault");
   // The arm is still referenced, and the force is off.
-  rig.look_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });
+  rig.wait_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().can_click("status/Switch force on"));
   CHECK_FALSE(rig.look().says("No arm was found"));
 }
@@ -61,14 +61,14 @@ TEST_CASE("while another program drives, the window names it, and takes the arm 
     rig.press_key("Return");
   };
   change("700");
-  rig.look_until("the driver is named", [](const Sight& now) {
+  rig.wait_until("the driver is named", [](const Sight& now) {
     return now.has("banner/Take over") && now.says("The arm is driven by inkwell (process");
   });
   rig.click("banner/Take over");
-  rig.look_until("the banner is gone", [](const Sight& now) { return !now.has("banner/Take over"); });
+  rig.wait_until("the banner is gone", [](const Sight& now) { return !now.has("banner/Take over"); });
   const auto before = rig.look().applied_at_periods();
   change("900");
-  rig.look_until("the change has an effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("the change has an effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
 }
 
 TEST_CASE("a recording is started, marked, stopped and replayed") {
@@ -78,13 +78,13 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
   rig.click("recording/Start recording");
-  rig.look_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
+  rig.wait_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.enter("recording/mark text", "here");
   rig.click("recording/Mark");
   rig.control.run(0.5);
   rig.control.resume();
   rig.click("recording/Stop recording");
-  rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
+  rig.wait_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
 
   const auto recording = recording::read(file);
   CHECK(recording.complete);
@@ -97,7 +97,7 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   rig.click("recording/Open a recording");
   rig.enter("choose a file/path", file);
   rig.click("choose a file/Open");
-  rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
+  rig.wait_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
   CHECK(rig.look().says("push (simulation)"));
   rig.click("tabs/Tuning");
   CHECK(rig.look().says("These parameters are from the recording."));
@@ -112,11 +112,11 @@ TEST_CASE("a recording whose device is unplugged holds everything up to then") {
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
   rig.click("recording/Start recording");
-  rig.look_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
+  rig.wait_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.control.run(0.5);
   rig.control.resume();
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("The device was disconnected."); });
+  rig.wait_until("it says so", [](const Sight& now) { return now.says("The device was disconnected."); });
   const auto recording = recording::read(file);
   CHECK(recording.complete);
   CHECK(recording.size() > 9'000);
@@ -129,14 +129,14 @@ TEST_CASE("a guide whose device is unplugged says so, and the parameters on tria
   rig.click("guides/Current-loop tuning");
   // Each step waits for a confirmation. Trial gains are active after the first transaction.
   const auto before = rig.look().applied_at_periods();
-  rig.look_until("gains are on trial", [&](const Sight& now) {
+  rig.wait_until("gains are on trial", [&](const Sight& now) {
     if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
     return now.applied_at_periods() != before;
   });
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("The device was disconnected in the step"); });
+  rig.wait_until("it says so", [](const Sight& now) { return now.says("The device was disconnected in the step"); });
   plug_in(rig);
-  rig.look_until("they are put back", [](const Sight& now) { return now.applied_at_periods() != 0; });
+  rig.wait_until("they are put back", [](const Sight& now) { return now.applied_at_periods() != 0; });
   rig.click("guides/Back");
   CHECK(rig.look().can_click("guides/Current-loop tuning"));
   CHECK(rig.close_and_read_parameters() == rig.parameters_at_start());

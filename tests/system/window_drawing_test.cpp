@@ -53,10 +53,10 @@ TEST_CASE("what was drawn in parts looks as if it were drawn as a whole") {
   rig.click("tabs/Tuning");
   rig.click("scope/Pause");
   rig.click("scope/Signals");
-  rig.look_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
+  rig.wait_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
   rig.click("scope/Signals");
   rig.press_key("F1");
-  rig.look_until("the page is there", [](const Sight& now) { return now.has("Keys and mouse/Close"); });
+  rig.wait_until("the page is there", [](const Sight& now) { return now.has("Keys and mouse/Close"); });
   rig.click("Keys and mouse/Close");
   rig.move_to({700, 60});
   rig.control.run(0.05);  // stationary afterwards

@@ -14,12 +14,12 @@ namespace {
 void open_pane(WindowRig& rig) { rig.click("tabs/Faults"); }
 
 void look_for(WindowRig& rig, const std::string& text) {
-  rig.look_until("it says " + text, [&](const Sight& now) { return now.says(text); });
+  rig.wait_until("it says " + text, [&](const Sight& now) { return now.says(text); });
 }
 
 /// Text that is typed before the field has the keyboard focus is lost.
 void wait_for_keyboard(WindowRig& rig, const std::string& field) {
-  rig.look_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
+  rig.wait_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
 /// The control that receives the keys; empty if no control does.
@@ -35,7 +35,7 @@ void go_by_tab(WindowRig& rig, const std::string& field) {
   for (int stop = 0; stop < most_stops && !rig.look().is_active(field); ++stop) {
     const std::string before = focused_control(rig.look());
     rig.type("\t");  // in one event, because a held Tab key repeats
-    rig.look_until("Tab leaves " + before, [&](const Sight& now) { return focused_control(now) != before; });
+    rig.wait_until("Tab leaves " + before, [&](const Sight& now) { return focused_control(now) != before; });
   }
   wait_for_keyboard(rig, field);
 }
@@ -43,7 +43,7 @@ void go_by_tab(WindowRig& rig, const std::string& field) {
 /// ImGui generates the name of a popup list.
 void click_in_list(WindowRig& rig, const std::string& name) {
   std::string item;
-  rig.look_until(name + " is in the list", [&](const Sight& now) {
+  rig.wait_until(name + " is in the list", [&](const Sight& now) {
     for (const auto& each : now.all.at("items").items())
       if (each.key().starts_with("##Popup") && each.key().ends_with("/" + name)) item = each.key();
     return !item.empty();
@@ -160,8 +160,8 @@ TEST_CASE("the same fault again takes the place of the first, and outlasts a res
   look_for(rig, "motor 2, 40 K, started at");
   CHECK(count_in(rig) == 1);
   rig.control.reset();
-  rig.look_until("the device is gone", [](const Sight& now) { return !now.connected(); });
-  rig.look_until("it is back", [](const Sight& now) { return now.connected(); });
+  rig.wait_until("the device is gone", [](const Sight& now) { return !now.connected(); });
+  rig.wait_until("it is back", [](const Sight& now) { return now.connected(); });
   CHECK(rig.look().says("motor 2, 50 K, active since"));
   rig.click("faults/Heal all");
   look_for(rig, "motor 2, 50 K, started at");
@@ -187,9 +187,9 @@ TEST_CASE("a device that is pulled or a board that is gone leaves a pane that sa
   rig.enter("faults/search", "usb_cut");
   rig.click("faults/usb_cut");
   rig.click("faults/Inject");
-  rig.look_until("the device is gone", [](const Sight& now) { return !now.connected(); });
+  rig.wait_until("the device is gone", [](const Sight& now) { return !now.connected(); });
   rig.click("faults/Heal usb_cut");
-  rig.look_until("it is back", [](const Sight& now) { return now.connected(); });
+  rig.wait_until("it is back", [](const Sight& now) { return now.connected(); });
   rig.control.quit();
   look_for(rig, "The virtual board does not answer.");
   CHECK_FALSE(rig.look().can_click("faults/Inject"));

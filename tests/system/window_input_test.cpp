@@ -77,7 +77,7 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.move_to(handle);
     rig.press_mouse();
     rig.move_to({handle.x + 20, handle.y});
-    rig.look_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+    rig.wait_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
     // Board time is paused while the event is generated and handled, at a different phase of the USB frame in each
     // attempt. Only the transaction is measured, so that a busy computer does not change the result.
     rig.control.run(2e-4 * (attempt + 1));
@@ -85,7 +85,7 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.control.stand_by();
     rig.move_to({handle.x + 40, handle.y});
     const auto now =
-        rig.look_until("it took effect", [&](const Sight& sight) { return sight.applied_at_periods() > moved_at; });
+        rig.wait_until("it took effect", [&](const Sight& sight) { return sight.applied_at_periods() > moved_at; });
     latencies.push_back(now.applied_at_periods() - moved_at);
     rig.control.resume();
     rig.release_mouse();
@@ -129,7 +129,7 @@ TEST_CASE("a parameter file loaded in the window is what the device then holds, 
   rig.enter("choose a file/path", file);
   const auto before = rig.look().applied_at_periods();
   rig.click("choose a file/Load");
-  rig.look_until("the device took them", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("the device took them", [&](const Sight& now) { return now.applied_at_periods() != before; });
   CHECK(rig.look().says("stickiness_N"));
   auto expected = rig.parameters_at_start();
   expected[Parameter::wall_damping_Ns_per_m] = 3.5f;
@@ -145,7 +145,7 @@ TEST_CASE("a damaged parameter file is told, and the device keeps its values") {
   rig.click("tuning/Load");
   rig.enter("choose a file/path", file);
   rig.click("choose a file/Load");
-  rig.look_until("it says which file", [&](const Sight& now) { return now.says("damaged.toml"); });
+  rig.wait_until("it says which file", [&](const Sight& now) { return now.says("damaged.toml"); });
   CHECK(rig.close_and_read_parameters() == rig.parameters_at_start());
 }
 
@@ -154,20 +154,20 @@ TEST_CASE("the stop button and the space bar switch the force off, the button al
   const auto has_stopped = [](const Sight& now) { return now.state() == "ready"; };
   rig.switch_force_on();
   rig.click("status/STOP");
-  rig.look_until("the button stopped it", has_stopped);
+  rig.wait_until("the button stopped it", has_stopped);
 
   rig.switch_force_on();
   rig.press_key("space");
-  rig.look_until("the space bar stopped it", has_stopped);
+  rig.wait_until("the space bar stopped it", has_stopped);
 
   rig.switch_force_on();
   rig.click("tuning/Load");  // a modal dialog with the keyboard focus
   rig.press_key("Escape");
-  rig.look_until("Escape stopped it and closed the dialog",
+  rig.wait_until("Escape stopped it and closed the dialog",
                  [&](const Sight& now) { return has_stopped(now) && !now.has("choose a file/Cancel"); });
 
   rig.switch_force_on();
   rig.click("tuning/Load");
   rig.click("status/STOP");
-  rig.look_until("the button stopped it, though a dialog has the mouse", has_stopped);
+  rig.wait_until("the button stopped it, though a dialog has the mouse", has_stopped);
 }

@@ -67,10 +67,10 @@ TEST_CASE("Ctrl+Tab gives the keyboard to every part of the window, and back") {
 TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
   WindowRig rig;
   rig.tap_key("F3");
-  rig.look_until("the guides have the keyboard",
+  rig.wait_until("the guides have the keyboard",
                  [](const Sight& now) { return part_of(now.with_keyboard()) == "guides"; });
   rig.tap_key("F2");
-  rig.look_until("tuning has it", [](const Sight& now) { return part_of(now.with_keyboard()) == "tuning"; });
+  rig.wait_until("tuning has it", [](const Sight& now) { return part_of(now.with_keyboard()) == "tuning"; });
   const auto on_the_way = go_to(rig, "Down", "tuning/wall_damping_Ns_per_m", 40);
   for (const char* passed : {"tuning/box_minimum_x_m", "tuning/box_maximum_z_m", "tuning/wall_stiffness_N_per_m"}) {
     CAPTURE(passed);
@@ -78,11 +78,11 @@ TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
   }
   const auto before = rig.look().applied_at_periods();
   rig.tap_key("Return");
-  rig.look_until("it is typed in", [](const Sight& now) { return now.is_active("tuning/wall_damping_Ns_per_m"); });
+  rig.wait_until("it is typed in", [](const Sight& now) { return now.is_active("tuning/wall_damping_Ns_per_m"); });
   rig.type("1.5");
   rig.tap_key("Return");
-  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-  rig.look_until("the next is reached", [&rig](const Sight& now) {
+  rig.wait_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("the next is reached", [&rig](const Sight& now) {
     if (now.with_keyboard() != "tuning/wall_damping_Ns_per_m") return true;
     rig.tap_key("Down");
     return false;
@@ -95,18 +95,18 @@ TEST_CASE("a signal gets a plot of its own by Enter") {
   go_to_part(rig, "scope");
   go_to(rig, "Right", "scope/Signals", 12);
   rig.tap_key("Return");
-  rig.look_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
+  rig.wait_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
   go_to(rig, "Left", "scope/layout", 12);
   go_to(rig, "Down", "scope/Position", 3);
   go_to(rig, "Left", "scope/search", 3);
   rig.tap_key("Return");
   rig.type("supply");
-  rig.look_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); });
+  rig.wait_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); });
   rig.tap_key("Return");
   go_to(rig, "Down", "scope/supply_V", 12);
   rig.tap_key("Return");
   rig.click("scope/Signals");  // without the list only the plot's title has this name
-  rig.look_until("the list is gone", [](const Sight& now) { return !now.has("scope/search"); });
+  rig.wait_until("the list is gone", [](const Sight& now) { return !now.has("scope/search"); });
   CHECK(rig.look().has("scope/supply_V"));
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
     const auto x = [](const Sight& now) { return now.item("scene/box_maximum_x_m").x; };
     const auto before = x(rig.look());
     rig.tap_key(key);
-    rig.look_until("the scene turns by " + key, [&](const Sight& now) { return std::abs(x(now) - before) > 2.0; });
+    rig.wait_until("the scene turns by " + key, [&](const Sight& now) { return std::abs(x(now) - before) > 2.0; });
   };
   turns_by("shift+Right");
   turns_by("shift+Prior");
@@ -130,10 +130,10 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
 
   const auto view = rig.look().item("scene/view");
   rig.tap_key("alt+Left");
-  rig.look_until("the scene is 20 pixels narrower",
+  rig.wait_until("the scene is 20 pixels narrower",
                  [&](const Sight& now) { return now.item("scene/view").width == doctest::Approx(view.width - 20); });
   rig.tap_key("alt+Up");
-  rig.look_until("the scene is 20 pixels lower",
+  rig.wait_until("the scene is 20 pixels lower",
                  [&](const Sight& now) { return now.item("scene/view").height == doctest::Approx(view.height - 20); });
 }
 
@@ -142,10 +142,10 @@ TEST_CASE("Escape leaves the keyboard where it is, and a button that changes its
   go_to_part(rig, "status");
   go_to(rig, "Right", "status/Switch force on", 12);
   rig.tap_key("Return");
-  rig.look_until("the force is on", [](const Sight& now) { return now.state() == "active"; });
+  rig.wait_until("the force is on", [](const Sight& now) { return now.state() == "active"; });
   CHECK(rig.look().with_keyboard() == "status/Force is on");
   rig.tap_key("Escape");
-  rig.look_until("it is off", [](const Sight& now) { return now.state() == "ready"; });
+  rig.wait_until("it is off", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().with_keyboard() == "status/Switch force on");
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("the space bar stops the force and does not press the focused control"
   go_to_part(rig, "scope");
   go_to(rig, "Right", "scope/Signals", 12);
   rig.tap_key("space");
-  rig.look_until("the force is off", [](const Sight& now) { return now.state() == "ready"; });
+  rig.wait_until("the force is off", [](const Sight& now) { return now.state() == "ready"; });
   CHECK_FALSE(rig.look().has("scope/search"));
   CHECK(rig.look().with_keyboard() == "scope/Signals");
 
@@ -181,7 +181,7 @@ TEST_CASE("the page of keys is whole in the smallest window") {
   rig.resize(900, 560);
   rig.tap_key("F1");
   const auto close =
-      rig.look_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
+      rig.wait_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
           .item("Keys and mouse/Close");
   CHECK(close.y + close.height < 550);  // no scrolling is needed
   CHECK(rig.look().says("Choose signals and plot type"));

@@ -39,7 +39,7 @@ Sight lay_over(WindowRig& rig, const std::string& file) {
   rig.click("replay/Overlay");
   rig.enter("choose a file/path", file);
   rig.click("choose a file/Overlay");
-  return rig.look_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
+  return rig.wait_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
 }
 
 /// Returns a picture of the window with no item under the mouse.
@@ -73,7 +73,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   write_swing(soft, 3);
   write_swing(stiff, 7);
   WindowRig rig({"--layout", "contact", "replay", soft});
-  rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
+  rig.wait_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
   const Image alone = picture_of(rig);
   REQUIRE(changed_in_plots(rig, alone, picture_of(rig)) == 0);
 
@@ -84,7 +84,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
 
   rig.click("replay/over");
   rig.click("##Combo_00/Remove overlay");
-  rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Overlay"); });
+  rig.wait_until("it is away", [](const Sight& now) { return now.has("replay/Overlay"); });
   CHECK(changed_in_plots(rig, alone, picture_of(rig)) < of_a_sample);
 
   const auto position = [](const Sight& sight) {
@@ -96,7 +96,7 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   const std::string at_the_end = position(rig.look());
   REQUIRE(!at_the_end.empty());
   rig.tap_key("shift+Left");  // the replay bar was clicked last and has the keyboard focus
-  rig.look_until("the position is another", [&](const Sight& now) { return position(now) != at_the_end; });
+  rig.wait_until("the position is another", [&](const Sight& now) { return position(now) != at_the_end; });
 }
 
 TEST_CASE("two recordings of the same name in the window are told apart by their folders") {

@@ -79,7 +79,7 @@ WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
-  look_until("the device is ready and has the parameters",
+  wait_until("the device is ready and has the parameters",
              [](const Sight& sight) { return sight.state() == "ready" && sight.applied_at_periods() != 0; });
 }
 
@@ -98,12 +98,12 @@ json WindowRig::ask(const std::string& question) {
 
 Sight WindowRig::look() { return {ask("look")}; }
 
-Sight WindowRig::look_until(const std::string& what, const std::function<bool(const Sight&)>& condition) {
-  const auto give_up_at = std::chrono::steady_clock::now() + patience;
+Sight WindowRig::wait_until(const std::string& what, const std::function<bool(const Sight&)>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   for (;;) {
     Sight sight = look();
     if (condition(sight)) return sight;
-    if (std::chrono::steady_clock::now() > give_up_at)
+    if (std::chrono::steady_clock::now() > deadline)
       throw std::runtime_error(fmt::format("It did not come to this: {}. The window is {} and says {}", what,
                                            sight.state(), sight.all["texts"].dump()));
     std::this_thread::sleep_for(20ms);
@@ -144,7 +144,7 @@ void WindowRig::click(Point point) {
 }
 
 void WindowRig::click(const std::string& item) {
-  const auto sight = look_until(item + " can be clicked", [&](const Sight& now) { return now.can_click(item); });
+  const auto sight = wait_until(item + " can be clicked", [&](const Sight& now) { return now.can_click(item); });
   click(sight.item(item).centre());
 }
 
@@ -193,7 +193,7 @@ void WindowRig::set_keyboard_layout(const std::string& layout) {
 
 void WindowRig::switch_force_on() {
   click("status/Switch force on");
-  look_until("the force is on", [](const Sight& sight) { return sight.state() == "active"; });
+  wait_until("the force is on", [](const Sight& sight) { return sight.state() == "active"; });
 }
 
 device::Vector3 WindowRig::true_probe_m() {

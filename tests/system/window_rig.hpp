@@ -68,7 +68,7 @@ class WindowRig {
   /// Returns a frame that started after all events.
   Sight look();
   /// Waits until a frame satisfies the condition; throws after a long time limit.
-  Sight look_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
+  Sight wait_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
   Image picture();
   void picture(const std::string& file);
 

@@ -28,7 +28,7 @@ const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; 
 void change_and_wait(WindowRig& rig, const std::function<void()>& change) {
   const auto before = rig.look().applied_at_periods();
   change();
-  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
 }
 
 /// Returns the device's value at the end of the test, after all pending changes.
@@ -48,7 +48,7 @@ TEST_CASE("a number is not sent while it is typed, but when Enter ends it") {
   rig.control.resume();
   CHECK(rig.look().applied_at_periods() == before);
   rig.press_key("Return");
-  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
   CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("Escape gives back the value that was there, sends nothing, and switch
   rig.switch_force_on();
   rig.enter(stiffness, "1500");
   rig.press_key("Escape");
-  rig.look_until("the force is off", force_is_off);
+  rig.wait_until("the force is off", force_is_off);
   CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
 }
 
@@ -95,11 +95,11 @@ TEST_CASE("what is no number, or out of range, leaves the old value and is told"
       {"inf", "inf is outside its range"},
   };
   const auto before = rig.look().applied_at_periods();
-  for (const auto& [typed, told] : slips) {
+  for (const auto& [typed, message] : slips) {
     rig.enter(stiffness, typed);
     rig.press_key("Return");
-    rig.look_until(fmt::format("'{}' is told", typed),
-                   [&](const Sight& now) { return now.says(told) && now.says("keeps its old value"); });
+    rig.wait_until(fmt::format("'{}' is told", typed),
+                   [&](const Sight& now) { return now.says(message) && now.says("keeps its old value"); });
     CHECK(rig.look().applied_at_periods() == before);
   }
   CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
@@ -110,7 +110,7 @@ TEST_CASE("a value that the device refuses leaves the old one") {
   const auto upper_m = WindowRig::parameters_at_start()[Parameter::box_maximum_x_m];
   rig.enter("tuning/box_minimum_x_m", std::to_string(upper_m + 0.1f));
   rig.press_key("Return");
-  rig.look_until("it is told", [](const Sight& now) { return now.says("box_minimum_x_m"); });
+  rig.wait_until("it is told", [](const Sight& now) { return now.says("box_minimum_x_m"); });
   rig.control.run(0.1);
   rig.control.resume();
   CHECK(rig.close_and_read_parameters() == WindowRig::parameters_at_start());
@@ -127,7 +127,7 @@ TEST_CASE("space is a space while a text is typed; Escape and F12 switch the for
     rig.control.resume();
     CHECK(rig.look().state() == "active");
     rig.press_key(key);
-    rig.look_until("the force is off", force_is_off);
+    rig.wait_until("the force is off", force_is_off);
   }
 }
 
@@ -167,9 +167,9 @@ TEST_CASE("a page lists the keys") {
   for (const auto& [way, open] : ways) {
     CAPTURE(way);
     open();
-    rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off at any time"); });
+    rig.wait_until("it is there", [](const Sight& now) { return now.says("Switch the force off at any time"); });
     rig.click("Keys and mouse/Close");
-    rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off at any time"); });
+    rig.wait_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off at any time"); });
   }
 }
 
@@ -177,7 +177,7 @@ TEST_CASE("the scene says why no wall pushes back, and has the button for it") {
   WindowRig rig;
   REQUIRE(rig.look().says("The force is off: walls do not push back."));
   rig.click("scene/Switch force on");
-  rig.look_until("the force is on", force_is_on);
+  rig.wait_until("the force is on", force_is_on);
   CHECK_FALSE(rig.look().says("The force is off"));
 }
 
@@ -188,16 +188,16 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.enter("recording/file", directory.file("push.h5"));
   rig.click("recording/Start recording");
   rig.click("tabs/Tuning");
-  rig.look_until("the tab shows its time", [](const Sight& now) { return now.says("0:0"); });
+  rig.wait_until("the tab shows its time", [](const Sight& now) { return now.says("0:0"); });
   rig.click("tabs/Recording");
   rig.click("recording/Stop recording");
-  rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
+  rig.wait_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
 
   const auto asks = [](const Sight& now) { return now.has("force before replay/Cancel"); };
   const auto ask_with_force = [&] {
     rig.switch_force_on();
     rig.click("recording/Replay last recording");
-    rig.look_until("it asks", asks);
+    rig.wait_until("it asks", asks);
   };
   const auto check_no_replay = [&] {
     rig.control.run(0.1);  // time for the replay to start
@@ -206,26 +206,26 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   };
   ask_with_force();
   rig.click("status/STOP");  // does not answer the question
-  rig.look_until("the force is off", force_is_off);
+  rig.wait_until("the force is off", force_is_off);
   check_no_replay();
   CHECK(asks(rig.look()));
   rig.click("force before replay/Cancel");
 
   ask_with_force();
   rig.press_key("Escape");  // answers no
-  rig.look_until("the force is off", force_is_off);
+  rig.wait_until("the force is off", force_is_off);
   CHECK_FALSE(asks(rig.look()));
   check_no_replay();
 
   ask_with_force();
   rig.click("force before replay/Cancel");
-  rig.look_until("the question is gone", [&](const Sight& now) { return !asks(now); });
+  rig.wait_until("the question is gone", [&](const Sight& now) { return !asks(now); });
   check_no_replay();
   CHECK(rig.look().state() == "active");
 
   rig.click("recording/Replay last recording");
   rig.click("force before replay/Stop and replay");
-  const auto replay = rig.look_until("the replay says what it is", [](const Sight& now) { return now.says("REPLAY"); });
+  const auto replay = rig.wait_until("the replay says what it is", [](const Sight& now) { return now.says("REPLAY"); });
   CHECK(replay.state() == "ready");
   CHECK_FALSE(replay.can_click("status/Switch force on"));  // impossible during a replay
   CHECK_FALSE(replay.has("scene/Switch force on"));
@@ -235,10 +235,10 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
 
   RunningProgram other_program(
       {build_directory() + "/inkwell", "force", "on", "--take-over", "--usbip", rig.board.usbip().text()});
-  rig.look_until("the force is on", force_is_on);
-  rig.look_until("it is told", [](const Sight& now) { return now.says("The window shows a recording"); });
+  rig.wait_until("the force is on", force_is_on);
+  rig.wait_until("it is told", [](const Sight& now) { return now.says("The window shows a recording"); });
   rig.click("status/STOP");
-  rig.look_until("the force is off", force_is_off);
+  rig.wait_until("the force is off", force_is_off);
 }
 
 TEST_CASE("a banner that comes while the mouse drags moves nothing before the mouse lets go") {
@@ -247,12 +247,12 @@ TEST_CASE("a banner that comes while the mouse drags moves nothing before the mo
   rig.drag(view.at(0.85, 0.3), view.at(0.8, 0.4));
   rig.control.supply(6.0);
   const auto in_fault =
-      rig.look_until("the fault is told", [](const Sight& now) { return now.has("banner/Clear fault"); });
+      rig.wait_until("the fault is told", [](const Sight& now) { return now.has("banner/Clear fault"); });
   CHECK(in_fault.item("scene/view").y == view.y);
   CHECK(in_fault.item("scene/view").height == view.height);
   CHECK(in_fault.item("banner/Clear fault").y > view.y);
   rig.release_mouse();
-  rig.look_until("there is room for it", [&](const Sight& now) { return now.item("scene/view").y > view.y + 20; });
+  rig.wait_until("there is room for it", [&](const Sight& now) { return now.item("scene/view").y > view.y + 20; });
 }
 
 TEST_CASE("what the proxy is, is told where it is drawn") {
@@ -261,7 +261,7 @@ TEST_CASE("what the proxy is, is told where it is drawn") {
   const auto right = sight.item("scene/box_maximum_x_m").centre(), sphere = sight.item("scene/sphere").centre();
   CHECK_FALSE(sight.has("scene/proxy"));
   rig.drag(sphere, {right.x + 40, sphere.y - 40}, 16);
-  rig.look_until("the sphere is in the wall", [](const Sight& now) { return now.has("scene/proxy"); });
+  rig.wait_until("the sphere is in the wall", [](const Sight& now) { return now.has("scene/proxy"); });
   rig.release_mouse();
   rig.control.run(0.3);
   rig.control.resume();
@@ -270,5 +270,5 @@ TEST_CASE("what the proxy is, is told where it is drawn") {
   rig.control.pause();
   rig.release_mouse();
   rig.move_to(rig.look().item("scene/proxy").centre());
-  rig.look_until("it is told", [](const Sight& now) { return now.says("A virtual spring connects the proxy"); });
+  rig.wait_until("it is told", [](const Sight& now) { return now.says("A virtual spring connects the proxy"); });
 }

@@ -17,20 +17,20 @@ const auto says = [](const std::string& words) { return [words](const Sight& now
 
 /// The window sends one value at its start. The preset increases the number of values to three.
 void make_stiff(WindowRig& rig) {
-  rig.look_until("one value waits", says("1 value is not stored"));
+  rig.wait_until("one value waits", says("1 value is not stored"));
   rig.click("tuning/Stiff");
-  rig.look_until("three values wait", says("3 values are not stored"));
+  rig.wait_until("three values wait", says("3 values are not stored"));
 }
 
 void store(WindowRig& rig) {
   rig.click("tuning/Store on board");
-  rig.look_until("they are stored", says("All values are stored"));
+  rig.wait_until("they are stored", says("All values are stored"));
 }
 
 /// Restarts the board as after a power cut, with the arm in its inkwell.
 void restart(WindowRig& rig) {
   rig.control.reset();
-  rig.look_until("the window is connected again",
+  rig.wait_until("the window is connected again",
                  [](const Sight& now) { return now.state() == "ready" && now.says("Reconnected"); });
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("values that are not stored are counted; stored by a button, they outl
   CHECK_FALSE(rig.look().has("tabs/values to store"));
   restart(rig);
   CHECK(rig.look().says("No value has changed since the last connection."));
-  rig.look_until("that is not told for ever", [](const Sight& now) { return !now.says("Reconnected"); });
+  rig.wait_until("that is not told for ever", [](const Sight& now) { return !now.says("Reconnected"); });
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
@@ -62,30 +62,30 @@ TEST_CASE("nothing is stored or forgotten while the force is on, and the window 
   make_stiff(rig);
   rig.switch_force_on();
   const std::string why = "The values can be stored once the force is off.";
-  const auto sight = rig.look_until("it says why", says(why));
+  const auto sight = rig.wait_until("it says why", says(why));
   CHECK_FALSE(sight.can_click("tuning/Store on board"));
   CHECK_FALSE(sight.can_click("tuning/Factory reset"));
   rig.press_key("F12");
-  rig.look_until("it can be stored", [](const Sight& now) { return now.can_click("tuning/Store on board"); });
+  rig.wait_until("it can be stored", [](const Sight& now) { return now.can_click("tuning/Store on board"); });
   CHECK_FALSE(rig.look().says(why));
 }
 
 TEST_CASE("the stored values are given back by a question, as one step that can be undone") {
   WindowRig rig;
-  rig.look_until("one value waits", says("1 value is not stored"));
+  rig.wait_until("one value waits", says("1 value is not stored"));
   CHECK_FALSE(rig.look().can_click("tuning/Restore"));  // nothing is stored
   store(rig);
   rig.click("tuning/Stiff");
-  rig.look_until("two values wait", says("2 values are not stored"));
+  rig.wait_until("two values wait", says("2 values are not stored"));
   rig.click("tuning/Restore");
   CHECK(rig.look().says("Wall stiffness: 1500 N/m, stored: 800"));
   rig.click("restore stored values/Cancel");
   CHECK(rig.look().says("2 values are not stored"));
   rig.click("tuning/Restore");
   rig.click("restore stored values/Restore");
-  rig.look_until("they are given back", says("All values are stored"));
+  rig.wait_until("they are given back", says("All values are stored"));
   rig.click("tuning/Undo");
-  rig.look_until("the step is undone", says("2 values are not stored"));
+  rig.wait_until("the step is undone", says("2 values are not stored"));
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a factory reset asks first, then forgets what is stored and gives the
   CHECK(rig.look().says("All values are stored"));
   rig.click("tuning/Factory reset");
   rig.click("factory reset/Erase and reset");
-  rig.look_until("the board has forgotten", says("All values are defaults"));
+  rig.wait_until("the board has forgotten", says("All values are defaults"));
   CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
 }
 
@@ -110,16 +110,16 @@ TEST_CASE("a question about a device that goes away goes with it") {
   rig.click("tuning/Soft");
   const auto go_away_and_come = [&](const std::string& button, const std::string& question) {
     rig.click(button);
-    rig.look_until("it asks", [&](const Sight& now) { return now.has(question + "/Cancel"); });
+    rig.wait_until("it asks", [&](const Sight& now) { return now.has(question + "/Cancel"); });
     rig.control.usb(false);
-    rig.look_until("it does not ask any more", [&](const Sight& now) { return !now.has(question + "/Cancel"); });
+    rig.wait_until("it does not ask any more", [&](const Sight& now) { return !now.has(question + "/Cancel"); });
     rig.control.usb(true);
-    rig.look_until("the window is connected again", [](const Sight& now) { return now.state() == "ready"; });
+    rig.wait_until("the window is connected again", [](const Sight& now) { return now.state() == "ready"; });
   };
   go_away_and_come("tuning/Factory reset", "factory reset");
   go_away_and_come("tuning/Restore", "restore stored values");
   rig.click("tuning/Viscous");  // an open question would block the mouse
-  rig.look_until("it is chosen", [](const Sight& now) { return now.applied_at_periods() != 0; });
+  rig.wait_until("it is chosen", [](const Sight& now) { return now.applied_at_periods() != 0; });
 }
 
 TEST_CASE("after a loss of power the window lists what is not as before, and sends it only when asked") {
@@ -135,7 +135,7 @@ TEST_CASE("after a loss of power the window lists what is not as before, and sen
   CHECK(rig.look().applied_at_periods() == 0);
   SUBCASE("the old ones") {
     rig.click("returned/Restore old values");
-    rig.look_until("nothing is left to say", [](const Sight& now) { return !now.has("returned/Keep new values"); });
+    rig.wait_until("nothing is left to say", [](const Sight& now) { return !now.has("returned/Keep new values"); });
     CHECK(rig.look().applied_at_periods() != 0);
     CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
   }
@@ -150,9 +150,9 @@ TEST_CASE("a cable that was out changes nothing, and the window says so") {
   WindowRig rig;
   make_stiff(rig);
   rig.control.usb(false);
-  rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
+  rig.wait_until("the window notices", [](const Sight& now) { return !now.connected(); });
   rig.control.usb(true);
-  rig.look_until("it says so", says("No value has changed since the last connection."));
+  rig.wait_until("it says so", says("No value has changed since the last connection."));
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
@@ -160,13 +160,13 @@ TEST_CASE("a guide ends by offering to store what it has changed") {
   WindowRig rig;
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");
-  rig.look_until("the guide has finished", [&](const Sight& now) {
+  rig.wait_until("the guide has finished", [&](const Sight& now) {
     if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
     return now.has("guides/Apply");
   });
   CHECK_FALSE(rig.look().has("guides/Store on board"));
   rig.click("guides/Apply");
-  rig.look_until("it offers to store", says("The values are lost at power-off unless you store them."));
+  rig.wait_until("it offers to store", says("The values are lost at power-off unless you store them."));
   rig.click("guides/Store on board");
-  rig.look_until("it is stored", says("The values are stored on the board."));
+  rig.wait_until("it is stored", says("The values are stored on the board."));
 }

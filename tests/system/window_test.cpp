@@ -43,7 +43,7 @@ void drag_through_the_right_wall(WindowRig& rig) {
   const auto left = sight.item("scene/box_minimum_x_m").centre(), right = sight.item("scene/box_maximum_x_m").centre();
   const Point middle{0.5 * (left.x + right.x), 0.5 * (left.y + right.y)};
   rig.drag(sight.item("scene/sphere").centre(), middle, 12);
-  rig.look_until("the sphere has come to the middle", [&](const Sight& now) {
+  rig.wait_until("the sphere has come to the middle", [&](const Sight& now) {
     return std::abs(now.item("scene/sphere").x - middle.x) < 20 && std::abs(now.item("scene/sphere").y - middle.y) < 20;
   });
   for (int step = 1; step <= 16; ++step)
@@ -66,7 +66,7 @@ TEST_CASE("the window draws the box and the sphere, and no wall pushes while the
 TEST_CASE("with the force off the mouse drags the sphere through a wall") {
   WindowRig rig;
   drag_through_the_right_wall(rig);
-  rig.look_until("the sphere is behind the wall", [&](const Sight&) { return rig.true_probe_m()[0] > wall_x_m; });
+  rig.wait_until("the sphere is behind the wall", [&](const Sight&) { return rig.true_probe_m()[0] > wall_x_m; });
   CHECK(count(scene_of(rig), colours::wall_touched) == 0);
 }
 
@@ -74,7 +74,7 @@ TEST_CASE("with the force on the hand goes on, the sphere stays at the wall, and
   WindowRig rig;
   rig.switch_force_on();
   drag_through_the_right_wall(rig);
-  rig.look_until("the hand is behind the wall", [&](const Sight&) { return hand_target_x_m(rig) > wall_x_m + 0.004; });
+  rig.wait_until("the hand is behind the wall", [&](const Sight&) { return hand_target_x_m(rig) > wall_x_m + 0.004; });
   rig.control.run(0.5);  // the arm comes to rest
   const double probe_x_m = rig.true_probe_m()[0];
   CHECK(probe_x_m > wall_x_m - radius_m);          // in contact with the wall

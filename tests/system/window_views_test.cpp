@@ -27,7 +27,7 @@ void change_stiffness(WindowRig& rig, const std::string& value) {
   rig.click("tabs/Tuning");
   rig.enter("tuning/wall_stiffness_N_per_m", value);
   rig.press_key("Return");
-  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.wait_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
 }
 
 }  // namespace
@@ -39,14 +39,14 @@ TEST_CASE("what happens is logged, saved as text, and noted in a recording at th
   rig.click("tabs/Recording");
   rig.enter("recording/file", file);
   rig.click("recording/Start recording");
-  rig.look_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
+  rig.wait_until("it records", [](const Sight& now) { return now.has("recording/Stop recording"); });
   rig.control.run(0.2);
   rig.control.resume();
   change_stiffness(rig, "600");
   const auto applied_at_periods = rig.look().applied_at_periods();
   rig.switch_force_on();
   rig.click("tabs/Log");
-  rig.look_until("the change is told",
+  rig.wait_until("the change is told",
                  [](const Sight& now) { return now.says("wall_stiffness_N_per_m = 600.0, was 800.0"); });
   CHECK(rig.look().says("The force is on."));
   CHECK(rig.look().says("Connected to the simulation"));
@@ -54,13 +54,13 @@ TEST_CASE("what happens is logged, saved as text, and noted in a recording at th
   rig.click("log/Save as text");
   rig.enter("choose a file/path", directory.file("log.txt"));
   rig.click("choose a file/Save");
-  rig.look_until("the dialog is over", [](const Sight& now) { return !now.has("choose a file/Save"); });
+  rig.wait_until("the dialog is over", [](const Sight& now) { return !now.has("choose a file/Save"); });
   CHECK(content_of(directory.file("log.txt")).find("parameter   wall_stiffness_N_per_m = 600.0, was 800.0") !=
         std::string::npos);
 
   rig.click("tabs/Recording");
   rig.click("recording/Stop recording");
-  rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
+  rig.wait_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
   const auto marks = recording::read(file).marks;
   const auto change = std::ranges::find(marks, device::EventKind::parameter, &recording::Mark::kind);
   REQUIRE(change != marks.end());
@@ -77,30 +77,30 @@ TEST_CASE("a signal is found by a word and dragged into a plot, and a formula is
   rig.click("scope/Signals");
   rig.enter("scope/search", "supply");
   const auto row =
-      rig.look_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); }).item("scope/supply_V");
+      rig.wait_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); }).item("scope/supply_V");
   const auto plots = rig.look().item("scope/Position");
   CHECK_FALSE(rig.look().says("supply"));
   rig.drag(row.centre(), {plots.x + 120, plots.y + 80});
   rig.release_mouse();
-  rig.look_until("it is in the plot's legend", [](const Sight& now) { return now.says("supply"); });
+  rig.wait_until("it is in the plot's legend", [](const Sight& now) { return now.says("supply"); });
 
   rig.click("scope/New formula");
   rig.enter("formula/formula", "force_N +");
-  rig.look_until("it is refused", [](const Sight& now) { return now.says("formula is incomplete"); });
+  rig.wait_until("it is refused", [](const Sight& now) { return now.says("formula is incomplete"); });
   CHECK_FALSE(rig.look().can_click("formula/Draw signal"));
   rig.enter("formula/formula", "force_x_N - force_y_N");
   rig.enter("formula/name of formula", "difference_N");
-  rig.look_until("it has a unit", [](const Sight& now) { return now.says("Unit of the plot: N."); });
+  rig.wait_until("it has a unit", [](const Sight& now) { return now.says("Unit of the plot: N."); });
   rig.click("formula/Draw signal");
-  rig.look_until("it has a plot", [](const Sight& now) { return now.has("scope/difference_N"); });
+  rig.wait_until("it has a plot", [](const Sight& now) { return now.has("scope/difference_N"); });
 }
 
 TEST_CASE("where nothing answers at the address that was given, the window says so") {
   WindowRig rig;
   rig.control.usb(false);
-  rig.look_until("no arm is there", [](const Sight& now) { return now.says("No arm was found"); });
+  rig.wait_until("no arm is there", [](const Sight& now) { return now.says("No arm was found"); });
   rig.control.quit();
-  rig.look_until("nobody answers", [answer = "No program answers at " + rig.board.usbip().text()](const Sight& now) {
+  rig.wait_until("nobody answers", [answer = "No program answers at " + rig.board.usbip().text()](const Sight& now) {
     return now.says(answer);
   });
 }
@@ -108,10 +108,10 @@ TEST_CASE("where nothing answers at the address that was given, the window says 
 TEST_CASE("where there is no device, a button starts a virtual one") {
   WindowRig rig;
   rig.control.usb(false);
-  rig.look_until("it is offered", [](const Sight& now) { return now.can_click("connection/Start virtual board"); });
+  rig.wait_until("it is offered", [](const Sight& now) { return now.can_click("connection/Start virtual board"); });
   for (int step = 0; step < 12 && rig.look().with_keyboard() != "connection/Start virtual board"; ++step)
     rig.tap_key("ctrl+Tab");
   rig.tap_key("Return");
-  rig.look_until("its arm is there", [](const Sight& now) { return now.state() == "ready"; });
+  rig.wait_until("its arm is there", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().connected());
 }

@@ -11,7 +11,7 @@ constexpr std::uint32_t loader_stack = sram_base + 0x2000;
 /// Main loop of the loader: requests an order, executes it, and repeats. R0 contains LoaderOrder::Kind, R1 the address,
 /// R2 the word or the address of the data, and R3 the number of words.
 constexpr std::uint16_t hands[] = {
-    0xF240, 0x1001,  // ask: movw r0, #semihosting_ask_for_order
+    0xF240, 0x1001,  // ask: movw r0, #semihosting_poll_order
     0xBEAB,          // bkpt 0xAB
     0x4C0E,          // ldr r4, =FLASH_SR
     0x2801,          // cmp r0, #store

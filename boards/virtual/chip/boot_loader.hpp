@@ -15,7 +15,7 @@ inline constexpr std::uint32_t loader_entry = system_base + 8, loader_buffer = s
 
 /// Semihosting call by which the loader requests an order. Arm reserves this number for applications. R0 returns
 /// LoaderOrder::Kind, R1 the address, R2 the word or the address of the data, and R3 the number of words.
-inline constexpr std::uint32_t semihosting_ask_for_order = 0x101;
+inline constexpr std::uint32_t semihosting_poll_order = 0x101;
 
 /// Writes the boot loader to the beginning of the system memory.
 void put_boot_loader(std::uint8_t* system, std::uint32_t crystal_Hz);

@@ -116,10 +116,10 @@ class Can final : public RegisterBlock, public Freezable {
       // RQCP also clears the result flags; ABRQ aborts a frame without acknowledgment.
       if (can.tsr.rqcp.in(value, i))
         word(can.tsr) &= ~(can.tsr.txok.mask(i) | can.tsr.alst.mask(i) | can.tsr.terr.mask(i));
-      if (can.tsr.abrq.in(value, i)) give_up(i);
+      if (can.tsr.abrq.in(value, i)) abort_mailbox(i);
     }
   }
-  void give_up(unsigned mailbox) {
+  void abort_mailbox(unsigned mailbox) {
     if (can.tsr.tme.in(word(can.tsr), mailbox)) return;
     word(can.tsr) |= can.tsr.tme.mask(mailbox) | can.tsr.rqcp.mask(mailbox);
     word(can.tir + mailbox * can.tir.stride) &= ~can.tir.txrq.mask();
@@ -160,7 +160,7 @@ class Can final : public RegisterBlock, public Freezable {
     const auto sent = [&](const auto& registers) { return word(registers + mailbox * registers.stride); };
     CanFrame frame{sent(can.tir) & ~can.tir.txrq.mask(), can.tdtr.dlc.of(sent(can.tdtr)), sent(can.tdlr),
                    sent(can.tdhr)};
-    give_up(mailbox);
+    abort_mailbox(mailbox);
     word(can.tsr) |= can.tsr.txok.mask(mailbox);
     const auto match = filters_.match(frame.identifier, number_);
     if (!match) return;
@@ -175,13 +175,13 @@ class Can final : public RegisterBlock, public Freezable {
     errors = can.esr.lec.with(no_acknowledgement) | can.esr.tec.with(count) | can.esr.ewgf.with(count >= warning) |
              can.esr.epvf.with(count >= passive);
     const std::uint32_t enables = word(can.ier);
-    const bool told = can.ier.lecie.in(enables) || (can.ier.ewgie.in(enables) && count == warning) ||
-                      (can.ier.epvie.in(enables) && count == passive);
-    if (told && can.ier.errie.in(enables)) word(can.msr) |= can.msr.erri.mask();
+    const bool is_enabled = can.ier.lecie.in(enables) || (can.ier.ewgie.in(enables) && count == warning) ||
+                            (can.ier.epvie.in(enables) && count == passive);
+    if (is_enabled && can.ier.errie.in(enables)) word(can.msr) |= can.msr.erri.mask();
     if (!can.mcr.nart.in(word(can.mcr))) return;
     for (unsigned i = 0; i < 3; ++i)
       if (!can.tsr.tme.in(word(can.tsr), i)) {
-        give_up(i);
+        abort_mailbox(i);
         word(can.tsr) |= can.tsr.terr.mask(i);
         return;
       }
@@ -190,14 +190,14 @@ class Can final : public RegisterBlock, public Freezable {
     const std::uint32_t enables = word(can.ier), status = word(can.msr);
     machine_.nvic.set_source(first_position_, 0,
                              can.ier.tmeie.in(enables) && (word(can.tsr) & can.tsr.rqcp.masks()) != 0);
-    const std::array told_by_fifo{std::array{&can.ier.fmpie0, &can.ier.ffie0, &can.ier.fovie0},
-                                  std::array{&can.ier.fmpie1, &can.ier.ffie1, &can.ier.fovie1}};
+    const std::array enabled_by_fifo{std::array{&can.ier.fmpie0, &can.ier.ffie0, &can.ier.fovie0},
+                                     std::array{&can.ier.fmpie1, &can.ier.ffie1, &can.ier.fovie1}};
     for (unsigned i = 0; i < 2; ++i) {
       const std::uint32_t fifo = fifos_[i].status();
-      const bool told = (told_by_fifo[i][0]->in(enables) && can.rfr.fmp.in(fifo)) ||
-                        (told_by_fifo[i][1]->in(enables) && can.rfr.full.in(fifo)) ||
-                        (told_by_fifo[i][2]->in(enables) && can.rfr.fovr.in(fifo));
-      machine_.nvic.set_source(first_position_ + 1 + i, 0, told);
+      const bool is_enabled = (enabled_by_fifo[i][0]->in(enables) && can.rfr.fmp.in(fifo)) ||
+                              (enabled_by_fifo[i][1]->in(enables) && can.rfr.full.in(fifo)) ||
+                              (enabled_by_fifo[i][2]->in(enables) && can.rfr.fovr.in(fifo));
+      machine_.nvic.set_source(first_position_ + 1 + i, 0, is_enabled);
     }
     machine_.nvic.set_source(first_position_ + 3, 0,
                              can.msr.erri.in(status) || (can.ier.wkuie.in(enables) && can.msr.wkui.in(status)) ||

@@ -106,7 +106,7 @@ std::uint64_t Chip::flash_operations() const { return parts_->flash.operations()
 void Chip::set_supply_V(double volts) {
   auto& machine = parts_->machine;
   machine.supply_V = machine.analog_supply_V = volts;
-  machine.power->look_at_supply();
+  machine.power->update_supply();
   const auto threshold = parts_->flash.brown_out();
   const bool was_low = machine.supply_is_low;
   machine.supply_is_low = volts < (was_low ? threshold.rising_V : threshold.falling_V);

@@ -19,11 +19,11 @@ bool Processor::divides_by_zero(std::uint32_t address) const {
 
 bool Processor::has_new_divides(const BlockPrice& block) {
   for (const auto& divide : block.divides)
-    if (divides_asked_about_.insert(divide.address).second) new_divides_.push_back(divide.address);
+    if (hooked_divides_.insert(divide.address).second) new_divides_.push_back(divide.address);
   return !new_divides_.empty();
 }
 
-void Processor::ask_about_new_divides() {
+void Processor::hook_new_divides() {
   for (const std::uint32_t address : std::exchange(new_divides_, {})) {
     uc_hook hook = 0;
     uc_hook_add(engine_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(divide_hook), this, address, address);

@@ -49,7 +49,7 @@ constexpr unsigned position_of(unsigned number, unsigned stream) {
 }
 
 template <std::size_t n>
-bool ask(Dma& controllers, const Request (&requests)[n], unsigned peripheral, unsigned source) {
+bool request_stream(Dma& controllers, const Request (&requests)[n], unsigned peripheral, unsigned source) {
   for (const auto& r : requests)
     if (r.peripheral == peripheral && r.source == source &&
         controllers.controller(r.controller).request(r.stream, r.channel))
@@ -209,14 +209,20 @@ void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
 
 Dma::Dma(Machine& machine, Bus& bus) : first_(machine, bus, 1), second_(machine, bus, 2) { machine.dma = this; }
 
-bool Dma::adc_request(unsigned index) { return ask(*this, adc_requests, index, 0); }
+bool Dma::adc_request(unsigned index) { return request_stream(*this, adc_requests, index, 0); }
 bool Dma::interrupts_for_adc(unsigned index) const {
   return std::ranges::any_of(adc_requests, [&](const Request& r) {
     return r.peripheral == index && (r.controller == 1 ? first_ : second_).interrupts_for(r.stream, r.channel);
   });
 }
-bool Dma::timer_request(unsigned timer, unsigned source) { return ask(*this, timer_requests, timer, source); }
-bool Dma::spi_request(unsigned number, bool transmit) { return ask(*this, spi_requests, number, transmit ? 1 : 0); }
-bool Dma::usart_request(unsigned number, bool transmit) { return ask(*this, usart_requests, number, transmit ? 1 : 0); }
+bool Dma::timer_request(unsigned timer, unsigned source) {
+  return request_stream(*this, timer_requests, timer, source);
+}
+bool Dma::spi_request(unsigned number, bool transmit) {
+  return request_stream(*this, spi_requests, number, transmit ? 1 : 0);
+}
+bool Dma::usart_request(unsigned number, bool transmit) {
+  return request_stream(*this, usart_requests, number, transmit ? 1 : 0);
+}
 
 }  // namespace inkwell::virtual_board

@@ -105,8 +105,8 @@ Stop Execution::run_slices(Ticks when) {
     if (state_ == State::locked_up && timeline.now() >= when) return Stop::locked_up;
     if (timeline.now() >= when) return Stop::time_reached;
 
-    if (core_stands()) {
-      stand_until(when, machine_.clock_is_lost ? never : machine_.core_stalls_until);
+    if (core_is_stalled()) {
+      stall_until(when, machine_.clock_is_lost ? never : machine_.core_stalls_until);
       continue;
     }
     if (state_ != State::runs) {
@@ -122,7 +122,7 @@ Stop Execution::run_slices(Ticks when) {
     // While the flash is busy, its vectors and instructions cannot be read. The end of the flash operation is a wake
     // event.
     if (machine_.flash->busy() && Processor::is_in_flash(system_control_.vector_table())) {
-      stand_until(when, never);
+      stall_until(when, never);
       continue;
     }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
@@ -134,11 +134,11 @@ Stop Execution::run_slices(Ticks when) {
     }
     if (state_ != State::runs) continue;
     if (processor_.waits_for_flash()) {
-      stand_until(when, never);
+      stall_until(when, never);
       continue;
     }
-    if (thread_stands()) {
-      stand_until(when, machine_.thread_stalls_until);
+    if (thread_is_stalled()) {
+      stall_until(when, machine_.thread_stalls_until);
       continue;
     }
 
@@ -166,7 +166,7 @@ bool Execution::wakes() const {
 }
 
 // Only the core stops. The cycle counter continues while its clock runs and no debug probe halts the core.
-void Execution::stand_until(Ticks when, Ticks goes_on_at) {
+void Execution::stall_until(Ticks when, Ticks goes_on_at) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
   Ticks to = std::min({when, goes_on_at, machine_.last_advance + Machine::advance_period});
@@ -280,7 +280,7 @@ void Execution::handle_breakpoint() {
     return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
   }
   const std::uint32_t operation = processor_.read(UC_ARM_REG_R0);
-  if (operation == semihosting_ask_for_order && address - system_base < system_bytes) {
+  if (operation == semihosting_poll_order && address - system_base < system_bytes) {
     order_boot_loader();
     return processor_.set_program_counter(address + 2);
   }

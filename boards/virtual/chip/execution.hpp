@@ -50,13 +50,15 @@ class Execution {
   void reset_if_requested();
   void take_exception();
   void sleep_until(Ticks when);
-  bool core_stands() const { return machine_.clock_is_lost || machine_.core_stalls_until > machine_.timeline.now(); }
-  bool thread_stands() const {
+  bool core_is_stalled() const {
+    return machine_.clock_is_lost || machine_.core_stalls_until > machine_.timeline.now();
+  }
+  bool thread_is_stalled() const {
     return machine_.thread_stalls_until > machine_.timeline.now() && processor_.is_in_thread() &&
            processor_.masks().are_open();
   }
   /// Stops the core until `goes_on_at`, or for a limited time if `goes_on_at` is `never`.
-  void stand_until(Ticks when, Ticks goes_on_at);
+  void stall_until(Ticks when, Ticks goes_on_at);
   bool wakes() const;
   void handle(Outcome outcome);
   void handle_breakpoint();

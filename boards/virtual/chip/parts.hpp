@@ -72,12 +72,12 @@ struct ChipParts : ChipState {
   Part& make(Arguments&&... arguments) {
     auto part = std::make_unique<Part>(std::forward<Arguments>(arguments)...);
     Part& made = *part;
-    on_their_own_.push_back(std::move(part));
+    standalone_parts_.push_back(std::move(part));
     return made;
   }
   void put_peripherals();
 
-  std::vector<std::unique_ptr<Peripheral>> on_their_own_;
+  std::vector<std::unique_ptr<Peripheral>> standalone_parts_;
 };
 
 }  // namespace inkwell::virtual_board

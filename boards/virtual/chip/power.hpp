@@ -24,11 +24,11 @@ class PowerControl final : public RegisterBlock {
   void reset() override {
     control_ = pwr.cr.reset_value;
     status_ = 0;
-    look_at_supply();
+    update_supply();
   }
   /// Updates the output of the programmable voltage detector, which is also EXTI line 16. The falling thresholds are
   /// typical values (data sheet, V_PVD); the rising thresholds are 0.1 V higher.
-  void look_at_supply() {
+  void update_supply() {
     constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
     constexpr unsigned exti_line = 16;
     const double threshold_V = falling_V[pwr.cr.pls.of(control_)] + (supply_is_low_ ? hysteresis_V : 0.0);
@@ -44,7 +44,7 @@ class PowerControl final : public RegisterBlock {
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset == pwr.cr) {
       control_ = value & writable(pwr.cr);
-      look_at_supply();
+      update_supply();
       machine_.rcc->set_voltage_scale(pwr.cr.vos.in(control_));
       if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modeled, and the chip only sleeps");
     }

@@ -171,7 +171,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   program_counter_ = stopped_before_.value_or(read(UC_ARM_REG_PC) & ~1u);
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
-  if (!new_divides_.empty()) ask_about_new_divides();
+  if (!new_divides_.empty()) hook_new_divides();
   if (outcome_ != Outcome::slice_over) return outcome_;
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
   check(error, "run");
@@ -255,8 +255,8 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
 
 // Plain blocks need no check per instruction. Most blocks are plain, which keeps the code hook fast.
 bool Processor::is_plain(const BlockPrice& block) const {
-  const bool asks_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
-  return !asks_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
+  const bool needs_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
+  return !needs_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
 }
 
 void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {

@@ -209,7 +209,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool divides_by_zero(std::uint32_t address) const;
   /// Fast mode: true if the block contains divide instructions without a hook. Their hooks are added after the slice.
   bool has_new_divides(const BlockPrice& block);
-  void ask_about_new_divides();
+  void hook_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   bool masks_open();
   /// Unicorn loses the if-then state when it stops inside an if-then block.
@@ -232,7 +232,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool is_device(std::uint32_t address, Role role) const override;
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
-  void translates(std::uint32_t address) override { timing_.read_anew(address); }
+  void translates(std::uint32_t address) override { timing_.reread(address); }
   Role role() const;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
   /// True if no access to the frame can be refused.
@@ -307,7 +307,7 @@ class Processor final : public ClockUser, private EngineCalls {
     std::uint32_t address, bytes;
   };
   std::vector<CodeRange> to_forget_;
-  std::set<std::uint32_t> divides_asked_about_;
+  std::set<std::uint32_t> hooked_divides_;
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
   bool flash_is_busy_ = false;

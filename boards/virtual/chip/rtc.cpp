@@ -229,7 +229,7 @@ void RealTimeClock::freeze(bool frozen) {
 bool RealTimeClock::alarm_matches(std::uint32_t alarm) const {
   const std::uint32_t time = time_register(), date = date_register();
   const auto& map = rtc.alrmar;
-  const auto same = [&](const Field& wanted, const Field& told) { return wanted.of(alarm) == told.of(time); };
+  const auto same = [&](const Field& wanted, const Field& current) { return wanted.of(alarm) == current.of(time); };
   const bool weekday = map.du.of(alarm) == rtc.dr.wdu.of(date);
   const bool day = map.du.of(alarm) == rtc.dr.du.of(date) && map.dt.of(alarm) == rtc.dr.dt.of(date);
   return (map.msk1.in(alarm) || (same(map.st, rtc.tr.st) && same(map.su, rtc.tr.su))) &&

@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t stack_bytes_searched = 4096;
 
 /// True if the instruction before `address` is BL, or BLX with a register (ARMv7-M, A7.7.18 and A7.7.19).
-bool is_behind_call(std::uint32_t address, const MemoryReader& word) {
+bool is_after_call(std::uint32_t address, const MemoryReader& word) {
   const auto half_word = [&](std::uint32_t at) { return word(at & ~3u) >> 8 * (at & 2) & 0xFFFFu; };
   if (address < 4) return false;
   const std::uint32_t last = half_word(address - 2), before = half_word(address - 4);
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const M
   const auto consider = [&](std::uint32_t value) {
     const std::uint32_t address = value & ~1u;
     const bool is_new = callers.empty() || callers.back() != address;
-    if ((value & 1) != 0 && callers.size() < limit && is_new && is_behind_call(address, word))
+    if ((value & 1) != 0 && callers.size() < limit && is_new && is_after_call(address, word))
       callers.push_back(address);
   };
   consider(registers.general[CoreRegisters::lr]);

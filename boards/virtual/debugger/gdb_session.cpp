@@ -38,7 +38,7 @@ std::string GdbSession::receive(std::string_view bytes) {
     if (acknowledges_) out += is_whole ? '+' : '-';
     if (!is_whole) continue;
     const gdb::Request request = gdb::request_of(received->payload);
-    const std::string reply = std::visit([this](const auto& asked) { return carry_out(asked); }, request);
+    const std::string reply = std::visit([this](const auto& parsed) { return carry_out(parsed); }, request);
     if (attached_ && halted_) out += gdb_packet(reply);
     if (const auto* const let_go = std::get_if<gdb::LetGo>(&request); let_go != nullptr && let_go->wants_answer)
       out += gdb_packet(ok);
@@ -72,61 +72,62 @@ std::string GdbSession::stop_reply(unsigned signal) const {
   return reply;
 }
 
-std::string GdbSession::carry_out(const gdb::Answered& asked) { return asked.reply; }
+std::string GdbSession::carry_out(const gdb::Answered& parsed) { return parsed.reply; }
 
 std::string GdbSession::carry_out(gdb::WhyStopped) { return stop_reply(signal_trap); }
 
 std::string GdbSession::carry_out(gdb::ReadRegisters) { return hexadecimal(all_registers()); }
 
-std::string GdbSession::carry_out(const gdb::WriteRegisters& asked) {
-  set_all_registers(asked.bytes);
+std::string GdbSession::carry_out(const gdb::WriteRegisters& parsed) {
+  set_all_registers(parsed.bytes);
   return ok;
 }
 
-std::string GdbSession::carry_out(gdb::ReadRegister asked) {
+std::string GdbSession::carry_out(gdb::ReadRegister parsed) {
   const auto all = all_registers();
-  return hexadecimal(std::span(all).subspan(gdb::place_of_register(asked.number), gdb::size_of_register(asked.number)));
+  return hexadecimal(
+      std::span(all).subspan(gdb::place_of_register(parsed.number), gdb::size_of_register(parsed.number)));
 }
 
-std::string GdbSession::carry_out(const gdb::WriteRegister& asked) {
+std::string GdbSession::carry_out(const gdb::WriteRegister& parsed) {
   auto all = all_registers();
-  std::ranges::copy(asked.bytes, all.begin() + static_cast<std::ptrdiff_t>(gdb::place_of_register(asked.number)));
+  std::ranges::copy(parsed.bytes, all.begin() + static_cast<std::ptrdiff_t>(gdb::place_of_register(parsed.number)));
   set_all_registers(all);
   return ok;
 }
 
-std::string GdbSession::carry_out(gdb::ReadMemory asked) {
-  std::vector<std::uint8_t> bytes(asked.range.bytes);
-  return chip_.debug_port().read(asked.range.address, bytes) ? hexadecimal(bytes) : no_memory;
+std::string GdbSession::carry_out(gdb::ReadMemory parsed) {
+  std::vector<std::uint8_t> bytes(parsed.range.bytes);
+  return chip_.debug_port().read(parsed.range.address, bytes) ? hexadecimal(bytes) : no_memory;
 }
 
-std::string GdbSession::carry_out(const gdb::WriteMemory& asked) {
-  return chip_.debug_port().write(asked.address, asked.bytes) ? ok : no_memory;
+std::string GdbSession::carry_out(const gdb::WriteMemory& parsed) {
+  return chip_.debug_port().write(parsed.address, parsed.bytes) ? ok : no_memory;
 }
 
-std::string GdbSession::carry_out(gdb::ChangeBreakpoint asked) {
+std::string GdbSession::carry_out(gdb::ChangeBreakpoint parsed) {
   auto& port = chip_.debug_port();
-  asked.sets ? port.add_breakpoint(asked.address) : port.remove_breakpoint(asked.address);
+  parsed.sets ? port.add_breakpoint(parsed.address) : port.remove_breakpoint(parsed.address);
   return ok;
 }
 
-std::string GdbSession::carry_out(gdb::ChangeWatchPoint asked) {
+std::string GdbSession::carry_out(gdb::ChangeWatchPoint parsed) {
   auto& port = chip_.debug_port();
-  const WatchPoint place{asked.range.address, asked.range.bytes, asked.kind != '2', asked.kind != '3'};
+  const WatchPoint place{parsed.range.address, parsed.range.bytes, parsed.kind != '2', parsed.kind != '3'};
   const auto found = std::ranges::find_if(
-      watched_, [&](const Watched& watched) { return watched.place == place && watched.kind == asked.kind; });
-  if (asked.sets && found == watched_.end()) {
+      watched_, [&](const Watched& watched) { return watched.place == place && watched.kind == parsed.kind; });
+  if (parsed.sets && found == watched_.end()) {
     port.add_watch_point(place);
-    watched_.push_back({place, asked.kind});
-  } else if (!asked.sets && found != watched_.end()) {
+    watched_.push_back({place, parsed.kind});
+  } else if (!parsed.sets && found != watched_.end()) {
     port.remove_watch_point(place);
     watched_.erase(found);
   }
   return ok;
 }
 
-std::string GdbSession::carry_out(gdb::Resume asked) {
-  asked.steps ? chip_.debug_port().step() : chip_.debug_port().resume();
+std::string GdbSession::carry_out(gdb::Resume parsed) {
+  parsed.steps ? chip_.debug_port().step() : chip_.debug_port().resume();
   halted_ = false;
   return {};
 }
@@ -141,12 +142,12 @@ std::string GdbSession::carry_out(gdb::StopAcknowledging) {
   return ok;
 }
 
-std::string GdbSession::carry_out(const gdb::Monitor& asked) {
-  if (asked.command == "reset" || asked.command == "reset halt") {
+std::string GdbSession::carry_out(const gdb::Monitor& parsed) {
+  if (parsed.command == "reset" || parsed.command == "reset halt") {
     chip_.reset();
     return ok;
   }
-  if (asked.command == "time") return hexadecimal(fmt::format("{:.9f} s of board time\n", seconds(chip_.now())));
+  if (parsed.command == "time") return hexadecimal(fmt::format("{:.9f} s of board time\n", seconds(chip_.now())));
   return hexadecimal(
       std::string_view("monitor reset: reset the chip and stop at its first instruction\n"
                        "monitor time: print board time\n"));

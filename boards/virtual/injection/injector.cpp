@@ -163,13 +163,13 @@ void Injector::put(const Injection& injection, bool in) {
 
 void Injector::put_into_wire(const Injection& injection, bool in) {
   const PinName wire = injection.wires[0];
-  const auto set = [&](WireFault fault) { victims_.wires.set(wire, in ? fault : WireFault::sound); };
+  const auto set = [&](WireFault fault) { victims_.wires.set(wire, in ? fault : WireFault::intact); };
   switch (injection.fault) {
     case InjectedFault::wire_open: return set(WireFault::open);
     case InjectedFault::wire_low: return set(WireFault::low);
     case InjectedFault::wire_high: return set(WireFault::high);
     case InjectedFault::wire_frozen: return set(WireFault::frozen);
-    case InjectedFault::wires_shorted: return victims_.wires.touch(wire, injection.wires[1], in);
+    case InjectedFault::wires_shorted: return victims_.wires.set_contact(wire, injection.wires[1], in);
     default: break;
   }
   std::erase_if(spikes_, [&](const Spikes& spikes) { return spikes.wire == wire; });
@@ -194,13 +194,13 @@ void Injector::put_into_motor(const Injection& injection, bool in) {
   const unsigned i = injection.number;
   ShuntFault shunt = plant.shunt_fault(i);
   MotorFault motor = plant.motor_fault(i);
-  const auto output = [&](ShuntFault::Output stands) {
-    shunt.output = in ? stands : ShuntFault::Output::follows;
+  const auto output = [&](ShuntFault::Output fault_output) {
+    shunt.output = in ? fault_output : ShuntFault::Output::follows;
     plant.set_shunt_fault(i, shunt);
   };
   const auto leg = [&](LegFault fault) { plant.set_leg_fault(i, injection.leg, in ? fault : LegFault::none); };
   switch (injection.fault) {
-    case InjectedFault::encoder_stuck: return plant.encoder_fault(i).stand(in);
+    case InjectedFault::encoder_stuck: return plant.encoder_fault(i).set_stuck(in);
     case InjectedFault::encoder_lost_counts: return plant.encoder_fault(i).lose(in ? injection.amount : 0.0);
     case InjectedFault::encoder_slip:
       if (in) plant.encoder_fault(i).slip(injection.amount);
@@ -246,7 +246,7 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::crystal_drift:
       return chip.drift_crystal(in ? static_cast<std::int32_t>(amount) : victims_.crystal_ppm);
     case InjectedFault::usb_cut: return victims_.plug(!in);
-    case InjectedFault::host_silent: return victims_.let_host_ask(!in);
+    case InjectedFault::host_silent: return victims_.set_host_polling(!in);
     case InjectedFault::core_stalled: return chip.stall(in ? ticks(amount) : 0);
     case InjectedFault::main_loop_stalled: return chip.stall_thread(in ? ticks(amount) : 0);
     case InjectedFault::core_halted: return chip.halt(in ? ticks(amount) : 0);

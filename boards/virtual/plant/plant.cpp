@@ -26,7 +26,7 @@ MotorDrive motor_drive(const arms::Description& arm, const board::Facts& board, 
   return {with_shunt(arm, board, motor), imperfections, static_cast<double>(board.bridge_dead_time_s)};
 }
 
-double sound_torque_per_A(const arms::Description& arm, unsigned motor) {
+double healthy_torque_per_A(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
   const double sign = p[of_axis(Parameter::motor_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
   return sign * static_cast<double>(p[of_axis(Parameter::gear_ratio_1, motor)]) *
@@ -73,7 +73,7 @@ Plant::Plant(const arms::Description& arm, const board::Facts& board, const Plan
       supply_divided_V_(supply_.bus_V() / static_cast<double>(board.supply_divider())),
       analog_supply_V_(reference_V),
       windings_{with_shunt(arm, board, 0), with_shunt(arm, board, 1), with_shunt(arm, board, 2)},
-      torque_per_A_{sound_torque_per_A(arm, 0), sound_torque_per_A(arm, 1), sound_torque_per_A(arm, 2)},
+      torque_per_A_{healthy_torque_per_A(arm, 0), healthy_torque_per_A(arm, 1), healthy_torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
       probe_m_(arm_.dynamics().position_m(arm_.joints_rad())),
       inkwell_(probe_m_, true),

@@ -6,7 +6,7 @@
 namespace inkwell::virtual_board {
 
 const PinName* Wires::neighbour(PinName wire) const {
-  for (const Pair& pair : touching_) {
+  for (const Pair& pair : contacts_) {
     if (pair.a == wire) return &pair.b;
     if (pair.b == wire) return &pair.a;
   }
@@ -22,25 +22,25 @@ PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::
     case WireFault::low: return PinLevel::low;
     case WireFault::high: return PinLevel::high;
     case WireFault::frozen: return s.*frozen;
-    case WireFault::sound: break;
+    case WireFault::intact: break;
   }
   const PinName* other = neighbour(wire);
   if (other == nullptr || state(*other).*driven == PinLevel::floating) return s.*driven;
   return s.*driven == PinLevel::floating || state(*other).*driven == PinLevel::low ? state(*other).*driven : s.*driven;
 }
 
-void Wires::tell_chip(PinName wire, Ticks since) {
+void Wires::update_chip(PinName wire, Ticks since) {
   if (chip_ != nullptr)
     chip_->drive(wire.port, wire.pin, arriving(wire, &State::by_circuit, &State::frozen_by_circuit), since);
 }
 
-void Wires::tell_circuit(PinName wire) {
+void Wires::update_circuit(PinName wire) {
   circuit_.output_changed(wire.port, wire.pin, arriving(wire, &State::by_chip, &State::frozen_by_chip), now_);
 }
 
-void Wires::tell_both(PinName wire) {
-  tell_chip(wire, just_now);
-  tell_circuit(wire);
+void Wires::update_both(PinName wire) {
+  update_chip(wire, just_now);
+  update_circuit(wire);
 }
 
 void Wires::set(PinName wire, WireFault fault) {
@@ -51,34 +51,34 @@ void Wires::set(PinName wire, WireFault fault) {
   s.since = now_;
   s.fault = fault;
   // A short circuit also overrides the output of the chip.
-  const bool touches = fault == WireFault::low || fault == WireFault::high;
+  const bool is_shorted = fault == WireFault::low || fault == WireFault::high;
   if (chip_ != nullptr)
     chip_->hold(wire.port, wire.pin,
-                touches ? arriving(wire, &State::by_chip, &State::frozen_by_chip) : PinLevel::floating);
-  tell_both(wire);
+                is_shorted ? arriving(wire, &State::by_chip, &State::frozen_by_chip) : PinLevel::floating);
+  update_both(wire);
 }
 
-void Wires::touch(PinName a, PinName b, bool touching) {
-  std::erase_if(touching_,
+void Wires::set_contact(PinName a, PinName b, bool in_contact) {
+  std::erase_if(contacts_,
                 [&](const Pair& pair) { return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a); });
-  if (touching) touching_.push_back({a, b});
-  tell_both(a);
-  tell_both(b);
+  if (in_contact) contacts_.push_back({a, b});
+  update_both(a);
+  update_both(b);
 }
 
 void Wires::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   now_ = std::max(now_, now);
   const PinName wire{port, pin};
   state(wire).by_chip = level;
-  if (state(wire).fault == WireFault::sound) tell_circuit(wire);
-  if (const PinName* other = neighbour(wire)) tell_circuit(*other);
+  if (state(wire).fault == WireFault::intact) update_circuit(wire);
+  if (const PinName* other = neighbour(wire)) update_circuit(*other);
 }
 
 void Wires::drive(char port, unsigned pin, PinLevel level, Ticks since) {
   const PinName wire{port, pin};
   state(wire).by_circuit = level;
-  if (state(wire).fault == WireFault::sound) tell_chip(wire, since);
-  if (const PinName* other = neighbour(wire)) tell_chip(*other, since);
+  if (state(wire).fault == WireFault::intact) update_chip(wire, since);
+  if (const PinName* other = neighbour(wire)) update_chip(*other, since);
 }
 
 double Wires::volts(PinName wire, Ticks now) {
@@ -92,7 +92,7 @@ double Wires::volts(PinName wire, Ticks now) {
     case WireFault::low: return 0.0;
     case WireFault::high: return logic_supply_V;
     case WireFault::frozen: return s.frozen_V;
-    case WireFault::sound: break;
+    case WireFault::intact: break;
   }
   return circuit_.analog_V(wire.port, wire.pin, now);
 }
@@ -109,7 +109,7 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
 // For a broken wire, returns a source without impedance, because the voltage of a broken wire already includes its time
 // constant.
 AnalogSource Wires::analog_source(char port, unsigned pin) const {
-  return states_[index({port, pin})].fault == WireFault::sound ? circuit_.analog_source(port, pin) : AnalogSource{};
+  return states_[index({port, pin})].fault == WireFault::intact ? circuit_.analog_source(port, pin) : AnalogSource{};
 }
 
 void Wires::advance(Ticks now) {

@@ -65,7 +65,7 @@ Board::Board(const Options& options, const local::SocketAddress& usbip, std::fun
   wires_.connect(chip_.input_pins());
   plant_.connect(wires_);
   injector_.emplace(Injector::Victims{chip_, plant_, wires_, options.crystal_ppm, [this](bool in) { plug(in); },
-                                      [this](bool asks) { usb_->let_host_ask(asks); }},
+                                      [this](bool polls) { usb_->set_host_polling(polls); }},
                     options.seed);
   plug(true);
   chip_.reset(ResetCause::power_on);

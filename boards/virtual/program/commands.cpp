@@ -138,14 +138,14 @@ json supply(const json& request, Simulation& simulation) {
 
 json hand(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
-  const HandRequest asked = hand_request(request);
-  if (!asked.holds) {
+  const HandRequest requested_hand = hand_request(request);
+  if (!requested_hand.holds) {
     plant.let_go();
     return {};
   }
   const Hand& now = plant.hand();
-  plant.hold(asked.target_m, asked.stiffness_N_per_m.value_or(now.stiffness_N_per_m()),
-             asked.damping_Ns_per_m.value_or(now.damping_Ns_per_m()));
+  plant.hold(requested_hand.target_m, requested_hand.stiffness_N_per_m.value_or(now.stiffness_N_per_m()),
+             requested_hand.damping_Ns_per_m.value_or(now.damping_Ns_per_m()));
   return {};
 }
 

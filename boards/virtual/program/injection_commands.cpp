@@ -11,39 +11,39 @@ using nlohmann::json;
 
 namespace {
 
-json told(unsigned number, const Injection& injection) {
+json describe(unsigned number, const Injection& injection) {
   const auto& info = protocol::info(injection.fault);
-  json told{{"number", number}, {"fault", info.name}};
-  if (!injection.of.empty()) told["of"] = injection.of;
-  if (info.has_amount()) told["amount"] = injection.amount;
-  return told;
+  json described{{"number", number}, {"fault", info.name}};
+  if (!injection.of.empty()) described["of"] = injection.of;
+  if (info.has_amount()) described["amount"] = injection.amount;
+  return described;
 }
 
-json told(const Injector::Active& active) {
-  json told = virtual_board::told(active.number, active.injection);
-  told["since_s"] = seconds(active.since);
-  if (active.until) told["until_s"] = seconds(*active.until);
-  return told;
+json describe(const Injector::Active& active) {
+  json described = virtual_board::describe(active.number, active.injection);
+  described["since_s"] = seconds(active.since);
+  if (active.until) described["until_s"] = seconds(*active.until);
+  return described;
 }
 
-json told(const Injector::Planned& planned) {
-  json told = virtual_board::told(planned.number, planned.injection);
-  told["at_s"] = seconds(planned.at);
-  if (planned.injection.for_s) told["until_s"] = seconds(planned.at) + *planned.injection.for_s;
-  return told;
+json describe(const Injector::Planned& planned) {
+  json described = virtual_board::describe(planned.number, planned.injection);
+  described["at_s"] = seconds(planned.at);
+  if (planned.injection.for_s) described["until_s"] = seconds(planned.at) + *planned.injection.for_s;
+  return described;
 }
 
 }  // namespace
 
 json injected(Board& board) {
   json list = json::array();
-  for (const Injector::Active& active : board.injector().active()) list.push_back(told(active));
+  for (const Injector::Active& active : board.injector().active()) list.push_back(describe(active));
   return list;
 }
 
 json still_to_come(Board& board) {
   json list = json::array();
-  for (const Injector::Planned& planned : board.injector().planned()) list.push_back(told(planned));
+  for (const Injector::Planned& planned : board.injector().planned()) list.push_back(describe(planned));
   return list;
 }
 

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr Ticks slice = ticks_per_s / 1000;  // about one USB bus frame
 constexpr auto attention = 50ms;             // time for a paused board to notice a signal
-constexpr auto look_at_others = 100us;       // polling interval for the other boards of a shared clock
+constexpr auto poll_interval = 100us;        // polling interval for the other boards of a shared clock
 constexpr double debt_maximum_s = 0.1;
 constexpr int exit_code_of_lock_up = 3;
 constexpr int exit_code_of_violation = 4;
@@ -45,10 +45,10 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
   while (!quit_ && !end_requested && !firmware_exit_code_ && !ends_by_violation() && board_.chip().now() < end) {
     if (gdb_server_ != nullptr) serve_debugger();
     uarts_.serve();
-    const auto give_up_at = !time_passes()       ? Clock::now() + attention
-                            : waits_for_others() ? Clock::now() + look_at_others
-                                                 : Clock::time_point::min();
-    if (auto request = server_.take(give_up_at)) {
+    const auto deadline = !time_passes()       ? Clock::now() + attention
+                          : waits_for_others() ? Clock::now() + poll_interval
+                                               : Clock::time_point::min();
+    if (auto request = server_.take(deadline)) {
       serve(std::move(*request));
       continue;
     }
@@ -84,7 +84,7 @@ bool Simulation::time_passes() const {
   if (run_) return true;
   switch (passing_) {
     case Passing::freely: return !options_.lock_step || board_.usb().lets_time_pass();
-    case Passing::when_asked: return board_.usb().is_asked();
+    case Passing::during_control_transfers: return board_.usb().has_control_transfer();
     case Passing::not_at_all: break;
   }
   return false;
@@ -109,8 +109,8 @@ void Simulation::serve_debugger() {
 void Simulation::serve(ControlRequest request) {
   board_.usb().settle();
   nlohmann::json reply = carry_out(request.line, *this);
-  if (run_asked_s_) {
-    run_ = Run{board_.chip().now() + ticks(*std::exchange(run_asked_s_, std::nullopt)), std::move(request.reply)};
+  if (requested_run_s_) {
+    run_ = Run{board_.chip().now() + ticks(*std::exchange(requested_run_s_, std::nullopt)), std::move(request.reply)};
     if (passing_ == Passing::freely) passing_ = Passing::not_at_all;
     start_pacing();
     return;
@@ -181,7 +181,7 @@ void Simulation::pause() {
 
 void Simulation::stand_by() {
   pause();
-  passing_ = Passing::when_asked;
+  passing_ = Passing::during_control_transfers;
 }
 
 void Simulation::resume() {
@@ -189,7 +189,7 @@ void Simulation::resume() {
   start_pacing();
 }
 
-void Simulation::run_for(double duration_s) { run_asked_s_ = duration_s; }
+void Simulation::run_for(double duration_s) { requested_run_s_ = duration_s; }
 
 void Simulation::end_run(const std::string& error) {
   if (!run_) return;

@@ -37,7 +37,7 @@ class Simulation {
   Board& board() { return board_; }
   const Options& options() const { return options_; }
   bool paused() const { return passing_ != Passing::freely; }
-  bool stands_by() const { return passing_ == Passing::when_asked; }
+  bool stands_by() const { return passing_ == Passing::during_control_transfers; }
   /// Dropped lag of board time. Lag is dropped if the computer is too slow.
   double time_dropped_s() const { return time_dropped_s_; }
   void pause();
@@ -52,7 +52,7 @@ class Simulation {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Passing : std::uint8_t { freely, when_asked, not_at_all };
+  enum class Passing : std::uint8_t { freely, during_control_transfers, not_at_all };
   struct Run {
     Ticks end;
     std::promise<nlohmann::json> reply;
@@ -80,7 +80,7 @@ class Simulation {
   Passing passing_;
   bool quit_ = false;
   std::optional<Run> run_;
-  std::optional<double> run_asked_s_;
+  std::optional<double> requested_run_s_;
   std::optional<int> firmware_exit_code_;
   double time_dropped_s_ = 0.0;
   Clock::time_point pace_wall_{};

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto look_again = 100ms;  // checks whether a client with unread bytes has disconnected
+constexpr auto poll_interval = 100ms;  // checks whether a client with unread bytes has disconnected
 
 }  // namespace
 
@@ -100,7 +100,7 @@ void StreamServer::receive_from(int client) {
 bool StreamServer::wait_for_room(int client) {
   std::unique_lock lock(mutex_);
   while (!closing_ && arrived_.bytes.size() >= unread_maximum) {
-    if (room_.wait_for(lock, look_again) == std::cv_status::no_timeout) continue;
+    if (room_.wait_for(lock, poll_interval) == std::cv_status::no_timeout) continue;
     pollfd connection{client, POLLRDHUP, 0};
     const bool is_gone = ::poll(&connection, 1, 0) > 0;
     if (is_gone && others_wait()) return false;

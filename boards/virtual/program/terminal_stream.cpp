@@ -19,7 +19,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr int look_again_ms = 10;  // polling interval for space in the output
+constexpr int poll_interval_ms = 10;  // polling interval for space in the output
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void TerminalStream::read() {
   for (;;) {
     const bool is_full = has_no_room();
     std::array<pollfd, 2> descriptors{{{is_full ? -1 : input_, POLLIN, 0}, {ending_, POLLIN, 0}}};
-    if (::poll(descriptors.data(), descriptors.size(), is_full ? look_again_ms : -1) < 0) continue;
+    if (::poll(descriptors.data(), descriptors.size(), is_full ? poll_interval_ms : -1) < 0) continue;
     if (descriptors[1].revents != 0) return;
     if (is_full) continue;
     const ssize_t count = ::read(input_, chunk.data(), chunk.size());

@@ -69,8 +69,8 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
   if (it.kind == Kind::store && next.kind == Kind::load) cycles += costs[Cost::store_before_load];
   if (is_indexed_store(it) && !(next.kind == Kind::hint && next.bytes == 2))
     cycles += costs[Cost::store_register_offset] - 1;
-  if (next.touches_memory && (next.address_registers & it.written) != 0 && it.kind != Kind::multiple) {
-    const bool only_written_back = it.touches_memory && it.writes_back && !it.reads_memory;
+  if (next.accesses_memory && (next.address_registers & it.written) != 0 && it.kind != Kind::multiple) {
+    const bool only_written_back = it.accesses_memory && it.writes_back && !it.reads_memory;
     cycles += only_written_back ? costs[Cost::same_base_written_back] : costs[Cost::address_from_previous];
   }
   // float_read excludes the addend register of a multiply-accumulate, which is also the destination register.
@@ -104,7 +104,7 @@ class Fetch {
 };
 
 unsigned accesses_of(const Instruction& it) {
-  if (!it.touches_memory) return 0;
+  if (!it.accesses_memory) return 0;
   return it.words != 0 ? it.words : 1;
 }
 

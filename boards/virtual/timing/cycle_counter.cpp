@@ -30,7 +30,7 @@ const BlockPrice& CycleCounter::remember(const Place& place, std::uint32_t addre
   return known->price;
 }
 
-void CycleCounter::read_anew(std::uint32_t address) {
+void CycleCounter::reread(std::uint32_t address) {
   if (Known* known = *place_of(address).known) known->is_current = false;
 }
 

@@ -24,7 +24,7 @@ void LineCache::use(std::uint8_t place) {
 void LineCache::keep(std::uint32_t line) {
   if (place_of_[line] != 0) return;
   const std::uint8_t oldest = places_[0].older;
-  if (places_[oldest].line != nobody) place_of_[places_[oldest].line] = 0;
+  if (places_[oldest].line != no_line) place_of_[places_[oldest].line] = 0;
   places_[oldest].line = line;
   place_of_[line] = oldest;
   use(oldest);
@@ -32,8 +32,8 @@ void LineCache::keep(std::uint32_t line) {
 
 void LineCache::forget() {
   for (Place& place : places_) {
-    if (place.line != nobody) place_of_[place.line] = 0;
-    place.line = nobody;
+    if (place.line != no_line) place_of_[place.line] = 0;
+    place.line = no_line;
   }
 }
 
@@ -50,7 +50,7 @@ void FlashAccelerator::set(unsigned wait_states, bool prefetch, bool instruction
   prefetch_ = prefetch;
   instruction_cache_ = instruction_cache;
   data_cache_ = data_cache;
-  if (!prefetch) ahead_ = nobody;
+  if (!prefetch) ahead_ = no_line;
 }
 
 void FlashAccelerator::read_ahead(std::uint32_t line, std::uint64_t now) {

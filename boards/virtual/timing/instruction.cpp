@@ -23,7 +23,7 @@ void writes(Instruction& it, std::uint32_t number) {
 void single(Instruction& it, bool load, std::uint32_t data, std::uint32_t base) {
   it.kind = load ? Kind::load : Kind::store;
   it.reads_memory = load;
-  it.touches_memory = true;
+  it.accesses_memory = true;
   it.address_registers = one(base);
   it.base = static_cast<std::uint8_t>(base);
   if (!load) return;
@@ -42,7 +42,7 @@ void multiple(Instruction& it, bool load, std::uint32_t list, std::uint32_t base
   it.kind = Kind::multiple;
   it.words = count(list);
   it.reads_memory = load;
-  it.touches_memory = true;
+  it.accesses_memory = true;
   it.address_registers = one(base);
   it.base = static_cast<std::uint8_t>(base);
   it.writes_back = writes_back;
@@ -150,7 +150,7 @@ void decode_dual_or_exclusive(Instruction& it, std::uint32_t first, std::uint32_
   if (!bit(first, 8) && !bit(first, 5)) {  // P and W clear
     const bool table = bit(first, 7) && load && bits(second, 7, 5) == 0;
     it.address_registers = one(base);
-    it.touches_memory = it.reads_memory = true;
+    it.accesses_memory = it.reads_memory = true;
     if (table) {
       it.kind = Kind::table_branch;
       it.address_registers = static_cast<std::uint16_t>(it.address_registers | one(second & 0xF));
@@ -187,7 +187,7 @@ void decode_float_transfer(Instruction& it, std::uint32_t first, std::uint32_t s
   const std::uint32_t words = one_register ? (is_double ? 2 : 1) : second & 0xFE ? second & 0xFF : second & 1;
   it.kind = words == 1 && one_register ? Kind::float_transfer : Kind::float_multiple;
   it.words = static_cast<std::uint8_t>(words);
-  it.touches_memory = true;
+  it.accesses_memory = true;
   it.reads_memory = load;
   it.address_registers = one(first & 0xF);
   it.base = static_cast<std::uint8_t>(first & 0xF);

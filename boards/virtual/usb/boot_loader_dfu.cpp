@@ -137,7 +137,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
 
 /// Answers the status request and starts the waiting operation. The next status answer follows after the operation.
 std::vector<std::byte> BootLoaderDfu::status() {
-  State told = state_;
+  State reported = state_;
   unsigned poll_ms = 0;
   if (waiting_) {
     const auto& operation = *waiting_;
@@ -151,16 +151,16 @@ std::vector<std::byte> BootLoaderDfu::status() {
         (operation.kind == Operation::Kind::set_address && lies_in(operation.address, system_begin, system_end));
     if (!is_there) {
       fail(Status::target);
-      told = state_;
+      reported = state_;
     } else {
-      told = is_leave ? State::manifest : State::download_busy;
+      reported = is_leave ? State::manifest : State::download_busy;
       poll_ms = poll_time_ms(operation);
       state_ = is_leave ? State::manifest : State::download_idle;
       asked_ = std::exchange(waiting_, std::nullopt);
     }
   }
-  return {static_cast<std::byte>(status_), std::byte(poll_ms & 0xFF),    std::byte(poll_ms >> 8 & 0xFF),
-          std::byte(poll_ms >> 16),        static_cast<std::byte>(told), std::byte{0}};
+  return {static_cast<std::byte>(status_), std::byte(poll_ms & 0xFF),        std::byte(poll_ms >> 8 & 0xFF),
+          std::byte(poll_ms >> 16),        static_cast<std::byte>(reported), std::byte{0}};
 }
 
 /// Typical programming times from the data sheet.

@@ -137,7 +137,7 @@ void HostController::step() {
   client_.between_transactions();
   if (now >= frame_begin_ + frame_ticks_) begin_frame();
   Ticks next = frame_begin_ + frame_ticks_;
-  if (frames_run_ && asks_ && !transaction_ && busy_pipes_ != 0) {
+  if (frames_run_ && is_polling_ && !transaction_ && busy_pipes_ != 0) {
     if (scheduler_.now() >= bus_free_at_) start_next_transaction();
     if (bus_free_at_ > now) {
       next = std::min(next, bus_free_at_);

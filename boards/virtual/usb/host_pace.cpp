@@ -10,7 +10,7 @@ void HostPace::submitted(const Urb& urb) {
   Endpoint& endpoint = in_endpoints_[urb.endpoint];
   ++endpoint.requests;
   endpoint.newest_sequence = urb.sequence;
-  endpoint.asked = std::min(endpoint.asked + 1, 2u);
+  endpoint.requested = std::min(endpoint.requested + 1, 2u);
   endpoint.most = std::max(endpoint.most, endpoint.requests);
 }
 
@@ -20,7 +20,7 @@ void HostPace::unlinked(const Urb& urb) { end(urb, true); }
 
 void HostPace::unlinked_too_late(std::uint32_t sequence) {
   for (Endpoint& one : in_endpoints_)
-    if (one.newest_sequence == sequence) one.asked = one.most = 0;
+    if (one.newest_sequence == sequence) one.requested = one.most = 0;
 }
 
 void HostPace::end(const Urb& urb, bool is_dropped) {
@@ -28,10 +28,10 @@ void HostPace::end(const Urb& urb, bool is_dropped) {
   if (urb.endpoint == 0 || !urb.in) return;
   Endpoint& endpoint = in_endpoints_[urb.endpoint];
   if (endpoint.requests > 0) --endpoint.requests;
-  if (is_dropped) endpoint.asked = endpoint.most = 0;
+  if (is_dropped) endpoint.requested = endpoint.most = 0;
 }
 
-void HostPace::start_anew() { *this = {}; }
+void HostPace::restart() { *this = {}; }
 
 bool HostPace::is_starved() const {
   return std::ranges::any_of(in_endpoints_, [](const Endpoint& one) { return one.is_kept() && one.requests == 0; });
@@ -43,14 +43,14 @@ bool HostPace::is_owed() const {
 }
 
 bool HostPace::is_waited_for_without_limit() const {
-  return !is_asked() && std::ranges::none_of(in_endpoints_, [](const Endpoint& one) {
+  return !has_control_transfer() && std::ranges::none_of(in_endpoints_, [](const Endpoint& one) {
     return one.is_kept() && one.requests < one.most && one.most == 1;
   });
 }
 
 bool HostPace::waits_for_board() const {
-  const auto has_asked = [](const Endpoint& one) { return one.most > 0; };
-  if (std::ranges::none_of(in_endpoints_, has_asked)) return is_asked();
+  const auto has_requested = [](const Endpoint& one) { return one.most > 0; };
+  if (std::ranges::none_of(in_endpoints_, has_requested)) return has_control_transfer();
   // A streaming host renews its requests in time. A host with single requests controls board time: it passes only while
   // a request is pending.
   return std::ranges::none_of(in_endpoints_, [](const Endpoint& one) { return one.most == 1 && one.requests == 0; });
@@ -67,7 +67,7 @@ bool HostPace::is_stream_owed() const {
 
 void HostPace::lose_patience() {
   for (Endpoint& one : in_endpoints_)
-    if (one.requests < one.most) one.asked = one.most = 0;
+    if (one.requests < one.most) one.requested = one.most = 0;
 }
 
 }  // namespace inkwell::virtual_board

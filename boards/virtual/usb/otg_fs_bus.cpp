@@ -181,7 +181,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
   }
   // The empty packet of a status stage is accepted even if PKTCNT is 0.
   const bool is_expected = endpoint.packets != 0 || (number == 0 && data.empty());
-  if (!enabled || otg.doepctl.naksts.in(endpoint.control) || !is_expected || global_out_nak_asked_)
+  if (!enabled || otg.doepctl.naksts.in(endpoint.control) || !is_expected || global_out_nak_requested_)
     return Handshake::nak;
   const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and transfer-complete status
   if (receive_words_free() < words + reserved_receive_words) return Handshake::nak;

@@ -78,7 +78,7 @@ void OtgFsDevice::reset_core() {
   receive_data_words_ = 0;
   writing_endpoint_.reset();
   layout_changed_ = true;
-  global_in_nak_ = global_out_nak_asked_ = global_out_nak_effective_ = false;
+  global_in_nak_ = global_out_nak_requested_ = global_out_nak_effective_ = false;
   address_ = 0;
   control_transfer_open_ = setup_stage_open_ = setup_done_unpopped_ = setup_done_lost_ = false;
   setup_was_seen_ = false;
@@ -135,9 +135,9 @@ std::uint32_t OtgFsDevice::read_global(std::uint32_t offset) {
     case otg.gahbcfg: return bus_configuration_;
     case otg.gusbcfg: return usb_configuration_;
     case otg.grstctl: return reset_control();
-    case otg.gintsts: note_look_at_receive_fifo(); return interrupt_status();
+    case otg.gintsts: note_receive_fifo_check(); return interrupt_status();
     case otg.gintmsk: return interrupt_mask_;
-    case otg.grxstsr: note_look_at_receive_fifo(); return receive_.empty() ? 0 : receive_.front();
+    case otg.grxstsr: note_receive_fifo_check(); return receive_.empty() ? 0 : receive_.front();
     case otg.grxstsp: return pop_receive_status();
     case otg.grxfsiz: return receive_size_;
     case otg.dieptxf0: return transmit_size_[0];
@@ -253,9 +253,9 @@ void OtgFsDevice::write_device_control(std::uint32_t value) {
   device_control_ = value & writable(otg.dctl);
   if (otg.dctl.cginak.in(value)) global_in_nak_ = false;
   if (otg.dctl.sginak.in(value)) global_in_nak_ = true;
-  if (otg.dctl.cgonak.in(value)) global_out_nak_asked_ = global_out_nak_effective_ = false;
-  if (otg.dctl.sgonak.in(value) && !global_out_nak_asked_) {
-    global_out_nak_asked_ = true;
+  if (otg.dctl.cgonak.in(value)) global_out_nak_requested_ = global_out_nak_effective_ = false;
+  if (otg.dctl.sgonak.in(value) && !global_out_nak_requested_) {
+    global_out_nak_requested_ = true;
     push_status(0, PacketStatus::global_out_nak, 0, false);
   }
   update_pull_up();

@@ -11,7 +11,7 @@ namespace {
 
 /// Longest allowed time from the check of an empty receive FIFO to the clearing of NAK: a few instructions with
 /// interrupts disabled.
-constexpr Ticks look_before_clearing_nak = ticks_per_s / 1'000'000;
+constexpr Ticks check_before_clearing_nak = ticks_per_s / 1'000'000;
 
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
   const auto& control = otg.diepctl;
@@ -306,12 +306,12 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
 // popped. Firmware cannot avoid the loss if the packet arrives just after the last check of the FIFO.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
-  const bool looked = scheduler_.now() - receive_found_empty_at_ <= look_before_clearing_nak;
-  if (setup_was_seen_ || !looked) rules_.violate(Rule::usb_nak_cleared_early);
+  const bool checked = scheduler_.now() - receive_found_empty_at_ <= check_before_clearing_nak;
+  if (setup_was_seen_ || !checked) rules_.violate(Rule::usb_nak_cleared_early);
   setup_done_lost_ = true;
 }
 
-void OtgFsDevice::note_look_at_receive_fifo() {
+void OtgFsDevice::note_receive_fifo_check() {
   if (receive_.empty())
     receive_found_empty_at_ = scheduler_.now();
   else
@@ -330,12 +330,12 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
     update_interrupt();
     return word;
   }
-  note_look_at_receive_fifo();
+  note_receive_fifo_check();
   const std::uint32_t word = receive_.pop();
   const unsigned number = otg.grxstsp.epnum.of(word);
   switch (otg.grxstsp.pktsts.of(word)) {
     case PacketStatus::global_out_nak:
-      global_out_nak_effective_ = global_out_nak_asked_;
+      global_out_nak_effective_ = global_out_nak_requested_;
       if (global_out_nak_effective_)
         for (OutEndpoint& endpoint : out_)
           if (endpoint.disable_pending) disable_out(endpoint);

@@ -128,7 +128,8 @@ void RootPort::end_reset(State recovery) {
   enter(recovery, reset_recovery_frames);
 }
 
-void RootPort::ask(std::uint8_t request_type, std::uint8_t request, std::uint16_t value, std::uint16_t length) {
+void RootPort::start_control_transfer(std::uint8_t request_type, std::uint8_t request, std::uint16_t value,
+                                      std::uint16_t length) {
   Urb urb;
   urb.internal = true;
   urb.in = (request_type & 0x80) != 0;
@@ -140,8 +141,9 @@ void RootPort::ask(std::uint8_t request_type, std::uint8_t request, std::uint16_
   frames_left_ = answer_frames;
 }
 
-void RootPort::ask_for_descriptor(std::uint8_t type, std::uint8_t index, std::uint16_t length) {
-  ask(request::from_device, request::get_descriptor, static_cast<std::uint16_t>(type << 8 | index), length);
+void RootPort::request_descriptor(std::uint8_t type, std::uint8_t index, std::uint16_t length) {
+  start_control_transfer(request::from_device, request::get_descriptor, static_cast<std::uint16_t>(type << 8 | index),
+                         length);
 }
 
 void RootPort::time_over() {
@@ -153,20 +155,20 @@ void RootPort::time_over() {
     case State::first_reset: end_reset(State::first_recovery); break;
     case State::first_recovery:
       enter(State::reading_packet_size, 0);
-      ask_for_descriptor(descriptor::device, 0, 64);
+      request_descriptor(descriptor::device, 0, 64);
       break;
     case State::packet_size_known: begin_reset(State::second_reset); break;
     case State::second_reset: end_reset(State::second_recovery); break;
     case State::second_recovery:
     case State::import_recovery:
       enter(state_ == State::second_recovery ? State::addressing : State::import_addressing, 0);
-      ask(request::to_device, request::set_address, device_address, 0);
+      start_control_transfer(request::to_device, request::set_address, device_address, 0);
       break;
     case State::import_reset: end_reset(State::import_recovery); break;
     case State::address_recovery:
       description_ = {};
       enter(State::reading_device, 0);
-      ask_for_descriptor(descriptor::device, 0, 18);
+      request_descriptor(descriptor::device, 0, 18);
       break;
     case State::import_address_recovery: {
       enter(State::in_use, 0);
@@ -209,7 +211,7 @@ void RootPort::answered(const Urb& urb) {
       return;
     }
     enter(State::reading_configuration_length, 0);
-    ask_for_descriptor(descriptor::configuration, static_cast<std::uint8_t>(description_.configurations.size()),
+    request_descriptor(descriptor::configuration, static_cast<std::uint8_t>(description_.configurations.size()),
                        configuration_header);
   };
   switch (state_) {
@@ -237,7 +239,7 @@ void RootPort::answered(const Urb& urb) {
       break;
     case State::reading_configuration_length:
       enter(State::reading_configuration, 0);
-      ask_for_descriptor(descriptor::configuration, static_cast<std::uint8_t>(description_.configurations.size()),
+      request_descriptor(descriptor::configuration, static_cast<std::uint8_t>(description_.configurations.size()),
                          static_cast<std::uint16_t>(std::max(byte(2) | byte(3) << 8, unsigned{configuration_header})));
       break;
     case State::reading_configuration:

@@ -57,7 +57,7 @@ void SharedPort::release(std::uint32_t session) {
     port_.unlink(entry.first);
     return true;
   });
-  stop_asking_in_vain();
+  stop_useless_polling();
 }
 
 void SharedPort::submit(std::uint32_t session, Urb&& urb) {
@@ -65,7 +65,7 @@ void SharedPort::submit(std::uint32_t session, Urb&& urb) {
   if (is_of_type(urb, TransferType::interrupt) && urb.in) {
     const std::uint8_t endpoint = urb.endpoint;
     sessions_[session].interrupt_requests[endpoint].push_back(std::move(urb));
-    keep_asking(endpoint);
+    keep_polling(endpoint);
   } else if (is_of_type(urb, TransferType::bulk) && bulk_owner_.value_or(session) != session) {
     client_.completed(session, std::move(urb), transfer_status::busy);
   } else if (sets_configuration(urb) && configuration_ && sessions_.size() > 1) {
@@ -83,7 +83,7 @@ void SharedPort::pass_on(const Owner& owner, Urb&& urb) {
   port_.submit(std::move(urb));
 }
 
-void SharedPort::keep_asking(std::uint8_t endpoint) {
+void SharedPort::keep_polling(std::uint8_t endpoint) {
   if (shared_on_bus_.contains(endpoint)) return;
   Urb urb;
   for (auto& [number, session] : sessions_)
@@ -97,10 +97,10 @@ void SharedPort::keep_asking(std::uint8_t endpoint) {
   port_.submit(std::move(urb));
 }
 
-void SharedPort::stop_asking_in_vain() {
+void SharedPort::stop_useless_polling() {
   std::erase_if(shared_on_bus_, [this](const auto& entry) {
-    const auto asks = [&](auto& session) { return !session.second.interrupt_requests[entry.first].empty(); };
-    if (std::ranges::any_of(sessions_, asks)) return false;
+    const auto polls = [&](auto& session) { return !session.second.interrupt_requests[entry.first].empty(); };
+    if (std::ranges::any_of(sessions_, polls)) return false;
     port_.unlink(entry.second);
     return true;
   });
@@ -114,7 +114,7 @@ std::optional<Urb> SharedPort::unlink(std::uint32_t session, std::uint32_t seque
     if (found == requests.end()) continue;
     Urb taken = std::move(*found);
     requests.erase(found);
-    stop_asking_in_vain();
+    stop_useless_polling();
     return taken;
   }
   const auto owner = std::ranges::find_if(
@@ -134,7 +134,7 @@ void SharedPort::completed(Urb&& urb, std::int32_t status) {
       shared != shared_on_bus_.end() && shared->second == urb.sequence) {
     shared_on_bus_.erase(shared);
     hand_out(urb, status);
-    keep_asking(urb.endpoint);
+    keep_polling(urb.endpoint);
     return;
   }
   const auto found = owners_.find(urb.sequence);

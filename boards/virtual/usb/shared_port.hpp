@@ -32,7 +32,7 @@ class SharedPort final : private RootPort::Client {
   SharedPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm);
 
   void plug(bool in) { port_.plug(in); }
-  void let_host_ask(bool asks) { port_.let_host_ask(asks); }
+  void set_host_polling(bool polls) { port_.set_host_polling(polls); }
   bool plugged() const { return port_.plugged(); }
   bool enumerated() const { return port_.enumerated(); }
   bool imported() const { return port_.imported(); }
@@ -64,8 +64,8 @@ class SharedPort final : private RootPort::Client {
   bool is_of_type(const Urb& urb, TransferType type) const;
   void pass_on(const Owner& owner, Urb&& urb);
   /// Keeps one request pending on the bus for all programs that wait for a report from this endpoint.
-  void keep_asking(std::uint8_t endpoint);
-  void stop_asking_in_vain();
+  void keep_polling(std::uint8_t endpoint);
+  void stop_useless_polling();
   void hand_out(const Urb& report, std::int32_t status);
 
   Client& client_;

@@ -61,14 +61,14 @@ void UsbIpServer::take(std::vector<Order>& orders) {
 
 void UsbIpServer::exchange_all() {
   std::unique_lock lock(mutex_);
-  const std::uint64_t mine = ++exchanges_asked_;
+  const std::uint64_t mine = ++exchanges_requested_;
   wake();
   exchanged_.wait(lock, [&] { return exchanges_done_ >= mine; });
 }
 
-bool UsbIpServer::wait_for_order(std::chrono::steady_clock::time_point give_up_at) {
+bool UsbIpServer::wait_for_order(std::chrono::steady_clock::time_point deadline) {
   std::unique_lock lock(mutex_);
-  return order_given_.wait_until(lock, give_up_at, [this] { return !orders_.empty(); });
+  return order_arrived_.wait_until(lock, deadline, [this] { return !orders_.empty(); });
 }
 
 void UsbIpServer::answer(Result&& result) {
@@ -114,7 +114,7 @@ void UsbIpServer::give(Order&& order) {
     orders_.push_back(std::move(order));
     orders_waiting_.store(true, std::memory_order_release);
   }
-  order_given_.notify_one();
+  order_arrived_.notify_one();
   on_order_();
 }
 
@@ -147,7 +147,7 @@ void UsbIpServer::run() {
       [[maybe_unused]] const auto read = ::read(wake_.number(), &count, sizeof count);
       const std::lock_guard lock(mutex_);
       if (stop_) return;
-      exchange = exchanges_asked_;
+      exchange = exchanges_requested_;
     }
     deliver_results();
     std::size_t index = 2;

@@ -61,8 +61,8 @@ class UsbIpServer {
   void take(std::vector<Order>& orders);
   /// Waits until all data that clients sent before this call is converted to orders, and all earlier answers are sent.
   void exchange_all();
-  /// Waits for orders. Returns false if no order has been received at `give_up_at`.
-  bool wait_for_order(std::chrono::steady_clock::time_point give_up_at);
+  /// Waits for orders. Returns false if no order has been received at `deadline`.
+  bool wait_for_order(std::chrono::steady_clock::time_point deadline);
   void answer(Result&& result);
   void offer(const DeviceDescription& device);
   /// Call this when the device is removed. All importers are disconnected.
@@ -105,8 +105,8 @@ class UsbIpServer {
   std::optional<DeviceDescription> offered_;
   bool withdrawn_ = false;
   bool stop_ = false;
-  std::uint64_t exchanges_asked_ = 0, exchanges_done_ = 0;
-  std::condition_variable order_given_, exchanged_;
+  std::uint64_t exchanges_requested_ = 0, exchanges_done_ = 0;
+  std::condition_variable order_arrived_, exchanged_;
   std::atomic<bool> orders_waiting_ = false;
 
   // Only the server thread accesses the members below.

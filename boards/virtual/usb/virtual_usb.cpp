@@ -128,7 +128,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
 
   void enumerated(const DeviceDescription& description) override { server.offer(description); }
   void detached() override {
-    for (auto& [session, pace] : paces) pace.start_anew();
+    for (auto& [session, pace] : paces) pace.restart();
     server.withdraw();
   }
   void completed(std::uint32_t session, Urb&& urb, std::int32_t status) override {
@@ -174,12 +174,12 @@ std::vector<std::string> VirtualUsb::late_hosts() const {
   if (!implementation_->is_in_lock_step() || !implementation_->late.empty()) return implementation_->late;
   return implementation_->names([](const HostPace& pace) { return !pace.waits_for_board(); });
 }
-bool VirtualUsb::is_asked() const { return implementation_->any(&HostPace::is_asked); }
+bool VirtualUsb::has_control_transfer() const { return implementation_->any(&HostPace::has_control_transfer); }
 void VirtualUsb::keep_in_lock_step(std::function<void()> on_stop) { implementation_->on_stop = std::move(on_stop); }
 bool VirtualUsb::lets_time_pass() const { return implementation_->lets_time_pass(); }
 void VirtualUsb::connect() { implementation_->port.plug(true); }
 void VirtualUsb::disconnect() { implementation_->port.plug(false); }
-void VirtualUsb::let_host_ask(bool asks) { implementation_->port.let_host_ask(asks); }
+void VirtualUsb::set_host_polling(bool polls) { implementation_->port.set_host_polling(polls); }
 bool VirtualUsb::connected() const { return implementation_->port.plugged(); }
 bool VirtualUsb::enumerated() const { return implementation_->port.enumerated(); }
 bool VirtualUsb::imported() const { return implementation_->port.imported(); }

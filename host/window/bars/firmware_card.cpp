@@ -41,7 +41,7 @@ FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater
       text(style.fonts.strong, palette.text, "Updating the firmware");
       draw_progress(style, sight);
       break;
-    case Phase::asks:
+    case Phase::awaits_consent:
       text(style.fonts.strong, palette.caution, "The board has a newer firmware");
       wrapped_text(palette.text_quiet, sight.message);
       outcome.update = update_button("Write older firmware", style);

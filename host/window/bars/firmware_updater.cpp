@@ -16,10 +16,10 @@ FirmwareUpdater::FirmwareUpdater(std::filesystem::path image, device::Address ad
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-void FirmwareUpdater::look_for_boot_loader(bool looks) {
+void FirmwareUpdater::search_boot_loader(bool searches) {
   const std::scoped_lock lock(mutex_);
-  if (std::exchange(looks_, looks) != looks) changed_.notify_one();
-  if (!looks) sight_.sees_boot_loader = false;
+  if (std::exchange(searches_, searches) != searches) changed_.notify_one();
+  if (!searches) sight_.sees_boot_loader = false;
 }
 
 void FirmwareUpdater::meet(const std::string& board_name) {
@@ -37,7 +37,7 @@ void FirmwareUpdater::begin(const std::string& serial_number) {
   const std::scoped_lock lock(mutex_);
   if (sight_.phase == Phase::runs) return;
   begun_ = serial_number;
-  allows_downgrade_ = sight_.phase == Phase::asks;
+  allows_downgrade_ = sight_.phase == Phase::awaits_consent;
   sight_.phase = Phase::runs;
   sight_.message = "starting";
   sight_.done = 0;
@@ -58,20 +58,20 @@ void FirmwareUpdater::work(const std::stop_token& stop) {
   using namespace std::chrono_literals;
   while (!stop.stop_requested()) {
     std::optional<std::string> board;
-    bool looks = false, reads = false, allows_downgrade = false;
+    bool searches = false, reads = false, allows_downgrade = false;
     {
       std::unique_lock lock(mutex_);
       changed_.wait_for(lock, stop, 1s, [this] { return begun_.has_value() || !is_offer_read_; });
       board = std::exchange(begun_, std::nullopt);
       allows_downgrade = allows_downgrade_;
-      looks = looks_;
+      searches = searches_;
       reads = !is_offer_read_;
     }
     if (reads) read_offer();
     if (board)
       update(*board, allows_downgrade);
-    else if (looks)
-      look();
+    else if (searches)
+      search();
   }
 }
 
@@ -104,14 +104,14 @@ void FirmwareUpdater::read_offer() {
   sight_.version = offer.version;
 }
 
-void FirmwareUpdater::look() {
+void FirmwareUpdater::search() {
   bool is_there = false;
   try {
     is_there = !device::find_boot_loaders(address_).empty();
   } catch (const device::Error&) {  // the session reports the error
   }
   const std::scoped_lock lock(mutex_);
-  sight_.sees_boot_loader = is_there && looks_;
+  sight_.sees_boot_loader = is_there && searches_;
 }
 
 void FirmwareUpdater::set(Phase phase, const std::string& message, double done) {
@@ -139,7 +139,7 @@ void FirmwareUpdater::update(const std::string& serial_number, bool allows_downg
     else
       set(Phase::done, fmt::format("The board now runs firmware {}.", result.firmware_version), 1);
   } catch (const firmware_update::Downgrade& question) {
-    set(Phase::asks, question.what(), 0);
+    set(Phase::awaits_consent, question.what(), 0);
   } catch (const std::exception& error) {
     set(Phase::failed, error.what(), 0);
   }

@@ -39,7 +39,7 @@ void ReplayBar::open(const std::filesystem::path& file) {
 void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& mark) {
   recording::Recording over = recording::read(file);
   std::string name;
-  std::tie(name, over.name) = recording::names_beside_each_other(file_, file);
+  std::tie(name, over.name) = recording::distinct_names(file_, file);
   over_.emplace(std::move(over), replay_->recording(), mark);
   name_ = std::move(name);
   aligned_at_ = mark;
@@ -59,11 +59,11 @@ void ReplayBar::follow(double now_s, ScopePane& scope) {
   editor_.take_changes();
   editor_.forget_unconfirmed(now_s);
   const auto passed = replay_->advance(passed_s, scope.span_s());
-  if (passed.starts_anew) scope.start_anew();
+  if (passed.is_restart) scope.restart();
   for (const auto& block : passed.blocks) {
     if (over_) {
-      const device::ScopeSamples beside = over_->beside(block);
-      scope.receive(block, &beside);
+      const device::ScopeSamples compared = over_->compared_with(block);
+      scope.receive(block, &compared);
     } else {
       scope.receive(block);
     }
@@ -94,7 +94,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
   if (!is_to_be_closed) return;
   replay_.reset();
   over_.reset();
-  scope.start_anew();
+  scope.restart();
 }
 
 void ReplayBar::draw_controls(const Style& style) {

@@ -74,7 +74,7 @@ bool stop_button(ImVec2 size, const Style& style) {
 
 void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   const bool open = ImGui::BeginPopup("devices");
-  desk.keep_looking(open);
+  desk.keep_searching(open);
   if (!open) return;
   const Palette& palette = *style.palette;
   const DeviceView& view = desk.view();

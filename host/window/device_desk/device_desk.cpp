@@ -14,21 +14,21 @@ constexpr std::size_t scope_frames_maximum = 20'000;  // about ten seconds witho
 DeviceDesk::DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number)
     : list_devices_(std::move(list_devices)), wanted_(std::move(serial_number)) {
   open_session();
-  looker_ = std::jthread([this](const std::stop_token& stop) {
+  searcher_ = std::jthread([this](const std::stop_token& stop) {
     using namespace std::chrono_literals;
     for (int tick = 0; !stop.stop_requested(); ++tick) {
-      if (looking_ && tick % 10 == 0) look();
+      if (is_searching_ && tick % 10 == 0) find_endpoints();
       std::this_thread::sleep_for(100ms);
     }
   });
 }
 
 DeviceDesk::~DeviceDesk() {
-  looker_.request_stop();
+  searcher_.request_stop();
   session_.reset();
 }
 
-std::vector<device::Endpoint> DeviceDesk::look() {
+std::vector<device::Endpoint> DeviceDesk::find_endpoints() {
   std::vector<device::Endpoint> found;
   std::string error;
   try {
@@ -44,7 +44,7 @@ std::vector<device::Endpoint> DeviceDesk::look() {
 
 void DeviceDesk::open_session() {
   session_ = std::make_unique<device::Session>([this, choice = ArmChoice(wanted_)]() mutable {
-    const std::vector<device::Endpoint> found = look();
+    const std::vector<device::Endpoint> found = find_endpoints();
     must_choose_ = false;
     try {
       return choice.pick(found);

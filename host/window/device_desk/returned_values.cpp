@@ -3,7 +3,7 @@
 namespace inkwell::window {
 
 namespace {
-constexpr double same_is_told_for_s = 6.0;
+constexpr double repeat_interval_s = 6.0;
 }
 
 void ReturnedValues::compare(const device::Reconnection& reconnection, double now_s) {
@@ -24,7 +24,7 @@ void ReturnedValues::follow(const DeviceView& view, double now_s) {
   if (view.reconnection->number != seen_) compare(*view.reconnection, now_s);
   if (!is_shown_) return;
   if (rows_.empty()) {
-    is_shown_ = now_s - shown_since_s_ < same_is_told_for_s;
+    is_shown_ = now_s - shown_since_s_ < repeat_interval_s;
     return;
   }
   // The user no longer has to decide about a value that has changed since the reconnection.

@@ -81,7 +81,7 @@ FrameLoop::Frame FrameLoop::next_frame() {
 }
 
 bool FrameLoop::is_due(const Frame& frame) const {
-  const bool something_happened = frame.evidence.input || frame.is_last || frame.is_asked || content_.asks_for_frame();
+  const bool something_happened = frame.evidence.input || frame.is_last || frame.is_asked || content_.needs_frame();
   return rhythm_.is_due(something_happened, frame.now_s) && frame.size.width > 0 && frame.size.height > 0;
 }
 

@@ -37,7 +37,7 @@ void show_keyboard() {
 
 }  // namespace
 
-void KeyboardTour::give_to(ImGuiWindow& part) {
+void KeyboardTour::focus_window(ImGuiWindow& part) {
   ImGuiWindow* last = part.NavLastChildNavWindow;
   ImGuiWindow& into = last != nullptr && last->WasActive ? *last : part;
   ImGui::FocusWindow(&into);
@@ -55,7 +55,7 @@ void KeyboardTour::begin_frame() {
   ImGuiWindow* wanted = wanted_.empty() ? nullptr : ImGui::FindWindowByName(wanted_.c_str());
   if (wanted != nullptr && wanted->WasActive) {
     wanted_.clear();
-    give_to(*wanted);
+    focus_window(*wanted);
   }
   if (std::exchange(last_thing_is_gone_, false) && GImGui->NavWindow != nullptr)
     ImGui::NavInitWindow(GImGui->NavWindow, true);
@@ -68,7 +68,7 @@ void KeyboardTour::go_on_now(bool backwards) {
   ImGuiWindow* now = GImGui->NavWindow != nullptr ? GImGui->NavWindow->RootWindow : nullptr;
   const auto place = std::ranges::find(all, now);
   const bool is_last = place == all.end() || place + 1 == all.end();
-  give_to(is_last ? *all.front() : **(place + 1));
+  focus_window(is_last ? *all.front() : **(place + 1));
 }
 
 void KeyboardTour::end_frame(const Style& style) {

@@ -22,24 +22,24 @@ BoardFaults::BoardFaults(device::SocketAddress control)
 BoardFaults::~BoardFaults() = default;  // std::jthread requests its thread to stop and joins it
 
 void BoardFaults::inject(const protocol::InjectionRequest& request) {
-  ask([this, request](device::ControlClient& board) { tell(board.inject(request)); });
+  queue_request([this, request](device::ControlClient& board) { publish(board.inject(request)); });
 }
 
 void BoardFaults::heal(const std::string& fault, const std::string& of) {
-  ask([fault, of](device::ControlClient& board) { board.heal(fault, of); });
+  queue_request([fault, of](device::ControlClient& board) { board.heal(fault, of); });
 }
 
 void BoardFaults::heal_all() {
-  ask([](device::ControlClient& board) { board.heal_all(); });
+  queue_request([](device::ControlClient& board) { board.heal_all(); });
 }
 
-void BoardFaults::ask(Request request) {
+void BoardFaults::queue_request(Request request) {
   const std::scoped_lock lock(mutex_);
   requests_.push_back(std::move(request));
   asked_.notify_one();
 }
 
-void BoardFaults::tell(News news) {
+void BoardFaults::publish(News news) {
   const std::scoped_lock lock(mutex_);
   const bool is_answer = std::holds_alternative<device::Injections>(news);
   const bool is_gone = std::holds_alternative<Gone>(news);
@@ -68,7 +68,7 @@ void BoardFaults::carry_out(const Request& request, device::ControlClient& board
   try {
     request(board);
   } catch (const device::CommandRefused& refused) {
-    tell(Refusal{refused.what()});
+    publish(Refusal{refused.what()});
   }
 }
 
@@ -88,10 +88,10 @@ void BoardFaults::run(const std::stop_token& stop) {
         board->wait_at_most(answer_limit);
       }
       for (const Request& request : requests) carry_out(request, *board);
-      tell(board->injections());
+      publish(board->injections());
     } catch (const device::Error& failure) {
       board.reset();
-      tell(Gone{failure.what()});
+      publish(Gone{failure.what()});
     }
   }
 }

@@ -105,11 +105,12 @@ protocol::InjectionRequest request_of(const TypedFault& typed) {
 
 std::string place_and_amount(const device::PutInFault& put_in) {
   const auto fault = protocol::find_injection(put_in.fault);
-  std::string told = put_in.of;
-  if (fault && !told.empty()) told = fmt::format("{}{}", word_for(protocol::info(*fault).place), told);
-  if (!put_in.amount) return told;
+  std::string described = put_in.of;
+  if (fault && !described.empty()) described = fmt::format("{}{}", word_for(protocol::info(*fault).place), described);
+  if (!put_in.amount) return described;
   const std::string_view unit = fault ? protocol::info(*fault).unit : "";
-  return fmt::format("{}{}{:.6g}{}{}", told, told.empty() ? "" : ", ", *put_in.amount, unit.empty() ? "" : " ", unit);
+  return fmt::format("{}{}{:.6g}{}{}", described, described.empty() ? "" : ", ", *put_in.amount,
+                     unit.empty() ? "" : " ", unit);
 }
 
 std::string duration_text(double duration_s) {

@@ -75,7 +75,7 @@ bool FaultForm::draw_field(const Field& field, std::string& typed, const Style& 
   text(style.palette->text_quiet, field.label);
   ImGui::SameLine();
   ImGui::SetCursorPosX(left + label_part * width);
-  ImGui::SetNextItemWidth((1.0f - label_part) * width - field.beside);
+  ImGui::SetNextItemWidth((1.0f - label_part) * width - field.right_room);
   // Waits until Enter is released. Otherwise the field would process the same key press.
   if (takes_keyboard_ && !is_enter_down()) {
     takes_keyboard_ = false;

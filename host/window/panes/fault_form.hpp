@@ -26,7 +26,7 @@ class FaultForm {
     const char* label;
     const char* name;  ///< name in inspections
     std::string hint;
-    float beside;  ///< free width to the right of the field
+    float right_room;  ///< free width to the right of the field
   };
 
   // These functions return true if the user pressed Enter in a field.

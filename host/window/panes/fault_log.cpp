@@ -85,17 +85,17 @@ void FaultLog::place_pending(const device::Injections& now) {
   const auto periods_ago = static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - at_periods);
   const double length_s = period_s(now);
   if (periods_ago >= 0) {
-    set_beside(pending_->fault.fault, now.period_at_s - (periods_ago - 1) * length_s,
-               now.period_at_s - static_cast<double>(now.period) * length_s);
+    show_with(pending_->fault.fault, now.period_at_s - (periods_ago - 1) * length_s,
+              now.period_at_s - static_cast<double>(now.period) * length_s);
   } else if (++pending_->answers < patience_answers) {
     return;
   } else {
-    set_beside(pending_->fault.fault, std::nullopt, 0);
+    show_with(pending_->fault.fault, std::nullopt, 0);
   }
   pending_.reset();
 }
 
-void FaultLog::set_beside(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s) {
+void FaultLog::show_with(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s) {
   for (LoggedFault& each : faults_) {
     if (each.noticed || each.phase == Phase::to_come) continue;
     const double came_s = each.put_in.at_s;

@@ -198,7 +198,8 @@ void GuidesPane::draw_step(const Style& style) {
   ImGui::Dummy({0, style.points(2)});
   text(style.fonts.strong, palette.text, step.title());
   wrapped_text(palette.text, step.text());
-  if (guide_->phase() == Phase::asks) wrapped_text(palette.caution, "The guide waits until you press Confirm.");
+  if (guide_->phase() == Phase::awaits_consent)
+    wrapped_text(palette.caution, "The guide waits until you press Confirm.");
   if (!user_problem_.empty()) wrapped_text(palette.danger_text, user_problem_);
   ImGui::Dummy({0, style.points(4)});
   if (guide_->phase() == Phase::working) draw_checks(style);

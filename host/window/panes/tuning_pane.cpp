@@ -98,7 +98,7 @@ class TuningPane final : public Pane {
   /// Sends the typed value, or shows an error.
   void take_typed(Parameter parameter, const std::string& label, const std::string& typed, const PaneFrame& frame);
   void draw_file_dialog(const PaneFrame& frame);
-  void ask_for_file(FileTask task);
+  void choose_file(FileTask task);
   /// Loads a file as one undo step and shows the result in the pane.
   void load(const std::filesystem::path& file, ParameterEditor& editor, double now_s);
   void save(const std::filesystem::path& file, const ParameterEditor& editor);
@@ -169,9 +169,9 @@ void TuningPane::draw_heading(const PaneFrame& frame) {
     help_on_hover("", fmt::format("Redoes the change: {}. Key: Ctrl+Shift+Z", editor.redo_title()), style);
   ImGui::SameLine();
   ImGui::BeginDisabled(!editor.known());
-  if (quiet_button("Load", style)) ask_for_file(FileTask::load);
+  if (quiet_button("Load", style)) choose_file(FileTask::load);
   ImGui::SameLine();
-  if (quiet_button("Save", style)) ask_for_file(FileTask::save);
+  if (quiet_button("Save", style)) choose_file(FileTask::save);
   ImGui::EndDisabled();
   ImGui::PopStyleVar();
 }
@@ -334,7 +334,7 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   ImGui::Unindent(style.points(rows_indent_points));
 }
 
-void TuningPane::ask_for_file(FileTask task) {
+void TuningPane::choose_file(FileTask task) {
   task_ = task;
   const bool saving = task == FileTask::save;
   chooser_.ask({.title = saving ? "Save parameters" : "Load parameters",

@@ -96,7 +96,7 @@ float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool up
                : std::clamp(wanted_whole_mm, info.minimum, std::max(opposite_m - room_m, info.minimum));
 }
 
-bool looks_different(const std::optional<device::Pose>& first, const std::optional<device::Pose>& second) {
+bool differs_visibly(const std::optional<device::Pose>& first, const std::optional<device::Pose>& second) {
   if (!first || !second) return first.has_value() != second.has_value();
   const device::Pose& a = *first;
   const device::Pose& b = *second;

@@ -118,7 +118,7 @@ std::vector<protocol::Signal> inputs_of(std::string_view text) {
   return inputs;
 }
 
-std::string unit_told_by(std::string_view text) {
+std::string find_unit(std::string_view text) {
   const auto inputs = inputs_of(text);
   if (inputs.empty() || names_in(text).size() < inputs.size()) return {};
   const std::string_view unit = info(inputs.front()).unit;

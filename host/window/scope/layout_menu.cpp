@@ -36,8 +36,8 @@ void LayoutMenu::draw_choices(ScopeLayout& layout) {
   ImGui::Separator();
   if (ImGui::Selectable("Add a plot")) layout.plots.push_back({PlotKind::time, "Plot", {protocol::Signal::force_N}});
   if (is_own && is_changed && ImGui::Selectable("Save the changes")) own_.save(layout);
-  if (ImGui::Selectable("Save as...")) ask_for_name(NameTask::save, is_own ? layout.name : std::string());
-  if (is_own && ImGui::Selectable("Rename...")) ask_for_name(NameTask::rename, layout.name);
+  if (ImGui::Selectable("Save as...")) open_name_dialog(NameTask::save, is_own ? layout.name : std::string());
+  if (is_own && ImGui::Selectable("Rename...")) open_name_dialog(NameTask::rename, layout.name);
   if (chosen != nullptr) layout = ScopeLayout{*chosen};
   if (is_own && ImGui::Selectable("Delete")) {
     own_.remove(layout.name);
@@ -45,7 +45,7 @@ void LayoutMenu::draw_choices(ScopeLayout& layout) {
   }
 }
 
-void LayoutMenu::ask_for_name(NameTask task, const std::string& suggestion) {
+void LayoutMenu::open_name_dialog(NameTask task, const std::string& suggestion) {
   task_ = task;
   name_ = suggestion;
 }
@@ -70,14 +70,14 @@ void LayoutMenu::draw_name(ScopeLayout& layout, const Style& style) {
       coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->pane, {style.points(100), 0});
   ImGui::SameLine();
   const bool cancelled = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(key_index(ImGuiKey_Escape));
-  if (cancelled || ((confirmed || entered) && give_name(layout))) {
+  if (cancelled || ((confirmed || entered) && save_name(layout))) {
     task_ = NameTask::none;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
-bool LayoutMenu::give_name(ScopeLayout& layout) {
+bool LayoutMenu::save_name(ScopeLayout& layout) {
   const bool renames = task_ == NameTask::rename;
   refusal_ = renames ? own_.rename(layout.name, name_) : OwnLayouts::refusal(name_);
   if (!refusal_.empty()) return false;

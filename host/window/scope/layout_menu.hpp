@@ -21,10 +21,10 @@ class LayoutMenu {
   enum class NameTask : std::uint8_t { none, save, rename };
 
   void draw_choices(ScopeLayout& layout);
-  void ask_for_name(NameTask task, const std::string& suggestion);
+  void open_name_dialog(NameTask task, const std::string& suggestion);
   void draw_name(ScopeLayout& layout, const Style& style);
   /// Applies the typed name. Returns false and shows the reason if the name is invalid.
-  bool give_name(ScopeLayout& layout);
+  bool save_name(ScopeLayout& layout);
 
   OwnLayouts own_;
   NameTask task_ = NameTask::none;

@@ -18,7 +18,7 @@ float width_of(const std::string& label, const Style& style) {
   return style.fonts.caption->CalcTextSizeA(style.fonts.caption->FontSize, 1e4f, 0, label.c_str()).x;
 }
 
-constexpr float beside_label_points = 24.0f;  // width of a color mark and of a gap
+constexpr float label_margin_points = 24.0f;  // width of a color mark and of a gap
 
 // Returns the index of the first signal on the y axis. In an xy plot, the first signal is on the x axis.
 std::size_t first_on_y_axis(const ScopePlot& plot) {
@@ -27,10 +27,10 @@ std::size_t first_on_y_axis(const ScopePlot& plot) {
 
 // Returns the signal names. The names omit the unit if all signals have the same unit.
 std::vector<std::string> names_on_y_axis(const ScopePlot& plot) {
-  const bool unit_is_told = !common_unit(plot).empty();
+  const bool unit_is_known = !common_unit(plot).empty();
   std::vector<std::string> names;
   for (std::size_t i = first_on_y_axis(plot); i < plot.signals.size(); ++i)
-    names.push_back(unit_is_told ? short_name(plot.signals[i]) : std::string(plot.signals[i].name()));
+    names.push_back(unit_is_known ? short_name(plot.signals[i]) : std::string(plot.signals[i].name()));
   return names;
 }
 
@@ -59,7 +59,7 @@ class LegendLabels {
     if (const std::vector<std::string> words = last_words(plot); words.size() > 1 && are_different(words))
       names_ = words;
     if (fits(names_)) return;
-    const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(beside_label_points);
+    const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(label_margin_points);
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
@@ -79,7 +79,7 @@ class LegendLabels {
   bool fits(const std::vector<std::string>& labels) const {
     float wanted = 0.0f;
     for (const std::string& label : labels)
-      wanted += width_of(label, frame_.style) + frame_.style.points(beside_label_points);
+      wanted += width_of(label, frame_.style) + frame_.style.points(label_margin_points);
     return wanted <= room_;
   }
 
@@ -120,7 +120,7 @@ std::string common_unit(const ScopePlot& plot) {
 float legend_width(const ScopePlot& plot, const Style& style) {
   float width = width_of(common_unit(plot), style) + style.points(8);
   for (const std::string& name : names_on_y_axis(plot))
-    width += width_of(name, style) + style.points(beside_label_points);
+    width += width_of(name, style) + style.points(label_margin_points);
   return width;
 }
 
@@ -147,7 +147,7 @@ void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFr
   float right = place.x + width;
   for (std::size_t i = labels.size(); i-- > 0;) {
     right -= width_of(labels[i], style);
-    if (right < place.x + style.points(beside_label_points)) break;
+    if (right < place.x + style.points(label_margin_points)) break;
     list.AddText(font, font->FontSize, {right, place.y}, quiet, labels[i].c_str());
     note_text(labels[i]);
     right -= style.points(14);

@@ -27,7 +27,7 @@ constexpr float x_axis_points = 21.0f;
 constexpr float plot_minimum_width_points = 230.0f;
 constexpr float plot_minimum_height_points = 92.0f;
 constexpr float title_part_maximum = 0.5f;
-constexpr float beside_title_points = 24.0f;
+constexpr float title_margin_points = 24.0f;
 
 }  // namespace
 
@@ -130,7 +130,7 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
   const float title_room = std::max(title_part_maximum * size.x,
-                                    size.x - legend_width(view.plot(), style) - style.points(beside_title_points));
+                                    size.x - legend_width(view.plot(), style) - style.points(title_margin_points));
   if (button(fitted(plot.title.empty() ? "Plot" : plot.title, title_room).c_str())) ImGui::OpenPopup("plot menu");
   ImGui::PopFont();
   ImGui::PopStyleColor();

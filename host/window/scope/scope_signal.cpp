@@ -33,8 +33,8 @@ static_assert(std::ranges::is_sorted(group_begins, {}, &GroupBegin::first));
 
 std::string_view group_of(Signal signal) {
   if (static_cast<std::size_t>(signal) >= protocol::signal_count) return "Force law";
-  const auto behind = std::ranges::upper_bound(group_begins, signal, {}, &GroupBegin::first);
-  return std::prev(behind)->title;
+  const auto next_group = std::ranges::upper_bound(group_begins, signal, {}, &GroupBegin::first);
+  return std::prev(next_group)->title;
 }
 
 std::string in_small_letters(std::string_view text) {

@@ -78,7 +78,7 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
   return result;
 }
 
-void SignalLane::begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first) {
+void SignalLane::restart(std::vector<protocol::Signal> signals, std::uint64_t first) {
   signals_ = std::move(signals);
   series_.clear();
   for (std::size_t i = 0; i < signals_.size(); ++i) series_.emplace_back(capacity_, first);
@@ -143,8 +143,8 @@ const SignalSeries* SignalLane::find(const ScopeSignal& signal) const {
 }
 
 void SignalHistory::clear() {
-  shown_.begin_anew({}, 0);
-  over_.begin_anew({}, 0);
+  shown_.restart({}, 0);
+  over_.restart({}, 0);
 }
 
 void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
@@ -155,14 +155,14 @@ void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
 void SignalHistory::append(const device::ScopeSamples& samples, const device::ScopeSamples* over) {
   if (samples.count == 0) return;
   if (samples.signals != shown_.signals() || samples.lost_before > capacity_) {
-    shown_.begin_anew(samples.signals, 0);
-    over_.begin_anew({}, 0);
+    shown_.restart(samples.signals, 0);
+    over_.restart({}, 0);
   } else {
     shown_.append_lost(samples.lost_before);
     over_.append_lost(samples.lost_before);
   }
   const std::vector<protocol::Signal> over_signals = over == nullptr ? std::vector<protocol::Signal>{} : over->signals;
-  if (over_signals != over_.signals()) over_.begin_anew(over_signals, shown_.end());
+  if (over_signals != over_.signals()) over_.restart(over_signals, shown_.end());
   shown_.append({samples.values.data(), samples.count * samples.signals.size()});
   if (over != nullptr) over_.append(over->values);
 }

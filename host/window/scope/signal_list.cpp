@@ -117,7 +117,7 @@ void SignalList::ask_about(const Formula& formula) {
 
 Formula SignalList::typed() const {
   Formula formula = typed_;
-  if (formula.unit.empty()) formula.unit = unit_told_by(formula.text);
+  if (formula.unit.empty()) formula.unit = find_unit(formula.text);
   if (!typed_low_pass_.empty()) {
     const auto number = device::parse_number(typed_low_pass_);
     formula.low_pass_Hz = number ? static_cast<double>(*number) : std::numeric_limits<double>::quiet_NaN();
@@ -138,8 +138,8 @@ void SignalList::draw_fields(const Style& style) {
   field("Formula of signal names and + - * / ^ ( ) sqrt abs sin cos min max", "##formula",
         "force_x_N - program_force_x_N", typed_.text);
   field("Signal name", "##name of formula", "force_error_N", typed_.name);
-  const std::string told = unit_told_by(typed_.text);
-  field("Unit", "##unit", told.empty() ? "such as Nm; 1 for no unit" : told.c_str(), typed_.unit);
+  const std::string known_unit = find_unit(typed_.text);
+  field("Unit", "##unit", known_unit.empty() ? "such as Nm; 1 for no unit" : known_unit.c_str(), typed_.unit);
   field("Low-pass filter / Hz", "##filter", "none", typed_low_pass_);
 }
 

@@ -19,7 +19,7 @@ void Timeline::receive(const device::ScopeSamples& samples, const device::ScopeS
   if (!paused_) history_.append(samples, over);
 }
 
-void Timeline::start_anew() {
+void Timeline::restart() {
   history_.clear();
   trigger_.arm();
   paused_ = false;
@@ -30,7 +30,7 @@ void Timeline::pause(bool paused) {
   if (paused) {
     paused_last_ = stretch().last;
   } else {
-    start_anew();  // the samples during the pause were discarded
+    restart();  // the samples during the pause were discarded
   }
   paused_ = paused;
 }

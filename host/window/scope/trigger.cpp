@@ -19,27 +19,27 @@ std::optional<std::uint64_t> find_crossing(const SignalSeries& series, std::uint
 void Trigger::arm() {
   coming_.reset();
   event_.reset();
-  looked_at_ = UINT64_MAX;
+  next_checked_ = UINT64_MAX;
 }
 
 void Trigger::advance(const SignalSeries& series, const TriggerSettings& settings, double span) {
   if (settings.mode == TriggerMode::off) return;
   // After arm() or a restart of the history, only new samples are searched.
-  if (looked_at_ > series.end()) looked_at_ = series.end();
+  if (next_checked_ > series.end()) next_checked_ = series.end();
   if (settings.mode == TriggerMode::single && event_) return;
   const auto after = static_cast<std::uint64_t>(span * (1.0 - static_cast<double>(settings.pre_trigger)));
   while (true) {
     if (coming_) {
       if (series.end() < *coming_ + after) return;
       event_ = coming_;
-      looked_at_ = std::max(looked_at_, *coming_ + after);
+      next_checked_ = std::max(next_checked_, *coming_ + after);
       coming_.reset();
       if (settings.mode == TriggerMode::single) return;
     }
-    coming_ = find_crossing(series, looked_at_, series.end(), settings.level, settings.edge);
-    looked_at_ = series.end();
+    coming_ = find_crossing(series, next_checked_, series.end(), settings.level, settings.edge);
+    next_checked_ = series.end();
     if (!coming_) return;
-    looked_at_ = *coming_ + 1;
+    next_checked_ = *coming_ + 1;
   }
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   const auto of_three = std::ranges::count_if(case_faults(), is_of_three);
   CHECK(of_three > 40);
   CHECK(cases.size() == (case_faults().size() * 3 + static_cast<std::size_t>(of_three) * 2) * 12);
-  CHECK(cases[0].fault.is_none());
+  CHECK(cases[0].fault.is_fault_free());
   CHECK(case_faults().back().deed == Deed::fast_hand);
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
@@ -166,15 +166,15 @@ TEST_CASE("a result whose counts are no counts is refused with their name") {
   const std::string text = text_of({.number = 7, .phase = 2, .restarts = 1});
   CHECK(parse_result(text).number == 7);
   CHECK(parse_result(text_of({.number = 7, .fault = "motor_open\x1B[2J:2"})).fault == "motor_open?[2J:2");
-  for (const auto& [sound, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
-                                       {"\"number\": 7", "\"number\": 4294967296"},
-                                       {"\"phase\": 2", "\"phase\": -2"},
-                                       {"\"restarts\": 1", "\"restarts\": 1.5"},
-                                       {"\"restarts\": 1", "\"restarts\": \"\\u00ff\""}}) {
+  for (const auto& [fault_free, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
+                                            {"\"number\": 7", "\"number\": 4294967296"},
+                                            {"\"phase\": 2", "\"phase\": -2"},
+                                            {"\"restarts\": 1", "\"restarts\": 1.5"},
+                                            {"\"restarts\": 1", "\"restarts\": \"\\u00ff\""}}) {
     CAPTURE(damaged);
-    const std::string name = std::string(sound).substr(1, std::string(sound).find('"', 1) - 1);
+    const std::string name = std::string(fault_free).substr(1, std::string(fault_free).find('"', 1) - 1);
     std::string wrong = text;
-    wrong.replace(wrong.find(sound), std::string(sound).size(), damaged);
+    wrong.replace(wrong.find(fault_free), std::string(fault_free).size(), damaged);
     CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains((name + " is ").c_str()), device::Error);
   }
 }

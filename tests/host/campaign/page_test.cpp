@@ -105,9 +105,9 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("campaign-off.svg") != std::string::npos);
   CHECK(plot.find(">1 to 2</text>") != std::string::npos);
   CHECK(plot.find(">stayed on</text>") != std::string::npos);
-  Result sound = seen("none", "wall", 1);
-  sound.energy_J = 0.0003;
-  write_page(std::array{quick, sound}, page);
+  Result fault_free = seen("none", "wall", 1);
+  fault_free.energy_J = 0.0003;
+  write_page(std::array{quick, fault_free}, page);
   CHECK(content_of(page).find("at most 2.49 N in that time (`bridge_fault` in wall), and got at most 1.0 mJ more") !=
         std::string::npos);
   CHECK(content_of(page).find("more than the force limit and a twentieth of it: none.") != std::string::npos);
@@ -136,18 +136,18 @@ TEST_CASE("a page of some of the cases tells what can be told, and says what can
         std::string::npos);
   CHECK(alone.find("no case)") == std::string::npos);
 
-  Result sound = seen("none", "wall", 1), failed = seen("none", "motion", 1);
+  Result fault_free = seen("none", "wall", 1), failed = seen("none", "motion", 1);
   failed.error = "The board did not start.";
-  const std::string partly = page_of({sound, failed, pressed, swung});
+  const std::string partly = page_of({fault_free, failed, pressed, swung});
   CHECK(partly.find("felt at most 2.98 N in that time (`bridge_fault` in wall), and got at most 2.0 mJ more than "
                     "without a fault in the same situation at the same instant (`bridge_fault` in wall). How") !=
         std::string::npos);
   CHECK(partly.find("cannot be told of motion:") != std::string::npos);
-  sound.energy_J = 0.003;
-  CHECK(page_of({sound, pressed})
+  fault_free.energy_J = 0.003;
+  CHECK(page_of({fault_free, pressed})
             .find("and got no more energy than without a fault in the same situation at the same instant.\n") !=
         std::string::npos);
-  CHECK(page_of({sound}).find("felt at most 0.00 N in that time (`none` in wall).\n") != std::string::npos);
+  CHECK(page_of({fault_free}).find("felt at most 0.00 N in that time (`none` in wall).\n") != std::string::npos);
 }
 
 TEST_CASE("energy is compared with that of the same instant, so that none hides behind another instant's") {
@@ -189,10 +189,10 @@ TEST_CASE("the force limit is that of the cases that could be run") {
 
 TEST_CASE("the plots say what is counted, in which unit, what a colour means and where the limit is") {
   const TemporaryDirectory directory;
-  Result sound = seen("none", "wall", 1), button = seen("wire_open:button_1", "wall", 1),
+  Result fault_free = seen("none", "wall", 1), button = seen("wire_open:button_1", "wall", 1),
          hot = seen("motor_hot:2", "wall", 1), quick = seen("bridge_fault", "wall", 1),
          moved = seen("bridge_fault", "motion", 1);
-  sound.peak_force_N = 2.41;
+  fault_free.peak_force_N = 2.41;
   button.peak_force_N = 2.45;
   hot.peak_force_N = 4.2;
   quick.peak_force_N = 0.3;
@@ -210,8 +210,8 @@ TEST_CASE("the plots say what is counted, in which unit, what a colour means and
   Result later = seen("encoder_stuck:2", "wall", 1);
   later.peak_force_N = 2.45;
   later.noticed_in_use_as = "encoder_implausible";
-  CHECK(count(plots_of({sound, later}).first, "not noticed: ") == 0);
-  const auto [off, force] = plots_of({sound, button, hot, quick});
+  CHECK(count(plots_of({fault_free, later}).first, "not noticed: ") == 0);
+  const auto [off, force] = plots_of({fault_free, button, hot, quick});
   CHECK(count(off, "in control periods of 50 μs</text>") == 1);
   CHECK(count(off, "not noticed: 1 of 2 are wires") == 1);
   CHECK(count(off, "#b9c1ca") == 2);  // the bar and its legend entry
@@ -225,7 +225,7 @@ TEST_CASE("the plots say what is counted, in which unit, what a colour means and
   CHECK(count(force, "#b9c1ca") == 3);
   CHECK(count(force, "#3b6ea5") == 2);
   CHECK(count(force, "not compared") == 0);
-  const std::string few = plots_of({sound, moved}).second;
+  const std::string few = plots_of({fault_free, moved}).second;
   CHECK(count(few, "or not compared: no case") == 1);
   // A plot with few bars is wide enough for its title and its legend.
   CHECK(std::stoul(few.substr(few.find("width=\"") + 7)) > 600);

@@ -46,7 +46,8 @@ Result after_first(const std::string& fault, FirstFault first_fault) {
 }  // namespace
 
 TEST_CASE("what became of the fault that was told before is counted, and one that was lost has a row") {
-  Result tripped = after_first("bridge_fault", FirstFault::told), quiet = after_first("dma_stopped", FirstFault::told),
+  Result tripped = after_first("bridge_fault", FirstFault::reported),
+         quiet = after_first("dma_stopped", FirstFault::reported),
          restarted = after_first("core_stalled", FirstFault::black_box),
          lost = after_first("logic_sag", FirstFault::lost), mute = after_first("usb_cut", FirstFault::none),
          failed = after_first("ram_bit", FirstFault::lost);
@@ -84,7 +85,7 @@ TEST_CASE("a board that did not get to its boot loader has a row") {
 TEST_CASE("what a hand feels that flings the arm stands beside what it takes without a force, and with no fault's") {
   Result free = seen("fast_hand", "ready", 1), tested = seen("fast_hand", "testing", 1),
          flung = seen("fast_hand", "rest", 1), missed = seen("fast_hand", "wall", 1),
-         failed = seen("fast_hand", "wall", 2), sound = seen("none", "rest", 1);
+         failed = seen("fast_hand", "wall", 2), fault_free = seen("none", "rest", 1);
   free.peak_force_N = 8.9;
   tested.bridges_were_on = true;
   tested.peak_force_N = 9.1;
@@ -93,8 +94,8 @@ TEST_CASE("what a hand feels that flings the arm stands beside what it takes wit
   flung.off_after_s = 0.15;
   missed.peak_force_N = 7.5;
   failed.error = "The board did not start.";
-  sound.peak_force_N = 2.0;
-  const std::string page = page_of({free, tested, flung, missed, failed, sound});
+  fault_free.peak_force_N = 2.0;
+  const std::string page = page_of({free, tested, flung, missed, failed, fault_free});
   const std::string section = section_of(page, "A fast hand");
   CHECK(section.find("flings the arm 140 mm along x within 0.085 s") != std::string::npos);
   CHECK(section.find("That takes up to 9.10 N without a force. With the force on the hand felt up to 7.65 N, and "
@@ -102,24 +103,24 @@ TEST_CASE("what a hand feels that flings the arm stands beside what it takes wit
   CHECK(page.find("felt at most 2.00 N in that time (`none` in rest)") != std::string::npos);
   CHECK(page.find("a twentieth of it: none.") != std::string::npos);
   CHECK(section_of(page, "Not noticed").find("| `fast_hand` | wall | ") != std::string::npos);
-  CHECK(section_of(page_of({sound}), "A fast hand").find("No such case was run.") != std::string::npos);
+  CHECK(section_of(page_of({fault_free}), "A fast hand").find("No such case was run.") != std::string::npos);
   const TemporaryDirectory directory;
-  write_page(std::array{flung, sound}, directory / "campaign.md");
+  write_page(std::array{flung, fault_free}, directory / "campaign.md");
   CHECK(content_of(directory / "campaign-off.svg").find("#3b6ea5\"") ==
         content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // the legend only, no bar
 }
 
 TEST_CASE("faults that were told by no case are named with the reason, whenever the others were told") {
   std::vector<Result> results;
-  const auto told_in = [&](std::string Result::*when, protocol::Fault fault) {
+  const auto report_in = [&](std::string Result::*when, protocol::Fault fault) {
     results.push_back(seen("bridge_fault", "rest", 1));
     results.back().*when = protocol::info(fault).name;
   };
-  told_in(&Result::detected_as, protocol::Fault::watchdog);
-  told_in(&Result::fault_on_healing, protocol::Fault::heartbeat_missed);
-  told_in(&Result::told_before, protocol::Fault::host_silent);
-  told_in(&Result::told_once_cleared, protocol::Fault::bridge_wire);
-  told_in(&Result::noticed_in_use_as, protocol::Fault::encoder_wire);
+  report_in(&Result::detected_as, protocol::Fault::watchdog);
+  report_in(&Result::fault_on_healing, protocol::Fault::heartbeat_missed);
+  report_in(&Result::told_before, protocol::Fault::host_silent);
+  report_in(&Result::told_once_cleared, protocol::Fault::bridge_wire);
+  report_in(&Result::noticed_in_use_as, protocol::Fault::encoder_wire);
   const std::string some = section_of(page_of(results), "Told by none");
   for (const char* name : {"watchdog", "heartbeat_missed", "host_silent", "bridge_wire", "encoder_wire"})
     CHECK(some.find("`" + std::string(name) + "`") == std::string::npos);
@@ -129,6 +130,6 @@ TEST_CASE("faults that were told by no case are named with the reason, whenever 
   CHECK(some.find("| `motor_hot` | A motor gets less") != std::string::npos);
   results.back().error = "The board did not start.";
   CHECK(section_of(page_of(results), "Told by none").find("`encoder_wire`") != std::string::npos);
-  for (const protocol::Condition& row : protocol::condition_table) told_in(&Result::detected_as, row.fault);
+  for (const protocol::Condition& row : protocol::condition_table) report_in(&Result::detected_as, row.fault);
   CHECK(section_of(page_of(results), "Told by none").ends_with("no case that was run told: none.\n"));
 }

@@ -91,15 +91,15 @@ TEST_CASE(
 TEST_CASE("what was not noticed is told with what became of it in use, and with what a sound arm showed there") {
   const TemporaryDirectory directory;
   Result stuck = seen("encoder_stuck:2", "rest", 1), stuck_later = seen("encoder_stuck:2", "wall", 2),
-         hot = seen("motor_hot:2", "rest", 1), sound = seen("none", "rest", 1);
-  for (Result* result : {&stuck, &stuck_later, &hot, &sound}) result->peak_force_in_use_N = 3.25;
+         hot = seen("motor_hot:2", "rest", 1), fault_free = seen("none", "rest", 1);
+  for (Result* result : {&stuck, &stuck_later, &hot, &fault_free}) result->peak_force_in_use_N = 3.25;
   stuck.noticed_in_use_as = "encoder_implausible";
   stuck.noticed_in_use_s = 0.9;
   stuck_later.peak_force_in_use_N = 3.4;
   stuck_later.noticed_in_use_as = "motor_implausible";
   stuck_later.noticed_in_use_s = 1.75;
   // Only one of the two situations has a fault-free case at the same instant for comparison.
-  sound.energy_in_use_J = 0.04;
+  fault_free.energy_in_use_J = 0.04;
   hot.energy_in_use_J = 0.039;
   stuck.energy_in_use_J = 0.0425;
   stuck_later.energy_in_use_J = 0.09;
@@ -107,7 +107,7 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
     write_page(results, directory / "campaign.md");
     return content_of(directory / "campaign.md");
   };
-  const std::string text = text_with({stuck, stuck_later, hot, sound});
+  const std::string text = text_with({stuck, stuck_later, hot, fault_free});
   CHECK(text.find(
             "for 0.6 s as before, then it pressed with the force limit 2 times in turn into the wall in front and the "
             "one to the side, and swung 4 times.") != std::string::npos);
@@ -118,15 +118,15 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
         std::string::npos);
   CHECK(text.find("| `motor_hot:2` | rest | - | 3.25 | no more | ") != std::string::npos);
   stuck.noticed_in_use_s = std::nullopt;
-  sound.noticed_in_use_s = 0.1;
-  const std::string other = text_with({stuck, stuck_later, hot, sound});
+  fault_free.noticed_in_use_s = 0.1;
+  const std::string other = text_with({stuck, stuck_later, hot, fault_free});
   CHECK(other.find("| rest, wall | motor_implausible (1 of 2), 1.75 s | 3.40 | - | ") != std::string::npos);
   CHECK(other.find("a fault was told in 1 of 1 cases.") != std::string::npos);
-  sound.noticed_in_use_s = std::nullopt;
-  CHECK(text_with({stuck, stuck_later, hot, sound}).find("(1 of 2), 1.75 s | 3.40 | 2.5 | ") != std::string::npos);
+  fault_free.noticed_in_use_s = std::nullopt;
+  CHECK(text_with({stuck, stuck_later, hot, fault_free}).find("(1 of 2), 1.75 s | 3.40 | 2.5 | ") != std::string::npos);
   stuck.peak_force_in_use_N = std::nullopt;
   hot.peak_force_in_use_N = 3.6;
-  const std::string third = text_with({stuck, stuck_later, hot, sound});
+  const std::string third = text_with({stuck, stuck_later, hot, fault_free});
   CHECK(third.find("| rest, wall | motor_implausible, 1.75 s; 1 not used | ") != std::string::npos);
   CHECK(third.find("| `motor_hot:2` | rest, used on | 3.6 | - | - | - | - |") != std::string::npos);
 }
@@ -140,20 +140,20 @@ TEST_CASE("bridges that went off while nothing was told are listed with what was
     return text.substr(begin, text.find("\n## ", begin) - begin);
   };
   Result halted = seen("core_halted", "wall", 1), halted_at_rest = seen("core_halted", "rest", 2),
-         told = seen("core_halted", "rest", 3), off_before = seen("core_halted", "ready", 1),
+         without_report = seen("core_halted", "rest", 3), off_before = seen("core_halted", "ready", 1),
          stayed = seen("core_halted", "motion", 1), failed = seen("core_halted", "motion", 2);
-  for (Result* result : {&halted, &halted_at_rest, &told, &failed}) result->off_after_s = 1e-6;
+  for (Result* result : {&halted, &halted_at_rest, &without_report, &failed}) result->off_after_s = 1e-6;
   halted.fault_on_healing = "heartbeat_missed";
-  told.detected_as = "watchdog";
-  told.fault_on_healing = "over_speed";
+  without_report.detected_as = "watchdog";
+  without_report.fault_on_healing = "over_speed";
   failed.error = "The board did not start.";
   const std::string row =
       "| `core_halted` | rest (1 of 2), wall | heartbeat_missed | A core that stands tells nothing;";
-  const std::string section = section_of({halted, halted_at_rest, told, off_before, stayed, failed});
+  const std::string section = section_of({halted, halted_at_rest, without_report, off_before, stayed, failed});
   CHECK(section.find(row) != std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
   CHECK(section_of({halted_at_rest}).find("| `core_halted` | rest | - | ") != std::string::npos);
-  CHECK(section_of({told, off_before, stayed, failed}).ends_with("but no fault was told: none.\n"));
+  CHECK(section_of({without_report, off_before, stayed, failed}).ends_with("but no fault was told: none.\n"));
 }
 
 TEST_CASE("situations with one instant stand beside those with three, and the self-test's pulses are no force") {
@@ -194,9 +194,9 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
     return text.substr(begin, text.find("\n## ", begin) - begin);
   };
   Result lost = seen("encoder_slip:2=400", "unreferenced", 1), jumped = seen("encoder_slip:2=400", "ready", 1),
-         pressed = seen("encoder_slip:2=400", "wall", 1), sound = seen("none", "ready", 1);
+         pressed = seen("encoder_slip:2=400", "wall", 1), fault_free = seen("none", "ready", 1);
   jumped.detected_as = "encoder_implausible";
-  const std::string section = section_of({lost, jumped, pressed, sound});
+  const std::string section = section_of({lost, jumped, pressed, fault_free});
   CHECK(section.find("| `encoder_slip:2=400` | unreferenced | Before there is a reference it does") !=
         std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
@@ -208,7 +208,7 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
         std::string::npos);
   CHECK(shared.find("| `wire_open:supply` | ready | ") != std::string::npos);
   CHECK(shared.find("| `wire_high:button_2` | testing | An open or closed wire") != std::string::npos);
-  CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
+  CHECK(section_of({jumped, pressed, fault_free}).ends_with("in which no fault was told: none.\n"));
 }
 
 TEST_CASE("where of three not each passes unnoticed, the page tells which") {

@@ -68,7 +68,7 @@ TEST_CASE("on a terminal the space bar sets a mark immediately, and the terminal
 
 TEST_CASE("an interrupt is recorded while an InterruptGuard exists") {
   InterruptGuard guard;
-  CHECK_FALSE(guard.was_asked_to_end());
+  CHECK_FALSE(guard.is_interrupted());
   raise(SIGINT);
-  CHECK(guard.was_asked_to_end());
+  CHECK(guard.is_interrupted());
 }

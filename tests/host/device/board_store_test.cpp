@@ -86,10 +86,10 @@ TEST_CASE("an older command's result is not taken for this one's") {
   server.spoil[protocol::ReportId::store] = [&](Bytes& report) {
     constexpr int asked_before_it_comes = 5;
     if (++asked <= asked_before_it_comes) return;
-    auto told = server.store;
-    told.commands += 1;
-    told.result = asked <= 2 * asked_before_it_comes ? StoreResult::under_way : StoreResult::done;
-    report = bytes_of(told);
+    auto report_of_store = server.store;
+    report_of_store.commands += 1;
+    report_of_store.result = asked <= 2 * asked_before_it_comes ? StoreResult::under_way : StoreResult::done;
+    report = bytes_of(report_of_store);
   };
   CHECK(store_parameters(*arm).result == StoreResult::done);
   CHECK(asked > 10);
@@ -164,12 +164,12 @@ TEST_CASE("what another program stores is noticed after a second of the device's
     report.stores_left = 42;
   }
   const auto records = report.records_written;
-  server.spoil[protocol::ReportId::store] = [report](Bytes& told) { told = bytes_of(report); };
-  server.spoil[protocol::ReportId::stored] = [stored](Bytes& told) {
+  server.spoil[protocol::ReportId::store] = [report](Bytes& report_of_store) { report_of_store = bytes_of(report); };
+  server.spoil[protocol::ReportId::stored] = [stored](Bytes& report_of_store) {
     protocol::ParametersReport parameters;
-    std::memcpy(&parameters, told.data(), sizeof parameters);
+    std::memcpy(&parameters, report_of_store.data(), sizeof parameters);
     parameters.entries[static_cast<std::size_t>(Parameter::force_limit_N)].value = stored[Parameter::force_limit_N];
-    told = bytes_of(parameters);
+    report_of_store = bytes_of(parameters);
   };
   protocol::PoseReport pose{};
   pose.report_id = protocol::ReportId::pose;

@@ -56,9 +56,9 @@ TEST_CASE("a change of parameters is told with the value before") {
   CHECK(events[0].kind == EventKind::parameter);
   CHECK(events[0].at_periods == 77);
   CHECK(events_of_change(before, before, 77).empty());
-  const bool told = events[0].text == "wall_stiffness_N_per_m = 600.0, was 800.0, by another program" ||
-                    events[1].text == "wall_stiffness_N_per_m = 600.0, was 800.0, by another program";
-  CHECK(told);
+  const bool is_reported = events[0].text == "wall_stiffness_N_per_m = 600.0, was 800.0, by another program" ||
+                           events[1].text == "wall_stiffness_N_per_m = 600.0, was 800.0, by another program";
+  CHECK(is_reported);
 }
 
 TEST_CASE("a log keeps its newest events under their numbers") {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-device::Shapes sound_shapes() {
+device::Shapes valid_shapes() {
   device::Shapes shapes;
   shapes.planes[0] = device::Plane{};
   shapes.planes[5] = device::Plane{.point_m = {0.01f, 0.02f, 0.03f},
@@ -42,7 +42,7 @@ TEST_CASE("a force goes over the wire as it was asked, and the firmware takes it
 }
 
 TEST_CASE("shapes keep their places, those that are not there have no life, and the firmware takes them") {
-  const auto report = device::shapes_report(sound_shapes());
+  const auto report = device::shapes_report(valid_shapes());
   CHECK(report.plane_count == 6);
   control::Shapes shapes;
   REQUIRE(link::decode_shapes(
@@ -82,7 +82,7 @@ TEST_CASE("whatever the firmware would refuse is refused here, with the value an
   };
   for (const Case& one : cases) {
     CAPTURE(one.words);
-    device::Shapes shapes = sound_shapes();
+    device::Shapes shapes = valid_shapes();
     one.change(shapes);
     try {
       device::shapes_report(shapes);

@@ -84,8 +84,8 @@ TEST_CASE("the time of a board that was away goes on, also beyond the wrap of it
 }
 
 TEST_CASE("a fault is told with the control period that noticed it, as far as that is known") {
-  const auto told_at = [](std::optional<std::uint32_t> box_periods, protocol::Fault box_fault, bool is_restart,
-                          std::optional<std::uint32_t> pose_before) {
+  const auto reported_at = [](std::optional<std::uint32_t> box_periods, protocol::Fault box_fault, bool is_restart,
+                              std::optional<std::uint32_t> pose_before) {
     FakeUsbipServer server;
     if (box_periods) {
       server.black_box = {.is_complete = 1, .fault = box_fault, .fault_periods = *box_periods};
@@ -106,46 +106,46 @@ TEST_CASE("a fault is told with the control period that noticed it, as far as th
     return at_periods;
   };
   using protocol::Fault;
-  CHECK(told_at(990, Fault::supply_low, false, 980) == 990);
-  CHECK(told_at(990, Fault::supply_low, false, {}) == 990);
-  CHECK(told_at(970, Fault::supply_low, false, 980) == 1000);   // an older fault
-  CHECK(told_at(1001, Fault::supply_low, false, 980) == 1000);  // from before a reset
-  CHECK(told_at(990, Fault::over_speed, false, 980) == 1000);
-  CHECK(told_at(990, Fault::supply_low, true, 980) == 1000);
-  CHECK(told_at({}, Fault::none, false, 980) == 1000);
-  CHECK(told_at(0xFFFF'FFFF, Fault::supply_low, false, {}) == -1);  // before the counter wrapped
+  CHECK(reported_at(990, Fault::supply_low, false, 980) == 990);
+  CHECK(reported_at(990, Fault::supply_low, false, {}) == 990);
+  CHECK(reported_at(970, Fault::supply_low, false, 980) == 1000);   // an older fault
+  CHECK(reported_at(1001, Fault::supply_low, false, 980) == 1000);  // from before a reset
+  CHECK(reported_at(990, Fault::over_speed, false, 980) == 1000);
+  CHECK(reported_at(990, Fault::supply_low, true, 980) == 1000);
+  CHECK(reported_at({}, Fault::none, false, 980) == 1000);
+  CHECK(reported_at(0xFFFF'FFFF, Fault::supply_low, false, {}) == -1);  // before the counter wrapped
 }
 
 TEST_CASE("a session notes what happens to its device, and a change at the period at which it was applied") {
   FakeUsbipServer server;
   std::vector<device::Event> events;
-  const auto told = [&](std::string_view part) {
+  const auto event_with = [&](std::string_view part) {
     return std::ranges::find_if(events, [&](const auto& event) { return event.text.find(part) != std::string::npos; });
   };
   {
     device::Session session([&] { return std::optional(server.endpoint()); });
-    const auto becomes_told = [&](std::string_view part) {
+    const auto becomes_reported = [&](std::string_view part) {
       return eventually([&] {
         std::ranges::move(session.take_events(), std::back_inserter(events));
-        return told(part) != events.end();
+        return event_with(part) != events.end();
       });
     };
-    CHECK(becomes_told("Connected to 0123456789ABCDEF01234567"));
+    CHECK(becomes_reported("Connected to 0123456789ABCDEF01234567"));
     session.set_parameters({{Parameter::wall_stiffness_N_per_m, 600.0f}});
-    CHECK(becomes_told("wall_stiffness_N_per_m = 600.0, was 800.0"));
-    CHECK(told("wall_stiffness")->at_periods == session.status().applied_at_periods);
-    CHECK(told("wall_stiffness")->at_periods);
+    CHECK(becomes_reported("wall_stiffness_N_per_m = 600.0, was 800.0"));
+    CHECK(event_with("wall_stiffness")->at_periods == session.status().applied_at_periods);
+    CHECK(event_with("wall_stiffness")->at_periods);
     auto pose = pose_at(500);
     pose.state = protocol::State::active;
     server.send(1, bytes_of(pose));
-    CHECK(becomes_told("The force is on."));
-    CHECK(told("The force is on.")->at_periods == 500);
+    CHECK(becomes_reported("The force is on."));
+    CHECK(event_with("The force is on.")->at_periods == 500);
     server.judge = [](const protocol::ParametersReport&) { return protocol::Refusal::out_of_range; };
     session.set_parameters({{Parameter::wall_stiffness_N_per_m, 700.0f}});
     CHECK(eventually([&] { return session.refusal().has_value(); }));
-    CHECK(becomes_told(*session.refusal()));
+    CHECK(becomes_reported(*session.refusal()));
     server.hang_up();
-    CHECK(becomes_told("The device was disconnected."));
+    CHECK(becomes_reported("The device was disconnected."));
   }
   CHECK(std::ranges::count_if(events, [](const auto& event) { return event.text == "The force is on."; }) == 1);
 }

@@ -69,25 +69,25 @@ TEST_CASE("the layout is the one of the descriptors, in whatever order and with 
 }
 
 TEST_CASE("a damaged configuration descriptor is refused, wherever the damage is") {
-  const auto sound =
+  const auto valid =
       joined({configuration_7, hid_interface_1, hid_descriptor, hid_in, hid_out, vendor_interface_3, scope_in});
   CHECK(refused_as({}, "damaged"));
-  CHECK(refused_as(Bytes(sound.begin(), sound.begin() + 8), "damaged"));
-  auto other_type = sound;
+  CHECK(refused_as(Bytes(valid.begin(), valid.begin() + 8), "damaged"));
+  auto other_type = valid;
   other_type[1] = std::byte{1};
   CHECK(refused_as(other_type, "damaged"));
   for (const std::size_t at : {0u, 9u, 18u, 27u, 34u, 41u, 50u}) {  // offset of each descriptor's length
     for (const unsigned length : {0u, 1u, 255u}) {
-      auto damaged = sound;
+      auto damaged = valid;
       damaged[at] = static_cast<std::byte>(length);
       CHECK(refused_as(damaged, "damaged"));
     }
   }
-  auto cut = sound;
+  auto cut = valid;
   cut.pop_back();
   CHECK(refused_as(cut, "damaged"));
-  for (std::size_t size = 0; size < sound.size(); ++size)  // never reads beyond the end and always throws a message
-    CHECK_THROWS_AS(parse_configuration({sound.data(), size}), device::Error);
+  for (std::size_t size = 0; size < valid.size(); ++size)  // never reads beyond the end and always throws a message
+    CHECK_THROWS_AS(parse_configuration({valid.data(), size}), device::Error);
 }
 
 TEST_CASE("descriptors that are shorter than their kind count for nothing") {

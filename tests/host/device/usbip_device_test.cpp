@@ -423,10 +423,10 @@ TEST_CASE("a device names its board, also where it is refused") {
     server.information.firmware_version[1] = 7;
     server.spoil[protocol::ReportId::information] = [](Bytes& report) { report.resize(72); };
     CHECK(board_of_refused().empty());
-    const auto told = device::Device(device::open_transport(server.endpoint())).information();
-    CHECK(told.firmware_version == "0.7.0");
-    CHECK(told.protocol_version == 11);
-    CHECK(told.report.servo_rate_Hz == 0);  // the field has another meaning in this version
+    const auto information = device::Device(device::open_transport(server.endpoint())).information();
+    CHECK(information.firmware_version == "0.7.0");
+    CHECK(information.protocol_version == 11);
+    CHECK(information.report.servo_rate_Hz == 0);  // the field has another meaning in this version
   }
 }
 

@@ -41,7 +41,7 @@ class Script {
   TemporaryDirectory folder_;
 };
 
-constexpr char run_until_told[] = "echo $$ > process\necho ready usbip=7 control=8\nwhile :; do sleep 0.01; done\n";
+constexpr char run_until_reported[] = "echo $$ > process\necho ready usbip=7 control=8\nwhile :; do sleep 0.01; done\n";
 
 std::string failure_of(const device::VirtualBoardOptions& options) {
   return message_of<device::Error>([&] { device::VirtualBoard board(options); });
@@ -50,7 +50,7 @@ std::string failure_of(const device::VirtualBoardOptions& options) {
 }  // namespace
 
 TEST_CASE("a virtual board is asked to end, so that it can put its things in order") {
-  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
+  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_reported);
   {
     device::VirtualBoard board(script.options());
     CHECK(board.usbip() == device::SocketAddress{.host = "127.0.0.1", .port = 7});
@@ -62,7 +62,7 @@ TEST_CASE("a virtual board is asked to end, so that it can put its things in ord
 }
 
 TEST_CASE("a virtual board that does not end when it is asked to is ended") {
-  const Script script(std::string("trap '' TERM\n") + run_until_told);
+  const Script script(std::string("trap '' TERM\n") + run_until_reported);
   pid_t process = 0;
   {
     device::VirtualBoard board(script.options());
@@ -88,7 +88,7 @@ TEST_CASE("a virtual board that is killed leaves no sockets behind") {
 }
 
 TEST_CASE("a virtual board ends with the thread that made it") {
-  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
+  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_reported);
   std::unique_ptr<device::VirtualBoard> board;
   std::thread([&] { board = std::make_unique<device::VirtualBoard>(script.options()); }).join();
   CHECK(eventually([&] { return script.file("end") == "asked"; }));
@@ -111,7 +111,7 @@ TEST_CASE("a virtual board that does not start tells what it said") {
 }
 
 TEST_CASE("a virtual board gets its options") {
-  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_told);
+  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_reported);
   auto options = script.options();
   options.arm = "arm.toml";
   options.mode = device::SimulationMode::exact;
@@ -125,7 +125,7 @@ TEST_CASE("a virtual board gets its options") {
 }
 
 TEST_CASE("a virtual board gets the options that are seldom given, and no others") {
-  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_told);
+  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_reported);
   auto options = script.options();
   options.host_clock_ppm = -500.0;
   options.brown_out_level = 3;
@@ -152,7 +152,7 @@ TEST_CASE("a terminal's Ctrl-C does not reach a virtual board, and no file but i
   const Script script(
       "read -r words < /proc/$$/stat\nset -- $words\necho $5 > group\n"
       "for file in /proc/$$/fd/*; do readlink $file; done | grep pipe | sort | uniq -d > twice\n" +
-      std::string(run_until_told));
+      std::string(run_until_reported));
   const auto open_files = [] {
     return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
   };

@@ -99,7 +99,7 @@ class FakeArm final : public guides::DevicePort {
   /// Runs until the guide has finished or asks a question. Confirms every question if `agrees` is set.
   void run(guides::Guide& guide, bool agrees, int limit_ms = 10'000) {
     for (int ms = 0; ms < limit_ms && !guide.is_over(); ++ms) {
-      if (guide.phase() == guides::Phase::asks) {
+      if (guide.phase() == guides::Phase::awaits_consent) {
         if (!agrees) return;
         guide.confirm();
       }

@@ -29,7 +29,7 @@ void check_left_safe(const FakeArm& arm) {
 
 void run_to_step(FakeArm& arm, Guide& guide, std::size_t step) {
   for (int ms = 0; ms < 20'000 && guide.step_index() < step && !guide.is_over(); ++ms) {
-    if (guide.phase() == Phase::asks) guide.confirm();
+    if (guide.phase() == Phase::awaits_consent) guide.confirm();
     arm.pass_millisecond(guide);
   }
   REQUIRE(guide.step_index() == step);
@@ -51,7 +51,7 @@ TEST_CASE("nothing is powered before the user agrees, and the text says how much
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   for (int ms = 0; ms < 2000; ++ms) arm.pass_millisecond(guide);
-  CHECK(guide.phase() == Phase::asks);
+  CHECK(guide.phase() == Phase::awaits_consent);
   CHECK(guide.step_index() == identify_step);
   CHECK(no_current_was_asked(arm));
   CHECK(arm.transactions.empty());
@@ -185,7 +185,7 @@ TEST_CASE("every guide survives a device that goes away at any moment") {
     FakeArm arm;
     Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
     for (int ms = 0; ms < after_ms; ++ms) {
-      if (guide.phase() == Phase::asks) guide.confirm();
+      if (guide.phase() == Phase::awaits_consent) guide.confirm();
       arm.pass_millisecond(guide);
     }
     const bool had_begun = after_ms > 0 && !guide.is_over();
@@ -226,7 +226,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
       Guide guide = guides::directions_guide.start();
       for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
         const auto task = guide.step().user_task();
-        if (guide.phase() == Phase::asks) guide.confirm();
+        if (guide.phase() == Phase::awaits_consent) guide.confirm();
         if (task.kind == guides::UserTask::Kind::turn_joint_forward)
           arm.pose().joint_rad[task.number - 1] += (encoder_wrong ? -1.0f : 1.0f) * 0.002f;
         if (task.kind == guides::UserTask::Kind::hold_loosely) arm.pose().switches = 0;
@@ -252,7 +252,7 @@ TEST_CASE("a joint that does not turn under its motor is told, not guessed") {
   Guide guide = guides::directions_guide.start();
   for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
     const auto task = guide.step().user_task();
-    if (guide.phase() == Phase::asks) guide.confirm();
+    if (guide.phase() == Phase::awaits_consent) guide.confirm();
     if (task.kind == guides::UserTask::Kind::turn_joint_forward) arm.pose().joint_rad[task.number - 1] += 0.002f;
     if (task.kind == guides::UserTask::Kind::hold_loosely) arm.pose().switches = 0;
     arm.pass_millisecond(guide);

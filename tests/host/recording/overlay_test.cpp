@@ -31,18 +31,18 @@ TEST_CASE("a recording is laid over another one from its begin on") {
   const auto base = ramp("base", 1000, 100);
   const Overlay overlay(ramp("over", 777'000, 50), base);
   CHECK(overlay.begins_s() == 0.0);
-  const auto values = overlay.beside(base.samples(0, 100)).values;
+  const auto values = overlay.compared_with(base.samples(0, 100)).values;
   REQUIRE(values.size() == 100);
   CHECK(values[0] == 0.0f);
   CHECK(values[49] == 49.0f);
   CHECK(std::isnan(values[50]));
-  CHECK(overlay.beside(base.samples(20, 30)).values.front() == 20.0f);
+  CHECK(overlay.compared_with(base.samples(20, 30)).values.front() == 20.0f);
 }
 
 TEST_CASE(
     "two recordings have the names of their files, and with the folders that tell them apart if these are the same") {
   const auto names = [](const char* one, const char* other) {
-    const auto [first, second] = names_beside_each_other(one, other);
+    const auto [first, second] = distinct_names(one, other);
     return first + " " + second;
   };
   CHECK(names("/a/soft.h5", "/a/stiff.csv") == "soft stiff");
@@ -61,7 +61,7 @@ TEST_CASE("a mark that both hold aligns them") {
   CHECK(common_marks(base, over) == std::vector<std::string>{"touch"});
   const Overlay overlay(over, base, "touch");
   CHECK(overlay.begins_s() == doctest::Approx(20.0 / protocol::servo_rate_Hz));
-  const auto values = overlay.beside(base.samples(0, 100)).values;
+  const auto values = overlay.compared_with(base.samples(0, 100)).values;
   CHECK(std::isnan(values[19]));
   CHECK(values[20] == 0.0f);
   CHECK(values[30] == 10.0f);
@@ -69,14 +69,14 @@ TEST_CASE("a mark that both hold aligns them") {
   CHECK(message.find("over has no mark `only here`") != std::string::npos);
   CHECK(message.find("`only there`") != std::string::npos);
   // With the recordings exchanged, the second recording starts earlier.
-  CHECK(Overlay(base, over, "touch").beside(over.samples(0, 1)).values[0] == 20.0f);
+  CHECK(Overlay(base, over, "touch").compared_with(over.samples(0, 1)).values[0] == 20.0f);
 }
 
 TEST_CASE("a gap stays a gap, and what is far apart holds until the next sample") {
   const auto base = ramp("base", 0, 100);
   auto gap = ramp("gap", 0, 10);
   gap.periods.back() = 20;
-  const auto with_gap = Overlay(gap, base).beside(base.samples(0, 30)).values;
+  const auto with_gap = Overlay(gap, base).compared_with(base.samples(0, 30)).values;
   CHECK(with_gap[8] == 8.0f);
   CHECK(std::isnan(with_gap[9]));
   CHECK(std::isnan(with_gap[19]));
@@ -84,7 +84,7 @@ TEST_CASE("a gap stays a gap, and what is far apart holds until the next sample"
   auto sparse = ramp("sparse", 0, 5);
   sparse.information.step_periods = 4;
   for (std::size_t i = 0; i < 5; ++i) sparse.periods[i] = static_cast<std::uint32_t>(4 * i);
-  const auto held = Overlay(sparse, base).beside(base.samples(0, 30)).values;
+  const auto held = Overlay(sparse, base).compared_with(base.samples(0, 30)).values;
   CHECK(held[7] == 1.0f);
   CHECK(held[19] == 4.0f);
   CHECK(std::isnan(held[20]));

@@ -61,7 +61,7 @@ TEST_CASE("a replay gives every sample once, in order, and stops at the end") {
   CHECK(replay.position_s() == doctest::Approx(1.0));
   replay.play();  // from the start again
   const auto again = replay.advance(0.0, 1);
-  CHECK(again.starts_anew);
+  CHECK(again.is_restart);
   CHECK(again.blocks.front().first_period == 1000);
 }
 
@@ -83,11 +83,11 @@ TEST_CASE("the speed of a replay is kept, and bounded") {
 
 TEST_CASE("after a seek the scope is filled with what came before the new position") {
   Replay replay(recorded({Signal::force_N}, {{500, 20'001}}));
-  CHECK(replay.advance(0, 0.1).starts_anew);
-  CHECK_FALSE(replay.advance(0, 0.1).starts_anew);
+  CHECK(replay.advance(0, 0.1).is_restart);
+  CHECK_FALSE(replay.advance(0, 0.1).is_restart);
   replay.seek(0.5);
   auto passed = replay.advance(0, 0.1);
-  CHECK(passed.starts_anew);
+  CHECK(passed.is_restart);
   CHECK(passed.blocks.front().first_period == 500 + 8000);
   CHECK(passed.blocks.front().lost_before == 0);
   CHECK(count_of(passed) == 2001);

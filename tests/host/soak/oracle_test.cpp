@@ -33,13 +33,13 @@ struct Watched {
     oracle.see(pose);
     now_s += 0.005;
     if (protocol::force_is_on(state)) driven_until_s = now_s;
-    oracle.see(Look{now_s, driven_until_s, restarts, motor_force_N, 0.5 * motor_force_N});
+    oracle.see(Snapshot{now_s, driven_until_s, restarts, motor_force_N, 0.5 * motor_force_N});
   }
   void steps(int count, State state, Fault fault = Fault::none) {
     for (int i = 0; i < count; ++i) step(state, fault);
   }
   void switch_on() {
-    oracle.ask_for_force();
+    oracle.request_force();
     steps(10, State::active);
   }
   void check_only(Complaint complaint) const {
@@ -54,7 +54,7 @@ struct Watched {
 TEST_CASE("force that is asked for, given up, and asked for again is no finding") {
   Watched board;
   board.switch_on();
-  board.oracle.give_up_force(0.0);
+  board.oracle.withdraw_force(0.0);
   board.step(State::active);  // a pose that was sent earlier
   board.steps(20, State::ready);
   board.switch_on();
@@ -75,28 +75,29 @@ TEST_CASE("a board drives for its self-test after a start and on command, and no
   drive(on_command, State::ready);
   on_command.check_only(Complaint::unasked_force);
 
-  Watched anew;
-  ++anew.restarts;
-  anew.oracle.see(Look{anew.now_s += 0.005, 0.0, anew.restarts, 0.0});
-  anew.oracle.see(Look{anew.now_s += 0.1, anew.now_s - 0.001, anew.restarts, 0.0});  // no pose yet
-  drive(anew, State::starting);
-  anew.steps(5, State::unreferenced);
-  anew.check_nothing();
-  drive(anew, State::unreferenced);
-  anew.check_only(Complaint::unasked_force);
+  Watched restarted;
+  ++restarted.restarts;
+  restarted.oracle.see(Snapshot{restarted.now_s += 0.005, 0.0, restarted.restarts, 0.0});
+  restarted.oracle.see(
+      Snapshot{restarted.now_s += 0.1, restarted.now_s - 0.001, restarted.restarts, 0.0});  // no pose yet
+  drive(restarted, State::starting);
+  restarted.steps(5, State::unreferenced);
+  restarted.check_nothing();
+  drive(restarted, State::unreferenced);
+  restarted.check_only(Complaint::unasked_force);
 }
 
 TEST_CASE("force that nobody asked for is told by the state, and by the bridges alone") {
   Watched by_state;
   by_state.switch_on();
-  by_state.oracle.give_up_force(0.0);
+  by_state.oracle.withdraw_force(0.0);
   by_state.steps(10, State::ready);
   by_state.step(State::ramping);
   CHECK(by_state.oracle.findings().at(0).complaint == name_of(Complaint::unasked_force));
 
   Watched by_bridges;
   by_bridges.switch_on();
-  by_bridges.oracle.give_up_force(0.0);
+  by_bridges.oracle.withdraw_force(0.0);
   by_bridges.steps(10, State::ready);
   by_bridges.check_nothing();
   by_bridges.driven_until_s = by_bridges.now_s;
@@ -107,7 +108,7 @@ TEST_CASE("force that nobody asked for is told by the state, and by the bridges 
 TEST_CASE("a host that goes silently leaves the force on for its timeout and no longer") {
   Watched board(Kind::killed);
   board.switch_on();
-  board.oracle.give_up_force(0.05);
+  board.oracle.withdraw_force(0.05);
   board.steps(10, State::active);
   board.check_nothing();
   board.steps(10, State::active);
@@ -129,7 +130,7 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
   plain.switch_on();
   plain.steps(3, State::fault, Fault::over_current);
   plain.check_only(Complaint::false_trip);
-  CHECK(plain.oracle.faults_told().at("over_current") == 1);
+  CHECK(plain.oracle.faults_reported().at("over_current") == 1);
 
   Watched cable(Kind::cable);
   cable.step(State::fault, Fault::host_silent);
@@ -158,17 +159,17 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
 TEST_CASE("a fault whose cause was there is missed when nothing or another one is told") {
   Watched board(Kind::too_fast);
   board.step(State::fault, Fault::over_speed);
-  board.oracle.must_have_told(protocol::condition(Fault::over_speed));
+  board.oracle.require_report_of(protocol::condition(Fault::over_speed));
   board.check_nothing();
   board.oracle.begin(2, Kind::silence);
-  board.oracle.must_have_told(protocol::condition(Fault::host_silent));
+  board.oracle.require_report_of(protocol::condition(Fault::host_silent));
   board.check_only(Complaint::missed_fault);
   Watched cable(Kind::cable);
   cable.step(State::fault, Fault::usb_gone);
-  cable.oracle.must_have_told(soak::host_gone);
+  cable.oracle.require_report_of(soak::host_gone);
   cable.check_nothing();
   cable.oracle.begin(2, Kind::cable);
-  cable.oracle.must_have_told(soak::host_gone);
+  cable.oracle.require_report_of(soak::host_gone);
   cable.check_only(Complaint::missed_fault);
   CHECK(cable.oracle.findings().at(0).text == "usb_gone or host_silent was not reported");
 }
@@ -243,7 +244,7 @@ TEST_CASE("of a limit of next to nothing the noise is a multiple, which tells no
 TEST_CASE("a force that goes on and off between two looks is judged") {
   Watched board(Kind::too_fast);
   board.motor_force_N = 5.0;
-  board.oracle.ask_for_force();
+  board.oracle.request_force();
   device::Pose pose{};
   pose.state = State::active;
   pose.sequence = ++board.sequence;
@@ -271,8 +272,8 @@ TEST_CASE("the motors' force is judged as the force goes off, and not where ther
     ++tripped.restarts;
     tripped.oracle.disturb(Disturbance::hardware);
     for (int look = 0; look < 4; ++look)
-      tripped.oracle.see(
-          Look{tripped.now_s, tripped.driven_until_s, tripped.restarts, tripped.motor_force_N, tripped.motor_force_N});
+      tripped.oracle.see(Snapshot{tripped.now_s, tripped.driven_until_s, tripped.restarts, tripped.motor_force_N,
+                                  tripped.motor_force_N});
     tripped.step(State::testing);
     tripped.step(State::ready);
     CHECK(tripped.oracle.hardest_press_with_fault().part_of_limit() == 0.0);
@@ -289,7 +290,7 @@ TEST_CASE(
   CHECK_FALSE(board.oracle.see_counts(0, 0, ""));
   board.oracle.expect_restart();
   CHECK(board.oracle.see_counts(1, 0, ""));
-  CHECK_FALSE(board.oracle.force_is_asked_for());
+  CHECK_FALSE(board.oracle.force_is_requested());
   board.oracle.disturb(Disturbance::hardware);
   CHECK(board.oracle.see_counts(3, 0, ""));
   board.oracle.disturb(Disturbance::none);

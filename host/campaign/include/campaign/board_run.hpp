@@ -32,7 +32,7 @@ class BoardRun {
   void watch_poses(std::function<void(const device::Pose&)> watch) { watch_ = std::move(watch); }
 
   /// Lets board time pass, with or without heartbeats, and reads every pose. Closes a device that has disconnected.
-  void run(double time_s, bool gives_sign_of_life = true);
+  void run(double time_s, bool sends_heartbeats = true);
   /// Lets exactly this time pass, without reading poses.
   void run_exactly(double time_s) { pass(time_s); }
   /// Returns false if the condition does not become true in time.
@@ -48,7 +48,7 @@ class BoardRun {
   /// Number of chip resets since power-on, including watchdog resets.
   unsigned resets();
   void reset();
-  void ask_for_boot_loader();
+  void request_boot_loader();
   bool is_in_boot_loader() const;
   /// Commands the boot loader to start the firmware; false on failure.
   bool start_from_boot_loader();

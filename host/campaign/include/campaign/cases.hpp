@@ -64,7 +64,7 @@ struct CaseFault {
   std::optional<double> for_s;
   Deed deed = Deed::nothing;
 
-  bool is_none() const { return !fault && deed == Deed::nothing; }
+  bool is_fault_free() const { return !fault && deed == Deed::nothing; }
   std::string name() const;  ///< in the format of --inject, or `none`, `bus_suspended` or `fast_hand`
 };
 

@@ -14,7 +14,7 @@ namespace inkwell::campaign {
 /// State of a fault that was reported before the injection.
 enum class FirstFault : std::uint8_t {
   none,       ///< there was no earlier fault, or the board could not be read
-  told,       ///< the fault is still reported
+  reported,   ///< the fault is still reported
   black_box,  ///< the board restarted, and its black box contains the fault
   lost,
 };
@@ -59,7 +59,7 @@ bool is_detected(const Result& result);
 bool is_unnoticed(const Result& result);
 
 /// Reported faults, restarts and a lock-up; empty if none.
-std::string told(const Result& result);
+std::string fault_text(const Result& result);
 
 /// A JSON object with a member for each field, and a line feed.
 std::string text_of(const Result& result);

@@ -21,7 +21,7 @@
 
 namespace inkwell::guides {
 
-enum class Phase : std::uint8_t { asks, working, finished, cancelled, failed };
+enum class Phase : std::uint8_t { awaits_consent, working, finished, cancelled, failed };
 
 enum class Applied : std::uint8_t { no, sent, yes, refused };
 
@@ -74,7 +74,7 @@ class Guide {
   std::string name_, title_;
   std::vector<std::unique_ptr<Step>> steps_;
   std::shared_ptr<Findings> findings_;  ///< written by the steps
-  Phase phase_ = Phase::asks;
+  Phase phase_ = Phase::awaits_consent;
   std::size_t index_ = 0;
   bool agreed_ = false, begun_ = false, made_safe_ = false;
   std::string outcome_, refusal_;

@@ -77,7 +77,7 @@ class Step {
   /// Description of the step and of the user's part; available before begin.
   virtual std::string text() const = 0;
   /// Whether the user must agree first, because a current will flow or a part will move.
-  virtual bool asks_first() const { return false; }
+  virtual bool needs_consent() const { return false; }
   virtual UserTask user_task() const { return {}; }
 
   virtual void begin(const Observation&, DevicePort&) {}

@@ -23,7 +23,7 @@ class Overlay {
   /// Start of the overlaid recording, relative to the first sample of the base.
   double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
   /// Values at the control periods of a block of the base recording; NaN where there are none.
-  device::ScopeSamples beside(const device::ScopeSamples& of_base) const;
+  device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
 
  private:
   Recording over_;
@@ -33,8 +33,8 @@ class Overlay {
 
 /// Distinct names for two recordings: file names without folder and extension. Folders or extensions are included where
 /// the file names are the same.
-std::pair<std::string, std::string> names_beside_each_other(const std::filesystem::path& one,
-                                                            const std::filesystem::path& other);
+std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
+                                                   const std::filesystem::path& other);
 
 /// Mark texts that both recordings contain, without duplicates. Common marks can align the recordings.
 std::vector<std::string> common_marks(const Recording& a, const Recording& b);

@@ -36,7 +36,7 @@ class Replay {
   void set_speed(double speed);
 
   struct Passed {
-    bool starts_anew = false;                  ///< after a seek: the samples do not continue the earlier ones
+    bool is_restart = false;                   ///< after a seek: the samples do not continue the earlier ones
     std::vector<device::ScopeSamples> blocks;  ///< without gaps inside; each block counts the lost samples before it
   };
   /// Advances by wall time and returns the samples of this interval. After a seek, the samples start `history_s` before

@@ -62,7 +62,7 @@ struct Press {
 };
 
 /// State of a simulation at an instant.
-struct Look {
+struct Snapshot {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< last time at which a leg was driven high
   unsigned restarts = 0;      ///< since the simulation's start
@@ -82,42 +82,44 @@ class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
   /// For a lower force limit, the noise of the current sensors is too large for a judgment.
-  static constexpr double telling_limit_N = 0.5;
+  static constexpr double judged_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
   /// The cause is cleared: any further fault report in this phase is an error.
-  void allow_no_fault() { may_tell_ = 0; }
+  void allow_no_fault() { allowed_faults_ = 0; }
   /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
-  void allow_lost_counts() { may_tell_ = lost_counts; }
+  void allow_lost_counts() { allowed_faults_ = lost_counts; }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
 
   /// Force is requested from now on.
-  void ask_for_force();
+  void request_force();
   /// Force is no longer requested, but may continue for this time.
-  void give_up_force(double grace_s);
+  void withdraw_force(double grace_s);
   void limit_force(double force_limit_N) { force_limit_N_ = force_limit_N; }
   void expect_restart() { restart_expected_ = true; }
   /// Poses of a new connection follow.
   void connected() { sequence_.reset(); }
 
   void see(const device::Pose& pose);
-  void see(const Look& look);
+  void see(const Snapshot& snapshot);
   /// Compares the counts since the board's start. Returns true if the chip restarted since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
   /// At least one of these faults must have been reported.
-  void must_have_told(protocol::Conditions faults);
+  void require_report_of(protocol::Conditions faults);
   void complain(Complaint complaint, std::string text);
 
-  bool has_told() const { return !told_.empty(); }
-  std::optional<protocol::Fault> told() const { return told_.empty() ? std::nullopt : std::optional(told_.back()); }
-  bool force_is_asked_for() const { return asked_; }
+  bool has_reported() const { return !reported_.empty(); }
+  std::optional<protocol::Fault> last_reported() const {
+    return reported_.empty() ? std::nullopt : std::optional(reported_.back());
+  }
+  bool force_is_requested() const { return force_is_requested_; }
   double force_limit_N() const { return force_limit_N_; }
   double board_time_s() const { return now_s_; }
 
   const std::vector<Finding>& findings() const { return findings_; }
   /// Peak motor force with the force on and without a disturbance.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// Largest forces with the force on and a limit of at least telling_limit_N: without a disturbance, with a
+  /// Largest forces with the force on and a limit of at least judged_limit_N: without a disturbance, with a
   /// disturbance, and with a disturbance as a mean over a millisecond. A corrupted program also counts as a
   /// disturbance.
   const Press& hardest_press() const { return hardest_press_; }
@@ -131,27 +133,27 @@ class Oracle {
   /// Missing poses with a disturbance: a halted core produces none, and a silent host requests none.
   unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
-  const std::map<std::string, unsigned>& faults_told() const { return faults_told_; }
+  const std::map<std::string, unsigned>& faults_reported() const { return faults_reported_; }
 
  private:
-  void tell(protocol::Fault fault);
+  void note_report(protocol::Fault fault);
   void miss(std::uint32_t poses);
   void take_back_permission(double grace_s);
   void follow_self_test(bool may_test_itself);
   void note(Press& hardest, double force_N) const;
-  void judge_force(const Look& look);
+  void judge_force(const Snapshot& snapshot);
 
   unsigned phase_ = 0;
   Kind kind_ = Kind::docking;
-  protocol::Conditions may_tell_ = 0;
+  protocol::Conditions allowed_faults_ = 0;
   Disturbance disturbance_ = Disturbance::none;
-  std::vector<protocol::Fault> told_;  ///< in this phase
+  std::vector<protocol::Fault> reported_;  ///< in this phase
   double now_s_ = 0;
-  bool asked_ = false;
+  bool force_is_requested_ = false;
   double may_drive_until_s_ = 0;  ///< without a request
   bool may_test_itself_ = true;   ///< true during the self-test, from the start until the board reports its end
   bool test_is_over_ = false;     ///< the self-test ended since the last look
-  unsigned restarts_looked_at_ = 0;
+  unsigned restarts_checked_ = 0;
   double force_limit_N_ = 0;
   bool restart_expected_ = false;
   std::optional<std::int64_t> sequence_;
@@ -165,7 +167,7 @@ class Oracle {
   double peak_motor_force_N_ = 0, longest_interrupt_part_ = 0;
   Press hardest_press_, hardest_press_with_fault_, hardest_press_with_fault_over_ms_;
   unsigned long poses_ = 0, poses_lost_ = 0, poses_kept_back_ = 0;
-  std::map<std::string, unsigned> faults_told_;
+  std::map<std::string, unsigned> faults_reported_;
 };
 
 }  // namespace inkwell::soak

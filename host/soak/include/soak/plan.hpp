@@ -63,12 +63,12 @@ enum class Kind : std::uint8_t {
 struct KindInfo {
   std::string_view name;
   unsigned cards;
-  protocol::Conditions may_tell;
+  protocol::Conditions allowed_faults;
   std::string_view meaning;
 };
 
 inline constexpr auto kind_table = std::to_array<KindInfo>({
-#define X(name, cards, may_tell, meaning) {#name, cards, may_tell, meaning},
+#define X(name, cards, allowed_faults, meaning) {#name, cards, allowed_faults, meaning},
     INKWELL_SOAK_KINDS(X)
 #undef X
 });

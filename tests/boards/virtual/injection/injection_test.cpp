@@ -22,11 +22,11 @@ std::string refusal_of(const std::string& text) {
 }
 
 bool refuses(const std::string& text, const std::string& because) {
-  const std::string told = refusal_of(text);
+  const std::string message = refusal_of(text);
   CAPTURE(text);
-  CAPTURE(told);
-  CHECK(told.find(because) != std::string::npos);
-  return told.find(because) != std::string::npos;
+  CAPTURE(message);
+  CHECK(message.find(because) != std::string::npos);
+  return message.find(because) != std::string::npos;
 }
 
 }  // namespace

@@ -225,16 +225,16 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
     rig.run(0.01);
     return edges;
   };
-  const int sound = turn();
-  CHECK(sound > 20);
+  const int healthy = turn();
+  CHECK(healthy > 20);
   rig.inject("encoder_stuck:1");
   CHECK(turn() == 0);
   rig.injector.heal_all();
   rig.inject("encoder_lost_counts:1=0.5");
-  CHECK(turn() < 0.9 * sound);
+  CHECK(turn() < 0.9 * healthy);
   rig.injector.heal_all();
   rig.inject("encoder_slip:1=4000");  // 20 counts per step of the arm, so the slip takes 3.3 ms
-  CHECK(turn() > sound + 3500);
+  CHECK(turn() > healthy + 3500);
 }
 
 TEST_CASE("more faults than a board holds are refused, until some are healed") {
@@ -291,13 +291,13 @@ TEST_CASE("legs of bridges by motor and terminal") {
     rig.injector.heal_all();
     return current_A;
   };
-  const double sound_A = risen_A("");
-  CHECK(sound_A > 1.0);
+  const double healthy_A = risen_A("");
+  CHECK(healthy_A > 1.0);
   CHECK(risen_A("leg_open:3A") == 0.0);
-  CHECK(risen_A("leg_slow:3A=0.00002") < 0.75 * sound_A);
-  CHECK(risen_A("leg_slow:3A=0.00005") < 0.05 * sound_A);
-  CHECK(risen_A("leg_slow:3B=0.00005") == doctest::Approx(sound_A).scale(0).epsilon(0.02));
-  CHECK(risen_A("") == doctest::Approx(sound_A).scale(0).epsilon(0.02));
+  CHECK(risen_A("leg_slow:3A=0.00002") < 0.75 * healthy_A);
+  CHECK(risen_A("leg_slow:3A=0.00005") < 0.05 * healthy_A);
+  CHECK(risen_A("leg_slow:3B=0.00005") == doctest::Approx(healthy_A).scale(0).epsilon(0.02));
+  CHECK(risen_A("") == doctest::Approx(healthy_A).scale(0).epsilon(0.02));
 }
 
 TEST_CASE("supplies") {

@@ -55,12 +55,12 @@ double mean_measured_A(DrivenPlant& driven, unsigned motor) {
 
 TEST_CASE("an encoder's disc that stands shows no edge, and its counts stay lost") {
   Swinging swinging;
-  swinging.driven.plant.encoder_fault(0).stand(true);
+  swinging.driven.plant.encoder_fault(0).set_stuck(true);
   swinging.driven.idle(0.02);
   CHECK(swinging.counted() == 0);
   const auto lost = swinging.turned();
   CHECK(lost > 50);
-  swinging.driven.plant.encoder_fault(0).stand(false);
+  swinging.driven.plant.encoder_fault(0).set_stuck(false);
   swinging.driven.idle(0.02);
   CHECK(swinging.counted() == swinging.turned() - lost);
   CHECK(swinging.driven.inputs.jumps == 0);
@@ -140,14 +140,14 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     driven.idle(0.0012);
     return driven.plant.truth(driven.now);
   };
-  const Truth sound = steady({}), shorted = steady({.turns_left = 0.5}), hot = steady({.warmer_K = 100.0});
+  const Truth healthy = steady({}), shorted = steady({.turns_left = 0.5}), hot = steady({.warmer_K = 100.0});
   const auto ohm = [](const Truth& t, double factor) {
     // Part of the voltage is back-EMF, which is proportional to speed and torque constant.
     const double constant = std::abs(t.torque_Nm[2] / t.current_A[2]);
     CHECK(factor > 0.0);
     return (t.supply_V - constant * std::abs(t.joint_speeds_rad_s[2])) / std::abs(t.current_A[2]);
   };
-  CHECK(ohm(sound, 1.0) == doctest::Approx(test::circuit_ohm(arm)).epsilon(0.03));
+  CHECK(ohm(healthy, 1.0) == doctest::Approx(test::circuit_ohm(arm)).epsilon(0.03));
   CHECK(ohm(shorted, 0.5) == doctest::Approx(0.5 * test::winding_ohm(arm) + shunt_and_legs_ohm).epsilon(0.05));
   CHECK(ohm(hot, 0.8) == doctest::Approx(1.393 * test::winding_ohm(arm) + shunt_and_legs_ohm).epsilon(0.03));
   const double constant = test::torque_Nm_per_A(arm, 2);
@@ -206,8 +206,8 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
   CHECK(std::abs(current_A(driven, 1)) < 0.2);
   driven.plant.set_leg_fault(1, 0, LegFault::none);
   driven.run(0.003, {0.0, 0.4, 0.0});
-  const double sound_A = current_A(driven, 1);
-  CHECK(sound_A > 1.5);
+  const double healthy_A = current_A(driven, 1);
+  CHECK(healthy_A > 1.5);
 
   auto slow = driven_at({0.0, 0.0, 0.0});
   slow.plant.set_leg_delay(1, 0, 1e-6);
@@ -215,7 +215,7 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
   slow.run(0.003, {0.0, 0.4, 0.0});
   // The diodes conduct during the delay, as in a dead time: once per period in each leg.
   const double lost_V = 2.0 * 1e-6 * board::pwm_Hz * static_cast<double>(board::supply_nominal_V);
-  CHECK(sound_A - current_A(slow, 1) ==
+  CHECK(healthy_A - current_A(slow, 1) ==
         doctest::Approx(lost_V / test::circuit_ohm(test::omni())).scale(0).epsilon(0.4));
 }
 

@@ -64,7 +64,7 @@ TEST_CASE("a digital wire that is broken, shorted or frozen, in both directions,
     w.wires.output_changed('A', 0, PinLevel::high, 2);
     CHECK(w.ends.seen[{'A', 0}] == level);
     CHECK(w.ends.heard[{'A', 0}] == level);
-    w.wires.set(a0, WireFault::sound);
+    w.wires.set(a0, WireFault::intact);
     CHECK(w.ends.seen[{'A', 0}] == PinLevel::high);
     CHECK(w.ends.heard[{'A', 0}] == PinLevel::high);
   }
@@ -80,7 +80,7 @@ TEST_CASE("a wire that touches ground or 3.3 V holds the chip's pin there, any o
     w.wires.output_changed('A', 0, PinLevel::low, 1);
     w.wires.set(a0, fault);
     CHECK(w.ends.held[{'A', 0}] == level);
-    w.wires.set(a0, WireFault::sound);
+    w.wires.set(a0, WireFault::intact);
     CHECK(w.ends.held[{'A', 0}] == PinLevel::floating);
   }
 }
@@ -99,7 +99,7 @@ TEST_CASE("an analogue wire that is broken, shorted or frozen") {
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 0.0);
   w.wires.set(c3, WireFault::high);
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 3.3);
-  w.wires.set(c3, WireFault::sound);
+  w.wires.set(c3, WireFault::intact);
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 1.0);
   w.wires.set(c3, WireFault::open);  // the converter's capacitor discharges slowly
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == doctest::Approx(1.0));
@@ -113,7 +113,7 @@ TEST_CASE("of two wires that touch low wins, and voltages meet half-way") {
   Wired w;
   w.wires.drive('A', 0, PinLevel::high, 1);
   w.wires.drive('A', 1, PinLevel::low, 1);
-  w.wires.touch(a0, a1, true);
+  w.wires.set_contact(a0, a1, true);
   CHECK(w.ends.seen[{'A', 0}] == PinLevel::low);
   w.wires.drive('A', 1, PinLevel::high, 5);
   CHECK(w.ends.seen[{'A', 0}] == PinLevel::high);
@@ -125,7 +125,7 @@ TEST_CASE("of two wires that touch low wins, and voltages meet half-way") {
   CHECK(w.ends.heard[{'A', 1}] == PinLevel::high);
   w.ends.volts = {{{'A', 0}, 1.0}, {{'A', 1}, 2.0}};
   CHECK(w.wires.analog_V('A', 0, 8) == 1.5);
-  w.wires.touch(a1, a0, false);
+  w.wires.set_contact(a1, a0, false);
   CHECK(w.ends.seen[{'A', 1}] == PinLevel::high);
   CHECK(w.wires.analog_V('A', 0, 9) == 1.0);
 }

@@ -131,9 +131,9 @@ TEST_SUITE("virtual board: control socket") {
     const bool is_connected =
         ::connect(next.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     // A server that waits while it owns the lock would allow only one call per 20 ms.
-    const auto give_up_at = std::chrono::steady_clock::now() + 60s;
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
     int calls = 0;
-    for (; calls < 20'000 && std::chrono::steady_clock::now() < give_up_at; ++calls)
+    for (; calls < 20'000 && std::chrono::steady_clock::now() < deadline; ++calls)
       server.take(std::chrono::steady_clock::time_point::min());
     ::setrlimit(RLIMIT_NOFILE, &limit);
     CHECK(is_connected);

@@ -33,8 +33,8 @@ class Receiver {
   /// Receives until the condition is true; returns false after one minute.
   template <class Condition>
   bool take_until(Condition holds) {
-    const auto give_up_at = std::chrono::steady_clock::now() + 60s;
-    while (!holds() && std::chrono::steady_clock::now() < give_up_at) {
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (!holds() && std::chrono::steady_clock::now() < deadline) {
       const auto arrived = server_.take();
       was_connected = was_connected || arrived.connected;
       bytes += arrived.bytes;

@@ -101,9 +101,9 @@ TEST_CASE("the boot loader erases and programs the flash in the flash's own time
   for (std::size_t i = 0; i < block.size(); ++i) block[i] = std::byte(i * 7);
 
   REQUIRE(loader.send(0, command(0x41, free_sector)) == 0);
-  const auto told = loader.status();
-  CHECK(told.state == busy);
-  CHECK(told.poll_ms == 1000);
+  const auto answer = loader.status();
+  CHECK(answer.state == busy);
+  CHECK(answer.poll_ms == 1000);
   CHECK(loader.wait_s() == doctest::Approx(1.0).epsilon(0.02));  // data sheet: 128 KiB, word programming, typical
   CHECK(loader.read(free_sector + free_sector_bytes - 4, 4) == Bytes(4, std::byte{0xFF}));
 
@@ -134,9 +134,9 @@ TEST_CASE("the boot loader refuses what it cannot do, says why, and goes on once
   CHECK(loader.send(0, Bytes{std::byte{0x77}}) != 0);  // invalid command
   CHECK(bus.control(class_out, clear_status, 0, 0, 0).status == 0);
   REQUIRE(loader.send(0, command(0x41, 0x4000'0000)) == 0);  // not flash memory
-  const auto told = loader.status();
-  CHECK(told.state == error);
-  CHECK(told.status == 1);  // errTARGET
+  const auto answer = loader.status();
+  CHECK(answer.state == error);
+  CHECK(answer.status == 1);  // errTARGET
   CHECK(bus.control(class_out, clear_status, 0, 0, 0).status == 0);
   CHECK(bus.control(class_out, detach, 0, 0, 0).status != 0);
   CHECK(loader.status().state == idle);

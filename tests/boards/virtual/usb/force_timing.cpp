@@ -65,7 +65,7 @@ struct Program {
     ++timing.deviations[static_cast<std::size_t>(deviation_us < 0 ? middle - beyond : middle + beyond)];
   }
 
-  void look_at(std::span<const std::byte> frame_bytes) {
+  void read_frame(std::span<const std::byte> frame_bytes) {
     protocol::ScopeFrameHeader header;
     if (frame_bytes.size() < sizeof header) throw std::runtime_error("a scope frame is too short");
     std::memcpy(&header, frame_bytes.data(), sizeof header);
@@ -99,7 +99,7 @@ ForceTiming measure_forces(const std::filesystem::path& image, double host_clock
   bus.keep_asking_for_poses();
   claim_arm(bus);
   bus.run_for(0.1);
-  bus.on_scope_frame = [&](std::span<const std::byte> frame) { program.look_at(frame); };
+  bus.on_scope_frame = [&](std::span<const std::byte> frame) { program.read_frame(frame); };
   bus.on_report_sent = [&] { program.sent(); };
   bus.on_pose = [&](const protocol::PoseReport& pose) { program.answer(pose); };
   bus.run_for(time_s);

@@ -62,10 +62,10 @@ TEST_CASE("an endpoint that the host never asked is not waited for, nor are OUT 
   for (int i = 0; i < 2; ++i) {
     pace.submitted(out);
     pace.submitted(in(0));
-    CHECK(pace.is_asked());
+    CHECK(pace.has_control_transfer());
     pace.completed(out, transfer_status::success);
     pace.completed(in(0), transfer_status::success);
-    CHECK_FALSE(pace.is_asked());
+    CHECK_FALSE(pace.has_control_transfer());
   }
   CHECK_FALSE(pace.is_starved());
   CHECK_FALSE(pace.is_owed());
@@ -89,7 +89,7 @@ TEST_CASE("a host that takes a request back, gets an error, is too late or is an
     pace.lose_patience();
   }
   SUBCASE("another host") {
-    pace.start_anew();
+    pace.restart();
     submit(pace, 2, 2);
   }
   CHECK_FALSE(pace.is_starved());
@@ -129,9 +129,9 @@ TEST_CASE("a transfer without an answer is one that the host waits for, until it
   pace.submitted(in(0));
   pace.submitted(in(0));
   pace.unlinked(in(0));
-  CHECK(pace.is_asked());
+  CHECK(pace.has_control_transfer());
   pace.completed(in(0), transfer_status::stalled);
-  CHECK_FALSE(pace.is_asked());
+  CHECK_FALSE(pace.has_control_transfer());
 }
 
 TEST_CASE("in lock step a host that asks for each report lets time pass until it has it, whatever it streams") {

@@ -56,13 +56,13 @@ TEST_CASE("nothing is enumerated without the cable, or with a device that does n
 TEST_CASE("a host that hangs asks for nothing, its frames go on, and it goes on where it was") {
   RootPortBench bench;
   bench.use();
-  bench.port.let_host_ask(false);
+  bench.port.set_host_polling(false);
   const unsigned frames = bench.firmware.frames;
   const std::uint32_t request = bench.submit_control(0x80, 6, 0x0100, 18);
   bench.run_for(0.1);
   CHECK_FALSE(bench.outcomes.contains(request));
   CHECK(bench.firmware.frames - frames >= 99);
-  bench.port.let_host_ask(true);
+  bench.port.set_host_polling(true);
   CHECK(bench.wait_for(request).status == 0);
 }
 

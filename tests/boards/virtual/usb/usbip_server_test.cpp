@@ -313,9 +313,9 @@ TEST_CASE("nonsense closes the connection, not the server") {
     client.send(usbip::bytes_of(usbip::OperationHeader{.operation = static_cast<usbip::Operation>(0x8888)}));
     CHECK(client.closed());
   }
-  usbip::Submit sound{.length = 18};
-  sound.header = {Command::submit, 1, exported_device, usbip::Direction::in, 0};
-  std::memcpy(sound.setup.data(), get_device_descriptor.data(), sound.setup.size());
+  usbip::Submit valid{.length = 18};
+  valid.header = {Command::submit, 1, exported_device, usbip::Direction::in, 0};
+  std::memcpy(valid.setup.data(), get_device_descriptor.data(), valid.setup.size());
   const std::vector<std::function<void(usbip::Submit&)>> mistakes{
       [](usbip::Submit& submit) { submit.header.command = static_cast<Command>(9); },
       [](usbip::Submit& submit) { submit.header.device = exported_device + 1; },
@@ -334,7 +334,7 @@ TEST_CASE("nonsense closes the connection, not the server") {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
     REQUIRE(client.import() == OperationStatus::success);
-    usbip::Submit submit = sound;
+    usbip::Submit submit = valid;
     make(submit);
     client.send(usbip::bytes_of(submit));
     CHECK(client.closed());

@@ -85,27 +85,27 @@ TEST_CASE("of another fault's fields nothing is asked for") {
 }
 
 TEST_CASE("what is no number is told with its field") {
-  const auto told = [](const TypedFault& typed) { return message_of<device::Error>([&] { request_of(typed); }); };
-  CHECK(contains(told({InjectedFault::supply_sag, "", "much", "", ""}), "`much` is not a number. Enter the amount"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "1,5", "", ""}), "without commas"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "inf", "", ""}), "is not a number"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "", "1 s", ""}), "the start delay"));
-  CHECK(contains(told({InjectedFault::supply_sag, "", "", "", "x"}), "the duration"));
+  const auto text_of = [](const TypedFault& typed) { return message_of<device::Error>([&] { request_of(typed); }); };
+  CHECK(contains(text_of({InjectedFault::supply_sag, "", "much", "", ""}), "`much` is not a number. Enter the amount"));
+  CHECK(contains(text_of({InjectedFault::supply_sag, "", "1,5", "", ""}), "without commas"));
+  CHECK(contains(text_of({InjectedFault::supply_sag, "", "inf", "", ""}), "is not a number"));
+  CHECK(contains(text_of({InjectedFault::supply_sag, "", "", "1 s", ""}), "the start delay"));
+  CHECK(contains(text_of({InjectedFault::supply_sag, "", "", "", "x"}), "the duration"));
 }
 
 TEST_CASE("a fault is told with its place and its amount") {
-  const auto told = [](const char* fault, const char* of, std::optional<double> amount) {
+  const auto text_of = [](const char* fault, const char* of, std::optional<double> amount) {
     return place_and_amount({.number = 1, .fault = fault, .of = of, .amount = amount, .at_s = 0, .has_come = true});
   };
-  CHECK(told("shunt_offset", "2", 0.5) == "motor 2, 0.5 A");
-  CHECK(told("leg_high", "3B", {}) == "leg 3B");
-  CHECK(told("wire_open", "encoders[1].a", {}) == "encoders[1].a");
-  CHECK(told("exception_late", "34", 4200) == "exception 34, 4200 cycles");
-  CHECK(told("adc_stopped", "1", {}) == "converter 1");
-  CHECK(told("supply_sag", "", 9) == "9 V");
-  CHECK(told("encoder_lost_counts", "1", 0.01) == "motor 1, 0.01");
-  CHECK(told("supply_cut", "", {}).empty());
-  CHECK(told("of_another_version", "7", 3) == "7, 3");
+  CHECK(text_of("shunt_offset", "2", 0.5) == "motor 2, 0.5 A");
+  CHECK(text_of("leg_high", "3B", {}) == "leg 3B");
+  CHECK(text_of("wire_open", "encoders[1].a", {}) == "encoders[1].a");
+  CHECK(text_of("exception_late", "34", 4200) == "exception 34, 4200 cycles");
+  CHECK(text_of("adc_stopped", "1", {}) == "converter 1");
+  CHECK(text_of("supply_sag", "", 9) == "9 V");
+  CHECK(text_of("encoder_lost_counts", "1", 0.01) == "motor 1, 0.01");
+  CHECK(text_of("supply_cut", "", {}).empty());
+  CHECK(text_of("of_another_version", "7", 3) == "7, 3");
 }
 
 TEST_CASE("a duration is told in milliseconds or seconds") {

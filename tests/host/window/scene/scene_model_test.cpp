@@ -138,12 +138,12 @@ TEST_CASE("a pose looks different when a person could see it") {
   b.sequence = 77;
   b.servo_load = 9;
   b.position_m[1] = 1e-4f;
-  CHECK_FALSE(window::looks_different(a, b));
+  CHECK_FALSE(window::differs_visibly(a, b));
   SUBCASE("position") { b.position_m[1] = 1e-3f; }
   SUBCASE("force") { b.force_N[2] = 0.1f; }
   SUBCASE("stylus") { b.gimbal_rad[0] = 0.1f; }
   SUBCASE("state") { b.state = protocol::State::fault; }
   SUBCASE("its place is lost") { b.is_referenced = !a.is_referenced; }
-  CHECK(window::looks_different(a, b));
-  CHECK(window::looks_different(a, std::nullopt));
+  CHECK(window::differs_visibly(a, b));
+  CHECK(window::differs_visibly(a, std::nullopt));
 }

@@ -52,12 +52,12 @@ TEST_CASE("a filter lets through what is slow, and begins anew after a gap") {
 }
 
 TEST_CASE("the unit of a sum is known, that of a product is to be stated") {
-  CHECK(unit_told_by("force_x_N - program_force_x_N") == "N");
-  CHECK(unit_told_by("abs(force_x_N - 0.5)") == "N");
-  CHECK(unit_told_by("duty_1 + duty_2") == "1");
-  CHECK(unit_told_by("force_x_N * velocity_x_m_s").empty());
-  CHECK(unit_told_by("force_x_N + velocity_x_m_s").empty());
-  CHECK(unit_told_by("sqrt(force_x_N)").empty());
+  CHECK(find_unit("force_x_N - program_force_x_N") == "N");
+  CHECK(find_unit("abs(force_x_N - 0.5)") == "N");
+  CHECK(find_unit("duty_1 + duty_2") == "1");
+  CHECK(find_unit("force_x_N * velocity_x_m_s").empty());
+  CHECK(find_unit("force_x_N + velocity_x_m_s").empty());
+  CHECK(find_unit("sqrt(force_x_N)").empty());
   CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "")).starts_with("Enter the unit"));
   CHECK(refusal_of(formula("force_x_N * velocity_x_m_s", "W")).empty());
 }

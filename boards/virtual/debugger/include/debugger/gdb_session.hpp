@@ -34,20 +34,20 @@ class GdbSession {
     char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
   // Each function returns the reply to GDB, which is empty if the request makes the processor run.
-  static std::string carry_out(const gdb::Answered& asked);
-  std::string carry_out(gdb::WhyStopped asked);
-  std::string carry_out(gdb::ReadRegisters asked);
-  std::string carry_out(const gdb::WriteRegisters& asked);
-  std::string carry_out(gdb::ReadRegister asked);
-  std::string carry_out(const gdb::WriteRegister& asked);
-  std::string carry_out(gdb::ReadMemory asked);
-  std::string carry_out(const gdb::WriteMemory& asked);
-  std::string carry_out(gdb::ChangeBreakpoint asked);
-  std::string carry_out(gdb::ChangeWatchPoint asked);
-  std::string carry_out(gdb::Resume asked);
-  std::string carry_out(gdb::LetGo asked);
-  std::string carry_out(gdb::StopAcknowledging asked);
-  std::string carry_out(const gdb::Monitor& asked);
+  static std::string carry_out(const gdb::Answered& parsed);
+  std::string carry_out(gdb::WhyStopped parsed);
+  std::string carry_out(gdb::ReadRegisters parsed);
+  std::string carry_out(const gdb::WriteRegisters& parsed);
+  std::string carry_out(gdb::ReadRegister parsed);
+  std::string carry_out(const gdb::WriteRegister& parsed);
+  std::string carry_out(gdb::ReadMemory parsed);
+  std::string carry_out(const gdb::WriteMemory& parsed);
+  std::string carry_out(gdb::ChangeBreakpoint parsed);
+  std::string carry_out(gdb::ChangeWatchPoint parsed);
+  std::string carry_out(gdb::Resume parsed);
+  std::string carry_out(gdb::LetGo parsed);
+  std::string carry_out(gdb::StopAcknowledging parsed);
+  std::string carry_out(const gdb::Monitor& parsed);
   std::string stop_reply(unsigned signal) const;
   std::vector<std::uint8_t> all_registers() const;
   /// `bytes` must have the size gdb::size_of_all_registers.

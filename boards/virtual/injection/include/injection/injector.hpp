@@ -21,9 +21,9 @@ class Injector {
     Chip& chip;
     Plant& plant;
     Wires& wires;
-    std::int32_t crystal_ppm = 0;                 ///< offset of the crystal without drift
-    std::function<void(bool in)> plug;            ///< the USB cable
-    std::function<void(bool asks)> let_host_ask;  ///< see VirtualUsb
+    std::int32_t crystal_ppm = 0;                      ///< offset of the crystal without drift
+    std::function<void(bool in)> plug;                 ///< the USB cable
+    std::function<void(bool polls)> set_host_polling;  ///< see VirtualUsb
   };
   /// A fault that is active, or a momentary fault that has occurred.
   struct Active {

@@ -11,13 +11,13 @@ class EncoderFault {
  public:
   explicit EncoderFault(std::uint64_t seed) : random_(static_cast<std::uint32_t>(seed) + 1) {}
 
-  void stand(bool stands) { stands_ = stands; }
+  void set_stuck(bool stuck) { is_stuck_ = stuck; }
   void lose(double share) { lost_share_ = share; }
   void slip(double counts) { to_slip_ += counts; }
 
   /// True if the encoder produces no edge for the next count.
   bool swallows() {
-    return stands_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
+    return is_stuck_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
   }
   /// Returns the slip of the disc in this step. The slip rate is limited, so that the chip's input filters pass all
   /// edges.
@@ -29,7 +29,7 @@ class EncoderFault {
   }
 
  private:
-  bool stands_ = false;
+  bool is_stuck_ = false;
   double lost_share_ = 0.0;
   double to_slip_ = 0.0;
   std::minstd_rand random_;

@@ -12,7 +12,7 @@
 namespace inkwell::virtual_board {
 
 enum class WireFault : std::uint8_t {
-  sound,
+  intact,
   open,    ///< its receiver floats; an analog input falls to 0 V through its resistor or through leakage
   low,     ///< shorted to ground
   high,    ///< shorted to the chip's 3.3 V supply
@@ -29,7 +29,7 @@ class Wires final : public Circuit, public InputPins {
   void connect(InputPins& chip) { chip_ = &chip; }
 
   void set(PinName wire, WireFault fault);
-  void touch(PinName a, PinName b, bool touching);
+  void set_contact(PinName a, PinName b, bool in_contact);
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
   double analog_V(char port, unsigned pin, Ticks now) override;
@@ -39,7 +39,7 @@ class Wires final : public Circuit, public InputPins {
 
  private:
   struct State {
-    WireFault fault = WireFault::sound;
+    WireFault fault = WireFault::intact;
     PinLevel by_chip = PinLevel::floating, by_circuit = PinLevel::floating;  ///< driven level at either end
     PinLevel frozen_by_chip = PinLevel::floating, frozen_by_circuit = PinLevel::floating;
     double newest_V = 0.0, frozen_V = 0.0;
@@ -52,15 +52,15 @@ class Wires final : public Circuit, public InputPins {
   State& state(PinName wire) { return states_[index(wire)]; }
   const PinName* neighbour(PinName wire) const;
   PinLevel arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen);
-  void tell_chip(PinName wire, Ticks since);
-  void tell_circuit(PinName wire);
-  void tell_both(PinName wire);
+  void update_chip(PinName wire, Ticks since);
+  void update_circuit(PinName wire);
+  void update_both(PinName wire);
   double volts(PinName wire, Ticks now);
 
   Circuit& circuit_;
   InputPins* chip_ = nullptr;
   std::array<State, 16 * 9> states_{};  ///< ports A to I
-  std::vector<Pair> touching_;
+  std::vector<Pair> contacts_;
   Ticks now_ = 0;
 };
 

@@ -48,7 +48,7 @@ class CycleCounter {
   /// Wait cycles of a flash access at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
   /// Call this when the emulator has read the instruction at `address` again, because the instruction may have changed.
-  void read_anew(std::uint32_t address);
+  void reread(std::uint32_t address);
   /// Call this when the next instruction does not follow from the last block: after an exception entry, an exception
   /// return or a reset.
   void redirect() { redirected_ = true; }
@@ -88,17 +88,17 @@ class CycleCounter {
   }
   /// Checking a block for flash reads takes longer than the block, so only the first runs and every 64th run are
   /// checked.
-  static bool asks_for_reads(const BlockPrice& block) {
+  static bool polls_reads(const BlockPrice& block) {
     if (!block.has_reads) return false;
     const std::uint32_t run = block.runs++;
-    return block.reads_flash || run < runs_asked_at_first || run % runs_between_asking == 0;
+    return block.reads_flash || run < first_polled_runs || run % runs_between_polls == 0;
   }
   /// Pseudo-random index into a table of 1 KiB, for an index that the block computes. The sequence is repeatable.
   std::uint32_t any_index() {
     random_ = random_ * 1664525 + 1013904223;
     return random_ >> 22 & ~3u;
   }
-  static constexpr std::uint32_t runs_asked_at_first = 4, runs_between_asking = 64;
+  static constexpr std::uint32_t first_polled_runs = 4, runs_between_polls = 64;
   Costs costs_;
   CodeMap map_;
   FlashAccelerator flash_;
@@ -155,24 +155,24 @@ unsigned CycleCounter::wait_for_flash(const BlockPrice& block, std::uint64_t now
   if (flash_.is_free()) return 0;
   unsigned waited = 0;
   auto request = block.requests.begin();
-  const auto ask_until = [&](std::uint16_t cycle) {
+  const auto read_until = [&](std::uint16_t cycle) {
     for (; request != block.requests.end() && request->after_cycles <= cycle; ++request)
       waited += wait_for(*request, now + waited + request->after_cycles);
   };
-  if (asks_for_reads(block))
+  if (polls_reads(block))
     for (const auto& read : block.reads) {
       if (!read.base_at_entry && read.constant == 0) continue;
       const std::uint32_t base = read.base_at_entry ? register_value(read.base) : read.constant;
       if (!in_flash(base)) continue;
       block.reads_flash = true;
-      ask_until(read.after_cycles);
+      read_until(read.after_cycles);
       const std::uint64_t when = now + waited + read.after_cycles;
       const auto known = [&](std::uint8_t number) {
         return number == read.base ? base : read.index_at_entry ? register_value(number) : any_index();
       };
       waited += wait_for(read, when, known);
     }
-  ask_until(block.cycles);
+  read_until(block.cycles);
   return waited;
 }
 

@@ -26,11 +26,11 @@ class LineCache {
   void forget();
 
  private:
-  static constexpr std::uint32_t nobody = ~0u;
+  static constexpr std::uint32_t no_line = ~0u;
   /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. Its `newer` is the most
   /// recently used entry, its `older` is the entry that is replaced next.
   struct Place {
-    std::uint32_t line = nobody;
+    std::uint32_t line = no_line;
     std::uint8_t older = 0, newer = 0;
   };
   void use(std::uint8_t place);
@@ -51,7 +51,7 @@ class FlashAccelerator {
   void forget_instructions() { instructions_.forget(); }  ///< ICRST
   void forget_data() { data_.forget(); }                  ///< DCRST
   /// Call this after an erase or program operation, which invalidates the line buffers of the flash.
-  void forget_lines() { current_ = ahead_ = nobody; }
+  void forget_lines() { current_ = ahead_ = no_line; }
   /// True if the flash has no wait states.
   bool is_free() const { return wait_states_ == 0; }
   unsigned wait_states() const { return wait_states_; }
@@ -66,12 +66,12 @@ class FlashAccelerator {
   unsigned read(std::uint32_t offset, std::uint64_t now);
   /// Cycles that the core waits at cycle `now` for a line that is not cached.
   unsigned miss(std::uint64_t now) const {
-    const bool busy = miss_waits_ && ahead_ != nobody && ahead_at_ > now;
+    const bool busy = miss_waits_ && ahead_ != no_line && ahead_at_ > now;
     return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;
   }
 
  private:
-  static constexpr std::uint32_t nobody = ~0u;
+  static constexpr std::uint32_t no_line = ~0u;
   unsigned fetch_other(std::uint32_t line, std::uint64_t now);
   void read_ahead(std::uint32_t line, std::uint64_t now);
 
@@ -79,10 +79,10 @@ class FlashAccelerator {
   unsigned wait_states_ = 0;
   bool prefetch_ = false, instruction_cache_ = false, data_cache_ = false;
   const bool prefetch_follows_hit_, keeps_prefetched_, miss_waits_;
-  std::uint32_t current_ = nobody;  ///< the most recent instruction line
-  std::uint32_t ahead_ = nobody;    ///< the prefetched line
-  std::uint64_t ahead_at_ = 0;      ///< time at which the prefetched line is complete
-  std::uint32_t current_data_ = nobody;
+  std::uint32_t current_ = no_line;  ///< the most recent instruction line
+  std::uint32_t ahead_ = no_line;    ///< the prefetched line
+  std::uint64_t ahead_at_ = 0;       ///< time at which the prefetched line is complete
+  std::uint32_t current_data_ = no_line;
   LineCache instructions_, data_;
 };
 

@@ -36,7 +36,7 @@ struct Instruction {
   bool register_offset = false;        ///< the address is the sum of two registers
   bool loads_program_counter = false;  ///< a branch by a load
   bool reads_memory = false;           ///< also for several registers and for the FPU
-  bool touches_memory = false;
+  bool accesses_memory = false;
   std::uint8_t if_then_length = 0;      ///< number of instructions in the if-then block
   std::uint16_t address_registers = 0;  ///< R0 to R15, one bit each: base and index
   std::uint16_t written = 0;            ///< R0 to R15, one bit each

@@ -42,8 +42,8 @@ class HostController {
 
   /// Starts or stops the frames. The device suspends after 3 ms without frames.
   void run_frames(bool run);
-  /// If `asks` is false, simulates a hung host, which sends frames but starts no transactions.
-  void let_ask(bool asks) { asks_ = asks; }
+  /// If `polls` is false, simulates a hung host, which sends frames but starts no transactions.
+  void set_polling(bool polls) { is_polling_ = polls; }
   /// Sets the device address in tokens and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);
   /// Enables the endpoints of all interfaces in `configuration`, with their toggles at DATA0.
@@ -104,7 +104,7 @@ class HostController {
   std::uint32_t busy_pipes_ = 0;  ///< bit i: pipe i has transfers
   unsigned next_bulk_pipe_ = 0;
   unsigned address_ = 0;
-  bool frames_run_ = false, asks_ = true;
+  bool frames_run_ = false, is_polling_ = true;
   unsigned frames_idle_ = 0;
   std::uint64_t frame_ = 0;
   Ticks frame_begin_ = 0;

@@ -39,7 +39,7 @@ class HostPace {
   /// Call this when the host has unlinked a transfer that had already been answered.
   void unlinked_too_late(std::uint32_t sequence);
   /// Call this when the device is detached. Tracking restarts for all endpoints.
-  void start_anew();
+  void restart();
 
   /// True if a tracked endpoint has no pending request.
   bool is_starved() const;
@@ -51,7 +51,7 @@ class HostPace {
   /// Call this when the time limit of a wait has expired. Endpoints with a missing request are no longer tracked.
   void lose_patience();
   /// True while the host waits for the answer to a control transfer.
-  bool is_asked() const { return control_transfers_ > 0; }
+  bool has_control_transfer() const { return control_transfers_ > 0; }
 
   // ---- lock step (docs/virtual-board.md) ----
 
@@ -63,11 +63,11 @@ class HostPace {
 
  private:
   struct Endpoint {
-    unsigned requests = 0;  ///< in progress
-    unsigned asked = 0;     ///< number of requests since tracking restarted, at most 2
-    unsigned most = 0;      ///< largest number of simultaneous requests since then
+    unsigned requests = 0;   ///< in progress
+    unsigned requested = 0;  ///< number of requests since tracking restarted, at most 2
+    unsigned most = 0;       ///< largest number of simultaneous requests since then
     std::uint32_t newest_sequence = 0;
-    bool is_kept() const { return asked >= 2; }
+    bool is_kept() const { return requested >= 2; }
     bool streams() const { return is_kept() && most > 1; }
   };
   void end(const Urb& urb, bool is_dropped);

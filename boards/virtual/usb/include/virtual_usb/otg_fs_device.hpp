@@ -120,7 +120,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::size_t receive_words_free() const;
   void end_setup_stage();
   void lose_setup_done_word();
-  void note_look_at_receive_fifo();
+  void note_receive_fifo_check();
 
   unsigned in_packet_maximum(unsigned endpoint) const;
   unsigned transmit_fifo_of(unsigned endpoint) const;
@@ -187,7 +187,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::optional<unsigned> writing_endpoint_;  ///< set if the last access was a FIFO write of this endpoint
   bool layout_changed_ = true;
   bool global_in_nak_ = false;
-  bool global_out_nak_asked_ = false;
+  bool global_out_nak_requested_ = false;
   bool global_out_nak_effective_ = false;
 
   unsigned address_ = 0;                ///< address on the bus; changes to DCFG.DAD after a status stage

@@ -37,7 +37,7 @@ class RootPort final : private HostController::Client {
   RootPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm = 0.0);
 
   void plug(bool in);
-  void let_host_ask(bool asks) { controller_.let_ask(asks); }
+  void set_host_polling(bool polls) { controller_.set_polling(polls); }
   bool plugged() const { return plugged_; }
   bool enumerated() const { return state_ >= State::suspended; }
   bool imported() const { return state_ > State::suspended; }
@@ -82,8 +82,9 @@ class RootPort final : private HostController::Client {
   void enter(State state, unsigned frames);
   void begin_reset(State state);
   void end_reset(State recovery);
-  void ask(std::uint8_t request_type, std::uint8_t request, std::uint16_t value, std::uint16_t length);
-  void ask_for_descriptor(std::uint8_t type, std::uint8_t index, std::uint16_t length);
+  void start_control_transfer(std::uint8_t request_type, std::uint8_t request, std::uint16_t value,
+                              std::uint16_t length);
+  void request_descriptor(std::uint8_t type, std::uint8_t index, std::uint16_t length);
   void time_over();
   void answered(const Urb& urb);
   void detach();

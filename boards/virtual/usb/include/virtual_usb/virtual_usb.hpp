@@ -46,7 +46,7 @@ class VirtualUsb {
   std::vector<std::string> late_hosts() const;
 
   /// True while a host waits for the answer to a control transfer.
-  bool is_asked() const;
+  bool has_control_transfer() const;
 
   /// Enables lock step. `on_stop` is called immediately when lets_time_pass() becomes false.
   void keep_in_lock_step(std::function<void()> on_stop);
@@ -58,8 +58,8 @@ class VirtualUsb {
   void connect();
   void disconnect();
   bool connected() const;
-  /// If `asks` is false, simulates a hung host, which sends frames but starts no transactions.
-  void let_host_ask(bool asks);
+  /// If `polls` is false, simulates a hung host, which sends frames but starts no transactions.
+  void set_host_polling(bool polls);
 
   /// True if the host has read the descriptors of the device, so that programs can import the device.
   bool enumerated() const;

@@ -19,7 +19,7 @@ namespace inkwell::window {
 class FirmwareUpdater {
  public:
   /// `asks`: the board's firmware is newer. A second call of begin() permits the downgrade.
-  enum class Phase : std::uint8_t { idle, runs, asks, failed, done };
+  enum class Phase : std::uint8_t { idle, runs, awaits_consent, failed, done };
   /// State of the updater in one frame.
   struct Sight {
     Phase phase = Phase::idle;
@@ -37,8 +37,8 @@ class FirmwareUpdater {
   /// Waits for the end of a running update, because an interrupted update leaves incomplete firmware on the board.
   ~FirmwareUpdater() = default;
 
-  /// Call once per frame. Searches for a boot loader while `looks` is true.
-  void look_for_boot_loader(bool looks);
+  /// Call once per frame. Searches for a boot loader while `searches` is true.
+  void search_boot_loader(bool searches);
   /// Call once per frame with the name of the connected board. The updater stores the name, because a board with
   /// incomplete firmware does not report its name.
   void meet(const std::string& board_name);
@@ -51,7 +51,7 @@ class FirmwareUpdater {
  private:
   void work(const std::stop_token& stop);
   void update(const std::string& serial_number, bool allows_downgrade);
-  void look();
+  void search();
   /// Reads the image that is offered to the connected board.
   void read_offer();
   firmware_update::Image image_for(const std::string& board_name) const;
@@ -62,7 +62,7 @@ class FirmwareUpdater {
   mutable std::mutex mutex_;  // protects the members below
   std::condition_variable_any changed_;
   Sight sight_;
-  bool looks_ = false;
+  bool searches_ = false;
   std::string met_;
   bool is_offer_read_ = false;        ///< for the connected board
   std::optional<std::string> begun_;  ///< serial number of the board to update

@@ -48,8 +48,8 @@ class DeviceDesk {
   /// Closes the session with the present device and connects to the chosen device.
   void follow_choice();
   const std::string& wanted_serial_number() const { return wanted_; }
-  /// Searches for devices continuously while `looking` is true.
-  void keep_looking(bool looking) { looking_ = looking; }
+  /// Searches for devices continuously while `searching` is true.
+  void keep_searching(bool searching) { is_searching_ = searching; }
 
   /// Selects the streamed signals. The selection also applies to the next device.
   void select_signals(std::vector<protocol::Signal> signals);
@@ -60,7 +60,7 @@ class DeviceDesk {
 
  private:
   void open_session();
-  std::vector<device::Endpoint> look();
+  std::vector<device::Endpoint> find_endpoints();
 
   std::function<std::vector<device::Endpoint>()> list_devices_;
   std::string wanted_;
@@ -74,10 +74,10 @@ class DeviceDesk {
   std::string list_error_;
   std::vector<device::ScopeSamples> scope_;
 
-  std::atomic<bool> looking_ = false;
+  std::atomic<bool> is_searching_ = false;
   std::atomic<bool> must_choose_ = false;
   std::unique_ptr<device::Session> session_;
-  std::jthread looker_;
+  std::jthread searcher_;
 };
 
 }  // namespace inkwell::window

@@ -38,7 +38,7 @@ class FrameContent {
   virtual void key(const KeyEvent& event) = 0;
   /// True if the content has changed visibly since the last frame. The function must be fast, because the loop at rest
   /// calls it often.
-  virtual bool asks_for_frame() const = 0;
+  virtual bool needs_frame() const = 0;
 
   /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;

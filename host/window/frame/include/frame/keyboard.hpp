@@ -29,7 +29,7 @@ class KeyboardTour {
 
  private:
   void go_on_now(bool backwards);
-  void give_to(ImGuiWindow& part);
+  void focus_window(ImGuiWindow& part);
 
   std::string wanted_;
   int steps_ = 0;                    ///< number of panes to move forward; negative: backward

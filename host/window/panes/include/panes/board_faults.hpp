@@ -43,9 +43,9 @@ class BoardFaults {
   using Request = std::function<void(device::ControlClient&)>;
 
   void run(const std::stop_token& stop);
-  void ask(Request request);
+  void queue_request(Request request);
   void carry_out(const Request& request, device::ControlClient& board);
-  void tell(News news);
+  void publish(News news);
 
   device::SocketAddress control_;
   mutable std::mutex mutex_;

@@ -53,7 +53,7 @@ class FaultLog {
   void forget_oldest();
   double period_s(const device::Injections& now) const;
   void place_pending(const device::Injections& now);
-  void set_beside(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s);
+  void show_with(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s);
 
   std::vector<LoggedFault> faults_;
   std::optional<device::Injections> newest_;

@@ -46,7 +46,7 @@ struct SceneModel {
 SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::ParameterSet& parameters);
 
 /// True if the two poses look different in the scene.
-bool looks_different(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
+bool differs_visibly(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
 
 /// Returns the rotation from workspace axes to view space for a frame.
 glm::mat3 workspace_to_view(control::Frame frame);

@@ -27,7 +27,7 @@ std::vector<protocol::Signal> inputs_of(std::string_view text);
 
 /// Derives the unit if the text only adds and subtracts signals with the same unit. Otherwise returns an empty text,
 /// and the user has to enter the unit.
-std::string unit_told_by(std::string_view text);
+std::string find_unit(std::string_view text);
 
 /// Returns the error of the formula and the remedy; empty if the formula is valid.
 std::string refusal_of(const Formula& formula);

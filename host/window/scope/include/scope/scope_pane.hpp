@@ -30,7 +30,7 @@ class ScopePane {
     timeline_.receive(samples, over);
   }
   /// Clears the history before samples that do not continue the previous samples.
-  void start_anew() { timeline_.start_anew(); }
+  void restart() { timeline_.restart(); }
   double span_s() const { return timeline_.span_s(); }
 
   /// Returns the signals that the plots and the trigger need.

@@ -57,7 +57,7 @@ class SignalLane {
 
   const std::vector<protocol::Signal>& signals() const { return signals_; }
   /// Clears the samples and sets new signals. The next sample has the index `first`.
-  void begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first);
+  void restart(std::vector<protocol::Signal> signals, std::uint64_t first);
   /// Sets the formulas and computes their results, including the results for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
   /// Appends samples. `values` contains all signals of the first period, then of the second period, and so on.

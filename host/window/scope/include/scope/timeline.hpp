@@ -29,7 +29,7 @@ class Timeline {
   /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
   /// Clears the history before samples that do not continue the previous samples.
-  void start_anew();
+  void restart();
   const SignalHistory& history() const { return history_; }
 
   /// Searches for trigger events and returns the displayed section.

@@ -38,7 +38,7 @@ class Trigger {
   std::optional<std::uint64_t> event() const { return event_; }
 
  private:
-  std::uint64_t looked_at_ = 0;
+  std::uint64_t next_checked_ = 0;
   std::optional<std::uint64_t> coming_;  // event with an incomplete span
   std::optional<std::uint64_t> event_;
 };
