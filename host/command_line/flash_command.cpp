@@ -111,8 +111,8 @@ int write(const DeviceOptions& options, const FlashOptions& given, const NewImag
 int flash(const DeviceOptions& options, FlashOptions given) {
   if (options.is_virtual)
     throw UsageError(
-        "--virtual before `flash` starts a board that exits with this command. Use `inkwell flash --virtual FILE` for "
-        "the flash file of a virtual board, or --usbip HOST:PORT for a running virtual board.");
+        "`inkwell --virtual flash` would write to a board that exits with this command. Use `inkwell flash --virtual "
+        "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for a running virtual board.");
   if (!given.board.empty()) {
     given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
   } else if (given.image.empty()) {

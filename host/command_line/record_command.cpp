@@ -235,7 +235,7 @@ void add_record_command(const Place& place) {
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line sets a mark with its text");
   command->add_flag("--force", record_options->force,
-                    "Switch the force on before the recording and off after it; walls push back");
+                    "Switch the force on before the recording, and off after the recording");
   add_examples(*command,
                "inkwell record push.h5 --mark-key --force\n"
                "inkwell record push.csv --signals force_N,position_z_m --seconds 10");

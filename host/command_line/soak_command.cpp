@@ -138,9 +138,7 @@ void add_soak_command(const Place& place) {
   command->add_option("--seed", options->choices.seed, "Seed of all random choices")
       ->type_name("NUMBER")
       ->capture_default_str();
-  command
-      ->add_option("--sitting", options->sitting,
-                   "Run only the board with this number; --seconds sets its time as in a full soak")
+  command->add_option("--sitting", options->sitting, "Run only the board with this number, for its share of --seconds")
       ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
   command->add_option("--sitting-seconds", options->choices.sitting_s, "Maximum board time of one board")
