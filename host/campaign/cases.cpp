@@ -27,13 +27,13 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// Exceptions that have a firmware handler: PendSV, the supply detector, and the control interrupt. Crash handlers are
-/// excluded. USB is polled in the main loop.
+/// Exceptions with a handler in the firmware, except for crash handlers: PendSV, the supply detector, and the
+/// converters' control interrupt. USB is polled in the main loop.
 constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};
 
-/// Amounts that are tested in addition to the amount in the table or in case_faults().
+/// Tested in addition to the amount in the table or in case_faults().
 constexpr struct {
   InjectedFault fault;
   double amount;
@@ -77,36 +77,42 @@ std::string_view name_of(CaseSituation situation) {
 std::string meaning_of(CaseSituation situation) {
   switch (situation) {
     case CaseSituation::unreferenced:
-      return "Out of the inkwell since the start, so that the board does not know where it is; the hand holds it.";
-    case CaseSituation::ready: return "The pose is valid, the force is off; the hand holds it in free space.";
-    case CaseSituation::rest: return "The force is on; the hand holds it at rest in free space.";
-    case CaseSituation::wall: return "The force is on; the hand presses it into a wall of the highest stiffness.";
+      return "The stylus has been outside the inkwell since power-on, so the board does not know the arm position. The "
+             "hand holds the stylus.";
+    case CaseSituation::ready:
+      return "The pose is valid and the force is off. The hand holds the stylus in free space.";
+    case CaseSituation::rest: return "The force is on. The hand holds the stylus at rest in free space.";
+    case CaseSituation::wall:
+      return "The force is on. The hand presses the stylus into a wall with the highest stiffness.";
     case CaseSituation::motion:
-      return fmt::format("The force is on; the hand swings it through free space, {:.0f} mm in {} s, with all joints.",
-                         2e3 * swing_m, swing_s);
+      return fmt::format(
+          "The force is on. The hand swings the stylus through free space by {:.0f} mm in {} s, and all joints move.",
+          2e3 * swing_m, swing_s);
     case CaseSituation::ramping:
-      return "The hand presses it into that wall while the force rises, as slowly as it can.";
+      return "The hand presses the stylus into the stiff wall while the force increases at the lowest rate.";
     case CaseSituation::limited:
-      return "The force is on; the hand presses it so far into that wall that the force limit holds back.";
+      return "The force is on. The hand presses the stylus into the stiff wall until the force limit acts.";
     case CaseSituation::landing:
-      return "The hand presses it into that wall while the force falls softly, as slowly as it can; it is not used on.";
+      return "The hand presses the stylus into the stiff wall while the force decreases at the lowest rate. The use "
+             "does not continue afterwards.";
     case CaseSituation::testing:
-      return "The hand holds it in free space; the fault comes while the self-test makes the first motor's pulses. "
-             "Without a fault the bridges go off as well, when the pulses are over.";
+      return "The hand holds the stylus in free space. The fault occurs during the self-test pulses of the first "
+             "motor. Without a fault, the bridges also switch off after the pulses.";
     case CaseSituation::fault:
       return fmt::format(
-          "The hand holds it in free space. The force was on, and the host fell silent until the board told so; that "
-          "fault is still told as the next one comes. The host clears it {} s later, with the other still in.",
+          "The hand holds the stylus in free space. The force was on until the board detected a silent host. The "
+          "injected fault occurs while `host_silent` is still reported. The host clears `host_silent` {} s later, "
+          "while the injected fault is still present.",
           observed_s);
     case CaseSituation::update:
-      return "The hand holds it in free space. The host has told the board to keep its parameters and to start its "
-             "boot loader, which it does once they are written, some 80 ms later: the fault comes in the first 50 of "
-             "them and lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told "
-             "by the firmware that the loader then starts, with the fault still in.";
+      return "The hand holds the stylus in free space. The host has commanded the board to store its parameters and to "
+             "start its boot loader. The write delays the boot loader by about 80 ms; without a write, it starts "
+             "within 2 ms. The fault occurs in the first 50 ms and remains present in the boot loader. The boot loader "
+             "then starts the firmware, which reports the fault.";
     case CaseSituation::starting:
-      return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the other "
-             "cases comes while the board starts. Without a fault the self-test's pulses put the bridges on for a "
-             "while.";
+      return "The hand holds the stylus outside the inkwell. At the first instant the fault is present before "
+             "power-on; at the other instants it occurs during start-up. Without a fault, the self-test pulses switch "
+             "the bridges on briefly.";
   }
   return "";
 }
@@ -154,8 +160,7 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   const auto place = protocol::info(*fault.fault).place;
   if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // A listed wire has the index [1]. A pair of shorted wires may contain the indices [1] and [2]. All indices are
-  // shifted cyclically.
+  // Listed wires have the index [1], and touching neighbors also the index [2]. All indices are shifted cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];
     index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);

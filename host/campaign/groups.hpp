@@ -27,7 +27,7 @@ inline const std::vector<Result>* find(const Groups& groups, const std::string& 
 }
 
 /// The fault-free case with the same situation and phase; null if it was not run.
-inline const Result* fault_free_case(const Groups& groups, CaseSituation situation, unsigned phase) {
+inline const Result* fault_free(const Groups& groups, CaseSituation situation, unsigned phase) {
   if (const auto* results = find(groups, "none", situation))
     for (const Result& result : *results)
       if (result.error.empty() && result.phase == phase) return &result;

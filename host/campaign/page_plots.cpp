@@ -12,8 +12,8 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Whether the force was on; self-test pulses do not count. Cases with a flung arm are excluded, because their hand
-/// force is due to the arm's inertia.
+/// Whether the force was on, without self-test pulses. Cases of a flung arm are excluded, because the hand feels the
+/// arm's inertia there.
 bool was_driven(const Result& result) {
   return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
 }
@@ -27,7 +27,7 @@ std::map<std::string, double> fault_free_forces_N(std::span<const Result> result
   return forces_N;
 }
 
-/// Class width for a histogram of at most ten classes.
+/// Class width for which all classes fit next to each other.
 double class_width_N(double reach_N) {
   constexpr double widths_N[] = {0.5, 1, 2, 5, 10, 20};
   constexpr double most = 10;
@@ -65,16 +65,17 @@ std::string off_plot(std::span<const Result> results) {
       wires += result.fault.starts_with("wire");
     }
   }
-  const unsigned unnoticed = bars.back().quiet;
+  const unsigned undetected = bars.back().quiet;
   return svg_of(
-      {.title = "Simulation: how soon after a fault all bridges were off, of cases with the force on",
-       .axis = fmt::format("time until they were off, in control periods of {:.0f} μs", 1e6 * control_period_s),
+      {.title = "Simulation: time from a fault until all bridges were off, cases with the force on",
+       .axis = fmt::format("time until all bridges were off, in control periods of {:.0f} μs", 1e6 * control_period_s),
        .bars = std::move(bars),
        .last_apart = true,
-       .strong_means = "went off, or stayed on and a fault was told, at once or while the arm was used on",
-       .quiet_means = unnoticed == 0 ? ""
-                                     : fmt::format("not noticed: {} of {} are wires, such as a button's; reasons below",
-                                                   wires, unnoticed)});
+       .strong_means = "bridges switched off, or a fault was reported immediately or during continued use",
+       .quiet_means =
+           undetected == 0
+               ? ""
+               : fmt::format("undetected: {} of {} are wire faults, such as a faulty button wire", wires, undetected)});
 }
 
 std::string force_plot(std::span<const Result> results) {
@@ -103,16 +104,17 @@ std::string force_plot(std::span<const Result> results) {
   for (const CaseSituation situation : situations)
     if (const auto without = fault_free_N.find(std::string(name_of(situation))); without != fault_free_N.end())
       felt_without += fmt::format("{}{} {:.1f} N", felt_without.empty() ? "" : ", ", without->first, without->second);
-  return svg_of({.title = "Simulation: the most that the hand felt after a fault, of cases with the force on",
-                 .axis = "peak force at the hand, N",
-                 .bars = std::move(bars),
-                 .edges = std::move(edges),
-                 .limit = limit_N > 0
-                              ? std::optional(Limit{limit_N / width_N, fmt::format("force limit {:.1f} N", limit_N)})
-                              : std::nullopt,
-                 .strong_means = fmt::format("more than {} N above the same situation without a fault{}", as_without_N,
-                                             all_compared ? "" : ", or not compared: no case “none” there"),
-                 .quiet_means = felt_without.empty() ? "" : fmt::format("no more; without a fault: {}", felt_without)});
+  return svg_of(
+      {.title = "Simulation: largest force on the hand after a fault, cases with the force on",
+       .axis = "peak force at the hand, N",
+       .bars = std::move(bars),
+       .edges = std::move(edges),
+       .limit = limit_N > 0 ? std::optional(Limit{limit_N / width_N, fmt::format("force limit {:.1f} N", limit_N)})
+                            : std::nullopt,
+       .strong_means = fmt::format("more than {} N above the same situation without a fault{}", as_without_N,
+                                   all_compared ? "" : ", or without a fault-free case"),
+       .quiet_means =
+           felt_without.empty() ? "" : fmt::format("at most this; forces without a fault: {}", felt_without)});
 }
 
 }  // namespace inkwell::campaign

@@ -41,7 +41,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
 
 namespace {
 
-/// nlohmann::json converts any number to unsigned. The conversion of a value out of range is undefined.
+/// The library converts any number to unsigned, which is undefined for values out of range.
 void require_counts(const nlohmann::json& result) {
   for (const char* name : {"number", "phase", "restarts"}) {
     const auto& value = result.at(name);
@@ -61,11 +61,11 @@ bool is_unnoticed(const Result& result) { return !is_detected(result) && !result
 
 std::string fault_text(const Result& result) {
   std::vector<std::string_view> parts;
-  const std::string later = result.told_once_cleared + " once cleared";
+  const std::string later = result.told_once_cleared + " after clearing";
   if (!result.detected_as.empty()) parts.push_back(result.detected_as);
   if (!result.told_once_cleared.empty()) parts.push_back(later);
   if (result.restarts > 0) parts.push_back("restart");
-  if (result.locked_up) parts.push_back("locked up");
+  if (result.locked_up) parts.push_back("lock-up");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -90,7 +90,7 @@ std::filesystem::path file_of(const std::filesystem::path& directory, unsigned n
 
 void save(const Result& result, const std::filesystem::path& directory) {
   const auto file = file_of(directory, result.number);
-  // Programs on several machines may write to the folder.
+  // Several programs may write to the folder, also from several machines.
   auto unfinished = file;
   unfinished += fmt::format(".{}.part", ::getpid());
   recording::write_text(unfinished, text_of(result));

@@ -58,8 +58,7 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
 
 /// Creates the folder of the page before the cases run, because the runs may take hours.
 void make_folder_of_page(const CampaignOptions& command) {
-  const std::filesystem::path folder = std::filesystem::path(command.page).parent_path();
-  if (!folder.empty()) make_folder(folder, "--page");
+  make_folder(campaign::folder_of_details(command.page), "--page");
 }
 
 /// Runs each case on a separate board, with `jobs` boards in parallel. Returns exit code 1 if a case could not be run.
@@ -139,7 +138,9 @@ void add_folder(CLI::App& command, CampaignOptions& options) {
 }
 
 void add_page(CLI::App& command, CampaignOptions& options) {
-  command.add_option("--page", options.page, "Page to write; its plots are written to the same folder")
+  command
+      .add_option("--page", options.page,
+                  "Summary page to write. Details and plots are written to a folder with the name of the page")
       ->type_name("FILE")
       ->capture_default_str();
 }
@@ -157,8 +158,8 @@ void add_campaign_command(const Place& place) {
   const auto options = std::make_shared<CampaignOptions>();
   auto* command = place.program.add_subcommand(
       "campaign",
-      "Runs every fault in every situation on virtual boards, and writes a page of the results\n"
-      "Without a subcommand, runs the cases that have no result yet, then writes the page.");
+      "Runs every fault in every situation on virtual boards, and writes the results as pages\n"
+      "Without a subcommand, runs the cases that have no result yet, then writes the pages.");
   command->require_subcommand(0, 1);
   add_folder(*command, *options);
   add_jobs(*command, *options);
@@ -186,7 +187,7 @@ void add_campaign_command(const Place& place) {
   runs->callback(
       [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
 
-  auto* merges = command->add_subcommand("merge", "Writes the page from the existing results");
+  auto* merges = command->add_subcommand("merge", "Writes the pages from the existing results");
   merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
   add_page(*merges, *options);
   add_examples(*merges, "inkwell campaign merge results --page docs/campaign.md");

@@ -383,7 +383,7 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--page", page});
   CHECK(merged.exit_code == 0);
   CHECK(std::filesystem::exists(page));
-  CHECK(std::filesystem::exists(directory / "page-off.svg"));
+  CHECK(std::filesystem::exists(directory / "page/off.svg"));
 }
 
 TEST_CASE("a place that the seed chose is told with the case") {

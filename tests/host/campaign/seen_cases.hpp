@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <campaign/cases.hpp>
+#include <campaign/page.hpp>
 #include <campaign/result.hpp>
 
 namespace inkwell::tests {
@@ -15,6 +16,14 @@ namespace inkwell::tests {
 inline std::string content_of(const std::filesystem::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The summary page and all detail pages, separated by empty headings.
+inline std::string pages_of(const std::filesystem::path& summary) {
+  std::string text = content_of(summary);
+  for (const char* name : {"hand.md", "undetected.md", "second-fault.md", "by-situation.md"})
+    text += "\n## \n" + content_of(campaign::folder_of_details(summary) / name);
+  return text + "\n## \n";
 }
 
 /// Result of an undetected case.

@@ -1,4 +1,4 @@
-// The results as a page: the effect of each fault in each situation, and all undetected faults.
+// The results as pages: a summary, the effect of each fault in each situation, and all undetected faults.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace inkwell::campaign {
 
-/// Worst values of all cases with the same fault and situation.
+/// Summary of the cases of a fault in a situation: their worst values.
 struct Summary {
   unsigned cases = 0;       ///< number of completed cases
   unsigned detected = 0;    ///< a fault was reported, or the board restarted; switching the bridges off alone does not
@@ -23,7 +23,10 @@ struct Summary {
 };
 Summary summarise(std::span<const Result> results);
 
-/// Writes the page, and plots with the same name in the same folder. Throws device::Error.
+/// Folder of the detail pages and plots: the path of the page without its extension. Throws device::Error if the page
+/// has no extension.
+std::filesystem::path folder_of_details(const std::filesystem::path& page);
+/// Writes the summary page, and the detail pages and plots to their folder. Throws device::Error.
 void write_page(std::span<const Result> results, const std::filesystem::path& page);
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-#include "page_unnoticed.hpp"
+#include "page_undetected.hpp"
 
 #include <algorithm>
 #include <map>
@@ -17,11 +17,11 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Statistics of the cases with continued use, and of the detections during this use.
+/// Detections during continued use, of the cases with continued use.
 class InUse {
  public:
-  /// `fault_free`: the fault-free case with the same start, or null.
-  void see(const Result& result, const Result* fault_free) {
+  /// `healthy`: the fault-free case with the same start, or null.
+  void see(const Result& result, const Result* healthy) {
     if (!result.error.empty()) return;
     if (!result.peak_force_in_use_N) {
       ++not_used_;
@@ -30,7 +30,7 @@ class InUse {
     ++used_;
     peak_N_ = std::max(peak_N_, *result.peak_force_in_use_N);
     if (!result.noticed_in_use_s) {
-      compare(result, fault_free);
+      compare(result, healthy);
       return;
     }
     ++noticed_;
@@ -42,23 +42,21 @@ class InUse {
   std::string peak_text() const { return used_ == 0 ? "-" : fmt::format("{:.2f}", peak_N_); }
   std::string energy_text() const {
     if (!more_J_) return "-";
-    return *more_J_ <= 0 ? "no more" : fmt::format("{:.1f}", 1e3 * *more_J_);
+    return *more_J_ <= 0 ? "none" : fmt::format("{:.1f}", 1e3 * *more_J_);
   }
   std::string text() const {
-    if (used_ == 0) return "not used";
-    const std::string left_out = not_used_ == 0 ? "" : fmt::format("; {} not used", not_used_);
+    if (used_ == 0) return "without use";
+    const std::string left_out = not_used_ == 0 ? "" : fmt::format("; {} without use", not_used_);
     if (noticed_ == 0) return "-" + left_out;
-    return fmt::format("{}{}, {:.2f} s{}", fmt::join(names_, "; "),
+    return fmt::format("{}{}, within {:.2f} s{}", fmt::join(names_, "; "),
                        noticed_ < used_ ? fmt::format(" ({} of {})", noticed_, used_) : "", after_s_, left_out);
   }
 
  private:
-  /// Compares only cases whose continued use was complete, because the other cases had less time.
-  void compare(const Result& result, const Result* fault_free) {
-    if (fault_free == nullptr || fault_free->noticed_in_use_s || !result.energy_in_use_J ||
-        !fault_free->energy_in_use_J)
-      return;
-    const double more_J = *result.energy_in_use_J - *fault_free->energy_in_use_J;
+  /// Compares only cases used until the end, because the others had less time.
+  void compare(const Result& result, const Result* healthy) {
+    if (healthy == nullptr || healthy->noticed_in_use_s || !result.energy_in_use_J || !healthy->energy_in_use_J) return;
+    const double more_J = *result.energy_in_use_J - *healthy->energy_in_use_J;
     more_J_ = std::max(more_J_.value_or(more_J), more_J);
   }
 
@@ -68,12 +66,12 @@ class InUse {
   std::set<std::string> names_;
 };
 
-InUse fault_free_in_use(const Groups& groups) {
-  InUse fault_free;
+InUse healthy_in_use(const Groups& groups) {
+  InUse healthy;
   for (const CaseSituation situation : situations)
     if (const auto* results = find(groups, "none", situation))
-      for (const Result& result : *results) fault_free.see(result, &result);
-  return fault_free;
+      for (const Result& result : *results) healthy.see(result, &result);
+  return healthy;
 }
 
 /// Name of the situation if a completed case satisfies `counts`, otherwise empty. If only some cases satisfy `counts`,
@@ -138,21 +136,9 @@ std::string reported_later(const Groups& groups, const CaseFault& fault) {
 
 }  // namespace
 
-std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults) {
-  std::string text = fmt::format(
-      "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
-      "fault was told. The hand then went on: for {} s as before, then it pressed with the force limit {} times in "
-      "turn into the wall in front and the one to the side, and swung {} times. What was told meanwhile stands in the "
-      "third column, with the longest time "
-      "since it went on; the fourth is what the hand felt at most, the fifth, of those that were not noticed in use "
-      "either, how much more energy it got than from a sound arm that was used alike from the same instant on.",
-      goes_on_s, use_presses, use_swings);
-  if (const InUse fault_free = fault_free_in_use(groups); fault_free.used() > 0)
-    text += fmt::format(" Without a fault it felt {} N at most, and a fault was told in {} of {} cases.",
-                        fault_free.peak_text(), fault_free.noticed(), fault_free.used());
-  text +=
-      "\n\n| fault | situations | noticed in use | peak force in use, N | more energy in use, mJ | reason |\n"
-      "| --- | --- | --- | --- | --- | --- |\n";
+Undetected undetected_with_force(const Groups& groups, const std::vector<CaseFault>& faults) {
+  std::string rows;
+  std::size_t findings = 0, also_in_use = 0;
   for (const CaseFault& fault : faults) {
     if (fault.is_fault_free()) continue;
     const std::string where = situations_with(groups, fault, stayed_on_unreported);
@@ -161,48 +147,73 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
     for (const CaseSituation situation : situations)
       if (const auto* results = find(groups, fault.name(), situation))
         for (const Result& result : *results)
-          if (stayed_on_unreported(situation, result))
-            in_use.see(result, fault_free_case(groups, situation, result.phase));
-    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(), in_use.peak_text(),
+          if (stayed_on_unreported(situation, result)) in_use.see(result, fault_free(groups, situation, result.phase));
+    ++findings;
+    also_in_use += in_use.used() > 0 && in_use.noticed() == 0;
+    rows += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(), in_use.peak_text(),
                         in_use.energy_text(), reason_with_force(fault));
   }
-  return text;
+  std::string text = "\n## Undetected with the force on\n\n";
+  if (rows.empty()) return {{text + "No fault with the force on was undetected with the bridges still on.\n"}};
+  text += fmt::format(
+      "In these situations with the force on, the bridges stayed on and no fault was reported. The use of the arm then "
+      "continued: the motion of the situation lasted for another {} s. After this, the hand pressed {} times into the "
+      "front wall and into the side wall with the force limit. Finally it swung {} times.\n\n"
+      "\"Reported during use\" contains the reports during this use and the longest time until a report. \"Extra "
+      "energy\" is the additional energy that the hand received, compared with the same use of a healthy arm. It is "
+      "listed only for cases that were undetected during use.",
+      goes_on_s, use_presses, use_swings);
+  if (const InUse healthy = healthy_in_use(groups); healthy.used() > 0)
+    text += fmt::format(
+        " Without a fault, the largest force during use was {} N, and a fault was reported in {} of {} cases.",
+        healthy.peak_text(), healthy.noticed(), healthy.used());
+  text +=
+      "\n\n| fault | situations | reported during use | peak force during use, N | extra energy during use, mJ | "
+      "reason "
+      "|\n| --- | --- | --- | --- | --- | --- |\n";
+  return {{text + rows, findings}, also_in_use};
 }
 
-std::string off_without_report(const Groups& groups, const std::vector<CaseFault>& faults) {
+Section off_without_report(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string rows;
+  std::size_t findings = 0;
   for (const CaseFault& fault : faults) {
     if (fault.is_fault_free()) continue;
     std::map<std::string_view, std::string> where_by_reason;
     for (const CaseSituation situation : situations)
       if (const std::string where = situation_with(groups, fault, situation, went_off_unreported); !where.empty())
         add(where_by_reason[reason_of_silence(fault, situation)], where);
+    findings += !where_by_reason.empty();
     for (const auto& [reason, where] : where_by_reason)
       rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, reported_later(groups, fault), reason);
   }
-  const std::string_view heading =
-      "\n## Off, but not told\n\nWith the force on, cases in which the bridges went off, but no fault was told";
-  if (rows.empty()) return fmt::format("{}: none.\n", heading);
-  return fmt::format(
-      "{}. The third column has what was told once the cause was gone.\n\n| fault | situations | told later | reason "
-      "|\n| --- | --- | --- | --- |\n{}",
-      heading, rows);
+  const std::string_view heading = "\n## Bridges off without a report\n\n";
+  if (rows.empty())
+    return {fmt::format("{}With the force on, a fault was reported whenever the bridges switched off.\n", heading)};
+  return {
+      fmt::format("{}In these situations with the force on, the bridges switched off, but no fault was reported. The "
+                  "third column contains reports after the cause was removed.\n\n"
+                  "| fault | situations | later report | reason |\n| --- | --- | --- | --- |\n{}",
+                  heading, rows),
+      findings};
 }
 
-std::string unnoticed_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  // The faults are grouped by reason, because many faults have the same reason.
+Section undetected_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
+  // Grouped by reason, because many faults share few reasons.
   struct Row {
     std::string_view reason;
     std::string where;
     std::vector<std::string> faults;
   };
   std::vector<Row> rows;
+  std::size_t findings = 0;
   for (const CaseFault& fault : faults) {
     if (fault.is_fault_free()) continue;
     std::map<std::string_view, std::string> where_by_reason;
     for (const CaseSituation situation : situations)
       if (const std::string where = situation_with(groups, fault, situation, was_off_unreported); !where.empty())
         add(where_by_reason[reason_without_force(fault, situation)], where);
+    findings += !where_by_reason.empty();
     for (const auto& [reason, where] : where_by_reason) {
       auto row = std::ranges::find_if(
           rows, [&, &reason = reason, &where = where](const Row& r) { return r.reason == reason && r.where == where; });
@@ -210,12 +221,14 @@ std::string unnoticed_without_force(const Groups& groups, const std::vector<Case
       row->faults.push_back(fmt::format("`{}`", fault.name()));
     }
   }
-  std::string text = "\n## Not noticed without force\n\nCases without force in which no fault was told";
-  if (rows.empty()) return text + ": none.\n";
-  text += ".\n\n| faults | situations | reason |\n| --- | --- | --- |\n";
+  std::string text = "\n## Undetected without force\n\n";
+  if (rows.empty()) return {text + "No fault without force was undetected.\n"};
+  text +=
+      "In these situations without force, no fault was reported.\n\n| faults | situations | reason |\n"
+      "| --- | --- | --- |\n";
   for (const Row& row : rows)
     text += fmt::format("| {} | {} | {} |\n", fmt::join(row.faults, ", "), row.where, row.reason);
-  return text;
+  return {text, findings};
 }
 
 }  // namespace inkwell::campaign

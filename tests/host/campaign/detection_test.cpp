@@ -1,4 +1,4 @@
-// The page's sections about a second fault, the boot loader, a fast hand, and faults that are never reported.
+// Sections about a second fault, the boot loader, a fast hand, and faults that are never reported.
 #include <campaign/cases.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
@@ -16,17 +16,16 @@
 using namespace inkwell;
 using namespace inkwell::campaign;
 using inkwell::tests::content_of;
+using inkwell::tests::pages_of;
 using inkwell::tests::seen;
 using inkwell::tests::TemporaryDirectory;
 
 namespace {
 
-constexpr const char* after_another = "After another fault, and on the way to the boot loader";
-
 std::string page_of(const std::vector<Result>& results) {
   const TemporaryDirectory directory;
   write_page(results, directory / "campaign.md");
-  return content_of(directory / "campaign.md");
+  return pages_of(directory / "campaign.md");
 }
 
 std::string section_of(const std::string& page, const std::string& heading) {
@@ -45,7 +44,7 @@ Result after_first(const std::string& fault, FirstFault first_fault) {
 
 }  // namespace
 
-TEST_CASE("what became of the fault that was told before is counted, and one that was lost has a row") {
+TEST_CASE("earlier faults are counted by their outcome, and each lost one has a row") {
   Result tripped = after_first("bridge_fault", FirstFault::reported),
          quiet = after_first("dma_stopped", FirstFault::reported),
          restarted = after_first("core_stalled", FirstFault::black_box),
@@ -57,32 +56,35 @@ TEST_CASE("what became of the fault that was told before is counted, and one tha
   CHECK(is_detected(tripped));
   CHECK_FALSE(is_detected(quiet));
   const std::string page = page_of({tripped, quiet, restarted, lost, mute, failed});
-  const std::string section = section_of(page, after_another);
-  CHECK(section.find("In 5 cases host_silent had been told before: it still was in 2 of them, and in 1 the board "
-                     "started anew and had it in its black box. Once it was cleared, the other one was told in 1.\n") !=
-        std::string::npos);
+  const std::string section = section_of(page, "Second fault");
+  CHECK(section.find(
+            "In 5 cases the board reported `host_silent` before the injection. This fault was still reported in 2 of "
+            "these cases. In 1 cases the board restarted, and its black box contained the fault. After the "
+            "first fault was cleared, the injected fault was reported in 1 cases.\n") != std::string::npos);
   const auto row = [](const Result& of, const std::string& what) {
-    return "| " + std::to_string(of.number) + " | `" + of.fault + "` fault 1 | " + what + ": host_silent |";
+    return "| " + std::to_string(of.number) + " | `" + of.fault + "` fault 1 | `host_silent` was " + what + ". |";
   };
-  CHECK(section.find(row(lost, "neither told nor in the black box")) != std::string::npos);
-  CHECK(section.find(row(mute, "the board could not be asked for it")) != std::string::npos);
+  CHECK(section.find(row(lost, "neither reported nor in the black box")) != std::string::npos);
+  CHECK(section.find(row(mute, "unknown: no reply")) != std::string::npos);
   for (const Result* each : {&tripped, &quiet, &restarted, &failed})
     CHECK(section.find("`" + each->fault + "`") == std::string::npos);
-  CHECK(page.find("| `bridge_fault` | bridge_fault once cleared | were off |") != std::string::npos);
-  CHECK(section_of(page_of({seen("none", "rest", 1)}), after_another).find("No case was run in which") !=
+  CHECK(page.find("| `bridge_fault` | bridge_fault after clearing | were off |") != std::string::npos);
+  CHECK(section_of(page_of({seen("none", "rest", 1)}), "Second fault").find("No case was run in which") !=
         std::string::npos);
 }
 
-TEST_CASE("a board that did not get to its boot loader has a row") {
+TEST_CASE("a board that did not reach its boot loader has a row") {
   Result there = seen("bridge_fault", "update", 1), astray = seen("core_stalled", "update", 1);
   astray.missed_boot_loader = true;
-  const std::string section = section_of(page_of({there, astray}), after_another);
-  CHECK(section.find("| " + std::to_string(astray.number) + " | `core_stalled` update 1 | not in its boot loader,") !=
+  const std::string section = section_of(page_of({there, astray}), "Boot loader");
+  CHECK(section.find("| " + std::to_string(astray.number) +
+                     " | `core_stalled` update 1 | The boot loader was not running at the end. |") !=
         std::string::npos);
   CHECK(section.find("`bridge_fault`") == std::string::npos);
 }
 
-TEST_CASE("what a hand feels that flings the arm stands beside what it takes without a force, and with no fault's") {
+TEST_CASE(
+    "the force of a hand that flings the arm is compared with that without a force, and excluded from other values") {
   Result free = seen("fast_hand", "ready", 1), tested = seen("fast_hand", "testing", 1),
          flung = seen("fast_hand", "rest", 1), missed = seen("fast_hand", "wall", 1),
          failed = seen("fast_hand", "wall", 2), fault_free = seen("none", "rest", 1);
@@ -96,21 +98,23 @@ TEST_CASE("what a hand feels that flings the arm stands beside what it takes wit
   failed.error = "The board did not start.";
   fault_free.peak_force_N = 2.0;
   const std::string page = page_of({free, tested, flung, missed, failed, fault_free});
-  const std::string section = section_of(page, "A fast hand");
-  CHECK(section.find("flings the arm 140 mm along x within 0.085 s") != std::string::npos);
-  CHECK(section.find("That takes up to 9.10 N without a force. With the force on the hand felt up to 7.65 N, and "
-                     "over_speed was told in 1 of 2 cases.\n") != std::string::npos);
-  CHECK(page.find("felt at most 2.00 N in that time (`none` in rest)") != std::string::npos);
-  CHECK(page.find("a twentieth of it: none.") != std::string::npos);
-  CHECK(section_of(page, "Not noticed").find("| `fast_hand` | wall | ") != std::string::npos);
-  CHECK(section_of(page_of({fault_free}), "A fast hand").find("No such case was run.") != std::string::npos);
+  const std::string section = section_of(page, "Fast hand");
+  CHECK(section.find("moves the arm 140 mm along x within 0.085 s") != std::string::npos);
+  CHECK(section.find(
+            "Without a force from the motors, this motion requires up to 9.10 N at the hand. With the force on, the "
+            "force on the hand was up to 7.65 N, and `over_speed` was reported in 1 of 2 cases.\n") !=
+        std::string::npos);
+  CHECK(page.find("the largest force on the hand was 2.00 N (`none` in rest)") != std::string::npos);
+  CHECK(page.find("no case exceeded 105 % of the force limit.") != std::string::npos);
+  CHECK(section_of(page, "Undetected with the force on").find("| `fast_hand` | wall | ") != std::string::npos);
+  CHECK(section_of(page_of({fault_free}), "Fast hand").find("No such case was run.") != std::string::npos);
   const TemporaryDirectory directory;
   write_page(std::array{flung, fault_free}, directory / "campaign.md");
-  CHECK(content_of(directory / "campaign-off.svg").find("#3b6ea5\"") ==
-        content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // the legend only, no bar
+  CHECK(content_of(directory / "campaign/off.svg").find("#3b6ea5\"") ==
+        content_of(directory / "campaign/off.svg").rfind("#3b6ea5\""));  // the legend only, no bar
 }
 
-TEST_CASE("faults that were told by no case are named with the reason, whenever the others were told") {
+TEST_CASE("monitored faults that no case reported are listed with a reason, whenever the others were reported") {
   std::vector<Result> results;
   const auto report_in = [&](std::string Result::*when, protocol::Fault fault) {
     results.push_back(seen("bridge_fault", "rest", 1));
@@ -121,7 +125,7 @@ TEST_CASE("faults that were told by no case are named with the reason, whenever 
   report_in(&Result::told_before, protocol::Fault::host_silent);
   report_in(&Result::told_once_cleared, protocol::Fault::bridge_wire);
   report_in(&Result::noticed_in_use_as, protocol::Fault::encoder_wire);
-  const std::string some = section_of(page_of(results), "Told by none");
+  const std::string some = section_of(page_of(results), "Faults that no case reported");
   for (const char* name : {"watchdog", "heartbeat_missed", "host_silent", "bridge_wire", "encoder_wire"})
     CHECK(some.find("`" + std::string(name) + "`") == std::string::npos);
   CHECK(some.find("| `over_speed` | None is known. |") != std::string::npos);
@@ -129,7 +133,8 @@ TEST_CASE("faults that were told by no case are named with the reason, whenever 
   CHECK(some.find("| `not_finite` | What converters") != std::string::npos);
   CHECK(some.find("| `motor_hot` | A motor gets less") != std::string::npos);
   results.back().error = "The board did not start.";
-  CHECK(section_of(page_of(results), "Told by none").find("`encoder_wire`") != std::string::npos);
+  CHECK(section_of(page_of(results), "Faults that no case reported").find("`encoder_wire`") != std::string::npos);
   for (const protocol::Condition& row : protocol::condition_table) report_in(&Result::detected_as, row.fault);
-  CHECK(section_of(page_of(results), "Told by none").ends_with("no case that was run told: none.\n"));
+  CHECK(section_of(page_of(results), "Faults that no case reported")
+            .ends_with("At least one case reported each monitored fault.\n"));
 }

@@ -1,0 +1,14 @@
+// A part of a page, and its number of findings for the summary.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace inkwell::campaign {
+
+struct Section {
+  std::string text;
+  std::size_t findings = 0;
+};
+
+}  // namespace inkwell::campaign
