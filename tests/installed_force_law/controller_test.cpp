@@ -62,7 +62,7 @@ TEST_CASE("the law is told the periods since it is felt, from zero, and again fr
       CHECK(probe.periods == period);
       CHECK(law.signal(0) == static_cast<float>(period));
     }
-    law.rest();
+    law.reset();
     CHECK(law.signal(0) == 0.0f);
   }
 }
