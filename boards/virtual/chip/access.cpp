@@ -1,5 +1,5 @@
-// Faulting accesses: unmapped addresses, accesses that the memory protection unit refuses, and misaligned addresses
-// (ARMv7-M, A3.2.1, B3.1, B3.5).
+// Detection of faulting accesses (ARMv7-M, A3.2.1, B3.1, B3.5). An access faults if its address is unmapped or
+// misaligned, or if the memory protection unit refuses the access.
 #include "bus.hpp"
 #include "flash.hpp"
 #include "processor.hpp"
@@ -7,7 +7,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Device and system regions, in which the default memory map forbids execution and requires aligned accesses.
+/// In the device and system regions, the default memory map forbids execution and requires aligned accesses.
 bool is_of_devices(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;
 }
@@ -15,7 +15,7 @@ bool is_of_devices(std::uint32_t address) {
 }  // namespace
 
 // The memory protection unit of Unicorn is not used, because Unicorn does not know which addresses respond. The engine
-// caches the access rights of each page. The engine checks single accesses only in pages that an MPU region divides.
+// caches the access rights of each page. In pages that contain an MPU region boundary, the engine checks each access.
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
@@ -50,12 +50,12 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
-  // The engine checks alignment only in pages where it checks single accesses.
+  // A negative result makes the engine check each access, including alignment.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
   // While the flash is busy, its pages have no read right. The first read of a busy flash therefore calls refuses(),
-  // which waits.
+  // and refuses() makes the core wait.
   const bool waits = flash_is_busy_ && is_in_flash(page);
   if (!waits && !refusal_of(page, Access::load, role)) rights |= may_read;
   if (!refusal_of(page, Access::store, role)) rights |= may_write;

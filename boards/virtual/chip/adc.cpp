@@ -48,8 +48,7 @@ unsigned Adc::regular_length() const { return adc.cr1.scan.in(cr1_) ? adc.sqr1.l
 unsigned Adc::injected_length() const { return adc.cr1.scan.in(cr1_) ? adc.jsqr.jl.of(jsqr_) + 1 : 1; }
 
 unsigned Adc::channel_of(Group group, unsigned rank) const {
-  // An injected sequence of fewer than four conversions uses the last fields of ADC_JSQR, for example only JSQ4
-  // (RM0090).
+  // Short injected sequences use the last fields of ADC_JSQR (RM0090).
   if (group == Group::injected) return adc.jsqr.jsq.of(jsqr_, 3 - adc.jsqr.jl.of(jsqr_) + rank);
   return adc.sqr3.sq.of(sqr_[2 - rank / 6], rank % 6);
 }
@@ -124,9 +123,9 @@ std::uint32_t Adc::convert(double voltage_V) const {
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
-/// Charges the sampling capacitor, whose initial voltage is that of the previous channel. First the switch connects the
-/// sampling capacitor to the capacitor at the pin, and the two share their charge. Then the source recharges both
-/// capacitors (data sheet, figure "Typical connection diagram using the ADC", with the largest switch resistance).
+/// Charges the sampling capacitor, starting from the voltage of the previous channel. First the pin capacitor and the
+/// sampling capacitor share their charge. Then the source recharges both capacitors. The switch has its maximum
+/// resistance (data sheet, figure "Typical connection diagram using the ADC").
 double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;
   const double both_F = source.capacitance_F + sampling_F;
@@ -138,7 +137,7 @@ double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   return sampled_V_;
 }
 
-/// Value of an invalid conversion: random, so that firmware errors become visible.
+/// An invalid conversion returns a random value, so that firmware errors become visible.
 std::uint32_t Adc::nonsense(Ticks now) const {
   return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
 }

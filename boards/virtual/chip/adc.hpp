@@ -42,7 +42,7 @@ class Adc final : public TimedPart {
   int regular_trigger() const { return adc.cr2.exten.in(cr2_) ? static_cast<int>(adc.cr2.extsel.of(cr2_)) : -1; }
   void start_injected(Ticks now);
   void start_regular(Ticks now);
-  /// Starts the regular group of a slave converter at `when`, in an interleaved mode.
+  /// In an interleaved mode, starts the regular group of a slave converter at `when`.
   void start_regular_at(Ticks when);
   unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
   /// True if the processor must stop for the result of this group.
@@ -100,13 +100,13 @@ class Adcs final : public RegisterBlock {
   /// Sets the pointer to RCC_APB2ENR, which has one clock bit per converter.
   void clock_by(const std::uint32_t* enable_register) { enable_register_ = enable_register; }
   void reset() override;
-  /// Handles a compare match of timer channel 1 to 4, or the trigger output (trigger_output of timers.hpp).
+  /// Handles a timer event: a compare match of channel 1 to 4, or trigger_output (timers.hpp).
   void timer_trigger(unsigned timer, unsigned channel) {
     if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
   }
   void external_line(unsigned line);
   Adc& converter(unsigned index) { return adcs_[index]; }
-  /// True if the processor waits for conversions that this timer event starts.
+  /// True if the processor waits for conversions started by the timer event.
   bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
   /// Call this after a change of triggers or interrupts.
   void connect_triggers();
@@ -119,7 +119,7 @@ class Adcs final : public RegisterBlock {
   bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && converts_together(); }
   /// True if the converters alternate in their regular groups.
   bool interleaved() const;
-  /// Time between two starts of the same converter, unless the converter is still busy.
+  /// Shortest time between two starts of the same converter.
   Ticks interleaving_turn() const { return group_size() * interleaving_delay(); }
   /// Queues a result for the common data register.
   void share(std::uint32_t result);

@@ -1,4 +1,4 @@
-// Registers of one converter and the common registers (RM0090, ADC_SR ... ADC_CDR).
+// Registers of one converter and the common registers (RM0090, ADC_SR to ADC_CDR).
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -72,7 +72,7 @@ struct AdcCommonRegisters {
 };
 inline constexpr AdcCommonRegisters adc_common;
 
-/// ADC_CCR.MULTI without its highest bit, which adds the third converter to the mode.
+/// Lower bits of ADC_CCR.MULTI. The highest bit adds the third converter to the mode.
 enum class MultiMode : std::uint8_t {
   independent = 0,
   regular_and_injected = 1,   ///< both groups simultaneous

@@ -19,7 +19,7 @@ constexpr TriggerSource injected_sources[16] = {{1, 4}, {1, 0}, {2, 1}, {2, 0}, 
                                                 {4, 3}, {4, 0}, {5, 4}, {5, 0}, {8, 2}, {8, 3}, {8, 4}, {0, 15}};
 constexpr TriggerSource regular_sources[16] = {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {2, 4}, {2, 0}, {3, 1},
                                                {3, 0}, {4, 4}, {5, 1}, {5, 2}, {5, 3}, {8, 1}, {8, 0}, {0, 11}};
-/// Two results in a half-word of ADC_CDR, for DMA mode 3.
+/// Two results in one half-word of ADC_CDR (DMA mode 3).
 constexpr Field byte_pair{"BYTE#", 0, 8, Access::r, {2, 8, 0}};
 constexpr std::uint32_t converter_bytes = 0x100, common = 3 * converter_bytes;
 
@@ -58,8 +58,8 @@ bool Adcs::regular_simultaneous() const {
 
 bool Adcs::interleaved() const { return mode() == MultiMode::interleaved; }
 
-// Delay between the starts of two converters: DELAY, or longer while another converter samples (RM0090, "Interleaved
-// mode").
+// Delay between the starts of two converters: ADC_CCR.DELAY, but at least the sampling time plus two cycles (RM0090,
+// "Interleaved mode").
 Ticks Adcs::interleaving_delay() const {
   const unsigned asked = 5 + adc_common.ccr.delay.of(ccr_), sampling = adcs_[0].regular_sampling_cycles() + 2;
   return machine_.clocks.pclk2.duration(std::uint64_t{std::max(asked, sampling)} * prescaler());
@@ -71,7 +71,8 @@ bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
 }
 
-// RM0090, "Multi ADC mode": mode 1 transfers one result, mode 2 two results as half-words, mode 3 two results as bytes.
+// DMA mode 1 transfers one result (RM0090, "Multi ADC mode"). Mode 2 transfers two results as half-words. Mode 3
+// transfers two results as bytes.
 void Adcs::share(std::uint32_t result) {
   shared_.push_back(result);
   const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);

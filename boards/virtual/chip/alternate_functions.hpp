@@ -63,7 +63,7 @@ inline constexpr TimerPin timer_pins[] = {
 };
 // clang-format on
 
-/// Pins on which a USART can transmit.
+/// Transmit pins of the USARTs.
 struct TransmitPin {
   unsigned usart;
   char port;

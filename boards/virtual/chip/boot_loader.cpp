@@ -8,8 +8,7 @@ namespace {
 
 constexpr std::uint32_t loader_stack = sram_base + 0x2000;
 
-/// Main loop of the loader: requests an order, executes it, and repeats. R0 contains LoaderOrder::Kind, R1 the address,
-/// R2 the word or the address of the data, and R3 the number of words.
+/// Main loop of the loader: requests an order, executes it, and repeats.
 constexpr std::uint16_t hands[] = {
     0xF240, 0x1001,  // ask: movw r0, #semihosting_poll_order
     0xBEAB,          // bkpt 0xAB
@@ -42,9 +41,9 @@ constexpr std::uint16_t hands[] = {
 };
 constexpr std::uint32_t hands_literals[] = {0x4002'3C0C, loader_go + 1};
 
-/// Sets the chip to a state that a real boot loader may leave: voltage scale 2, 60 MHz from crystal and PLL, HSI off.
-/// The CCM clock is off, and VTOR points to the vector table of the boot loader. The clock of the USB PHY is stopped,
-/// as in USB suspend.
+/// Sets the chip to a state that a real boot loader may leave. The core runs at 60 MHz from the crystal and PLL. The
+/// voltage scale is 2, and HSI is off. The CCM clock is off, and VTOR points to the vector table of the boot loader.
+/// The clock of the USB PHY is stopped.
 constexpr std::uint16_t go[] = {
     0xF643, 0x0000,  // movw r0, #RCC
     0xF2C4, 0x0002,  // movt r0, #RCC

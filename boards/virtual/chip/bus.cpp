@@ -35,8 +35,8 @@ constexpr Bus::Window window() {
   return {base, bytes, read_window<base>, write_window<base>};
 }
 
-/// Smallest allowed write in bytes, by the first letters of the peripheral's name (RM0090). Peripherals that accept
-/// byte writes, such as serial ports, have no row.
+/// Returns the smallest allowed write in bytes (RM0090). Each row applies to all peripherals whose name starts with
+/// `begin`. Peripherals that accept byte writes, such as serial ports, have no row.
 unsigned narrowest_write(std::string_view name) {
   struct Row {
     std::string_view begin;

@@ -32,9 +32,9 @@ class RegisterBlock : public Peripheral {
  protected:
   virtual std::uint32_t read_word(std::uint32_t offset) = 0;
   virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
-  /// Register value into which a narrow write is merged, without the side effects of a read.
+  /// Returns the register value without the side effects of a read.
   virtual std::uint32_t stored(std::uint32_t) const { return 0; }
-  /// Declared registers: shown<...>() of the register map.
+  /// Returns shown<...>() of the register map.
   virtual std::span<const MapEntry> registers() const { return {}; }
 };
 
@@ -42,7 +42,8 @@ class Bus {
  public:
   Bus(Machine& machine, SystemControl& system_control);
 
-  /// While `*enable_register & enable_mask` is 0, the peripheral has no clock: it reads 0 and ignores writes.
+  /// While `*enable_register & enable_mask` is 0, the peripheral has no clock. Reads then return 0, and writes are
+  /// ignored.
   void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
            const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
   void reset_peripherals();
@@ -63,7 +64,7 @@ class Bus {
 
   std::uint32_t read(std::uint32_t address, unsigned size);
   void write(std::uint32_t address, std::uint32_t value, unsigned size);
-  /// Register access by DMA, without the timing of the processor.
+  /// Register access by DMA, without processor wait cycles.
   std::uint32_t read_register(std::uint32_t address, unsigned size);
   void write_register(std::uint32_t address, std::uint32_t value, unsigned size);
 

@@ -13,8 +13,8 @@ namespace inkwell::virtual_board {
 
 class Can final : public RegisterBlock, public Freezable {
  public:
-  /// The interrupts of a controller have four consecutive vectors: transmission, FIFO 0, FIFO 1, and errors with mode
-  /// changes. CAN2 uses the filters of CAN1 (`first`).
+  /// A controller has four consecutive interrupt vectors. The last vector is for errors and mode changes. CAN2 uses the
+  /// filters of CAN1 (`first`).
   Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position, const Can* first = nullptr)
       : machine_(machine),
         events_(events),
@@ -113,7 +113,7 @@ class Can final : public RegisterBlock, public Freezable {
   void write_transmit_status(std::uint32_t value) {
     word(can.tsr) &= ~(value & bits_of(can.tsr, Access::rc_w1));
     for (unsigned i = 0; i < 3; ++i) {
-      // RQCP also clears the result flags; ABRQ aborts a frame without acknowledgment.
+      // RQCP also clears the result flags.
       if (can.tsr.rqcp.in(value, i))
         word(can.tsr) &= ~(can.tsr.txok.mask(i) | can.tsr.alst.mask(i) | can.tsr.terr.mask(i));
       if (can.tsr.abrq.in(value, i)) abort_mailbox(i);

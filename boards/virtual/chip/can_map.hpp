@@ -1,4 +1,4 @@
-// Registers of a CAN controller (RM0090, CAN_MCR ... CAN_FiRx).
+// Registers of a CAN controller (RM0090, CAN_MCR to CAN_FiRx).
 #pragma once
 
 #include <chip/register_map.hpp>

@@ -23,7 +23,7 @@ struct CanFrame {
 /// Identifier bits that a 16-bit filter compares (RM0090, "Filter bank scale configuration - register organization").
 struct CanHalfFilter {
   Field exid{"EXID", 0, 3}, ide{"IDE", 3}, rtr{"RTR", 4}, stid{"STID", 5, 11};
-  /// Identifier in the format of a 16-bit filter, which has only the three highest bits of EXID.
+  /// Identifier in the format of a 16-bit filter. A 16-bit filter compares only the three highest bits of EXID.
   constexpr std::uint32_t seen(std::uint32_t identifier) const {
     const auto& from = can.rir;
     return stid.with(from.stid.of(identifier)) | rtr.with(from.rtr.of(identifier)) | ide.with(from.ide.of(identifier)) |
@@ -32,7 +32,7 @@ struct CanHalfFilter {
 };
 inline constexpr CanHalfFilter can_half_filter;
 
-/// Filter banks of CAN1 and CAN2, in the registers of CAN1: FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
+/// Filter banks of CAN1 and CAN2. The registers of CAN1 configure all filter banks.
 struct CanFilters {
   static constexpr unsigned banks = 28;
   struct Bank {

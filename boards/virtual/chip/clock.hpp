@@ -10,8 +10,8 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 
-/// A clock whose period is numerator / denominator ticks. The denominator is 1 if the frequency divides ticks_per_s, as
-/// for most clocks of the chip.
+/// The period of a clock is numerator / denominator ticks. For most clocks of the chip the denominator is 1, because
+/// the frequency divides ticks_per_s.
 struct Clock {
   /// A crystal with a frequency deviation leads to a large numerator and denominator.
   __extension__ using Wide = unsigned __int128;
@@ -27,7 +27,7 @@ struct Clock {
   bool runs() const { return numerator != 0; }
   bool operator==(const Clock&) const = default;
 
-  /// Time after which `cycles` have passed.
+  /// Duration of `cycles` clock cycles.
   Ticks duration(std::uint64_t cycles) const {
     if (denominator == 1) return cycles * numerator;
     return static_cast<Ticks>((Wide{cycles} * numerator + denominator - 1) / denominator);

@@ -1,6 +1,6 @@
-// Freezes peripherals while a debug probe halts the core: SysTick (ARMv7-M, B3.3.1) and the peripherals that firmware
-// selected (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). Other peripherals continue as on real
-// hardware. DBG_I2Cx_SMBUS_TIMEOUT has no effect, because the modeled I2C bus has no time-out.
+// Freezes SysTick while a debug probe halts the core (ARMv7-M, B3.3.1). The peripherals selected by firmware also
+// freeze (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). DBG_I2Cx_SMBUS_TIMEOUT has no effect,
+// because the modeled I2C bus has no time-out.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@ struct Debugging {
   bool attached = false;
   bool steps = false;
   std::set<std::uint32_t> breakpoints;
-  /// Address at which the program resumes; the stop at this address has already been reported.
+  /// The program resumes at this address. The stop at this address has already been reported.
   std::optional<std::uint32_t> resumed_at;
   /// Address of the watch point that the current instruction has accessed.
   std::optional<std::uint32_t> touched;

@@ -82,7 +82,7 @@ bool DmaController::load(std::uint32_t address, unsigned size, std::uint32_t& va
     return true;
   }
   const std::uint8_t* place = machine_.memory.at(address, size);
-  // DMA cannot access the CCM, which is connected to the data bus of the processor only (RM0090, "System
+  // DMA cannot access the CCM, because the CCM is connected only to the processor's data bus (RM0090, "System
   // architecture").
   if (place == nullptr || (address >= ccm_base && address < system_base)) return false;
   std::memcpy(&value, place, size);

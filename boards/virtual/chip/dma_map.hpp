@@ -1,4 +1,4 @@
-// Registers of a DMA controller (RM0090, DMA_LISR ... DMA_SxFCR).
+// Registers of a DMA controller (RM0090, DMA_LISR to DMA_SxFCR).
 #pragma once
 
 #include <chip/register_map.hpp>

@@ -1,4 +1,5 @@
-// Interception of functions inside the engine (Unicorn), because its public interface has no hook for them.
+// Intercepts internal functions of Unicorn (the engine), because the public interface of Unicorn has no hooks for
+// internal functions.
 //
 // Unicorn 2.0.1 calls its internal functions through the procedure linkage table. A function of the same name in this
 // program replaces the engine's function and calls the original function. The replaced functions translate loads and
@@ -18,7 +19,7 @@ class EngineCalls {
   /// The values match the access-right bits of the engine.
   enum Rights : int { may_read = 1, may_write = 2, may_execute = 4 };
 
-  /// Execution role, which determines the access rights. The engine has one address cache per role.
+  /// The execution role determines the access rights. The engine has one address cache per role.
   struct Role {
     bool privileged;
     bool above_faults;  ///< negative priority: HardFault, NMI, or FAULTMASK set
@@ -31,7 +32,7 @@ class EngineCalls {
   virtual int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) = 0;
   /// True if the current role may fetch a half-word of an instruction at this address.
   virtual bool may_fetch(std::uint32_t address) const = 0;
-  /// Returns Role::above_faults of the running code. The engine calls this function after each possible change of the
+  /// True if the running code has Role::above_faults. The engine calls this function after each possible change of the
   /// role.
   virtual bool runs_above_faults() const = 0;
   /// True if the page contains no instructions, so that stores need no check for translated code.
@@ -43,7 +44,7 @@ class EngineCalls {
   /// True if this load or store instruction requires an aligned address. Called when the engine translates the
   /// instruction.
   virtual bool must_be_aligned(std::uint16_t first, std::uint16_t second) const = 0;
-  /// Called when the engine translates the instruction at `address`, for the first time or after a possible change.
+  /// Called each time that the engine translates the instruction at `address`.
   virtual void translates(std::uint32_t address) = 0;
 
   /// While a Use object exists, the engine on this thread calls the functions of its EngineCalls object.

@@ -88,8 +88,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
                                xpsr.padded.with(aligned) | current_exception_;
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
-  // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Firmware can detect this only in its
-  // stack memory. Refused stacking is repeated at the next FPU instruction.
+  // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Firmware can detect the early stacking
+  // only in its stack memory. Refused stacking is repeated at the next FPU instruction.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
   if (stacks) {
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
@@ -132,7 +132,7 @@ void Processor::resume_if_then_block(std::uint32_t status) {
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
 }
 
-// Fast check, because every exception runs it.
+// Every exception calls this function, so it must be fast.
 bool Processor::takes_any_frame(std::uint32_t address, std::uint32_t bytes) const {
   return !machine_.memory_protection.is_on(false) && core_coupled_on_ &&
          machine_.memory.ram_at(address, bytes) != nullptr;

@@ -95,8 +95,7 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // Because the processor is already stopped here, the circuit advances after only half a period, which avoids a
-    // later stop.
+    // The processor is already stopped here. Advancing the circuit early therefore avoids a later stop.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;
@@ -218,8 +217,8 @@ void Execution::enter(unsigned exception, bool stacks) {
   if (entry != Processor::Entry::started) enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
 }
 
-// The context that could not be stacked is lost. The handler of the stacking fault starts at the decremented stack
-// pointer (ARMv7-M, B1.5.9). A less urgent exception stays pending until the fault handler returns.
+// The context that could not be stacked is lost. The stack pointer remains decremented when the handler of the stacking
+// fault starts (ARMv7-M, B1.5.9). A less urgent exception stays pending until the fault handler returns.
 void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
   const std::string what =
       std::string(is_protected ? "the memory protection unit refuses the stack" : "the stack is not in RAM") +
@@ -324,8 +323,8 @@ void Execution::handle_lost_frame(bool is_protected) {
   if (has_handler(fault)) processor_.chain_exception(fault, system_control_.vector_table());
 }
 
-// Handles failed lazy stacking in the handler whose FPU instruction triggered it. If the fault cannot preempt this
-// handler, the fault stays pending and the FPU context is lost (ARMv7-M, B1.5.7).
+// Handles a lazy stacking failure. If the fault cannot preempt the running handler, the fault stays pending and the FPU
+// context is lost (ARMv7-M, B1.5.7).
 void Execution::handle_lost_float_context(bool is_protected) {
   const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
   const std::uint32_t bits = is_protected ? scb.cfsr.mlsperr.mask() : scb.cfsr.lsperr.mask();

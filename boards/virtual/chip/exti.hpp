@@ -1,4 +1,4 @@
-// External interrupts, and SYSCFG, which selects their ports (RM0090, "External interrupt/event controller").
+// External interrupts, and their port selection in SYSCFG (RM0090, "External interrupt/event controller").
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ class Exti final : public RegisterBlock {
   /// Sets the level of an internal line, 16 to 22.
   void internal_line(unsigned line, bool high);
   Peripheral& syscfg() { return syscfg_; }
-  /// Makes SYSCFG_MEMRMP report that the boot pins selected the boot loader, until the next reset (RM0090).
+  /// Until the next reset, SYSCFG_MEMRMP reports that the boot pins selected the boot loader (RM0090).
   void show_boot_loader_chosen() { syscfg_.show_boot_loader_chosen(); }
 
  protected:

@@ -61,8 +61,8 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void hold_up();
   /// Number of erase and program operations since construction.
   std::uint64_t operations() const { return operations_; }
-  /// Interrupts the power during the flash operation with this number, counted from 1; 0 disables the interruption.
-  /// Power returns immediately.
+  /// Interrupts the power during flash operation number `operation`, counted from 1; 0 disables the interruption. Power
+  /// returns immediately.
   void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
   /// Call this when the supply voltage or the clock has changed.
   void check_wait_states();

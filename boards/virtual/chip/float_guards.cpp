@@ -1,4 +1,5 @@
-// Hooks for FPU instructions, which fault while the FPU is off or while pending lazy stacking is refused.
+// Hooks for FPU instructions. An FPU instruction raises a fault while the FPU is off or pending lazy stacking is
+// refused.
 #include "processor.hpp"
 
 namespace inkwell::virtual_board {

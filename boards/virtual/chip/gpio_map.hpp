@@ -1,4 +1,4 @@
-// Registers of a port (RM0090, GPIOx_MODER ... GPIOx_AFRH).
+// Registers of a port (RM0090, GPIOx_MODER to GPIOx_AFRH).
 #pragma once
 
 #include <chip/register_map.hpp>

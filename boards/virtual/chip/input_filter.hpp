@@ -20,7 +20,7 @@ struct InputFilterSetting {
     constexpr InputFilterSetting by_code[] = {{1, 1}, {1, 2}, {1, 4},  {1, 8},  {2, 6},  {2, 8},  {4, 6},  {4, 8},
                                               {8, 6}, {8, 8}, {16, 5}, {16, 6}, {16, 8}, {32, 5}, {32, 6}, {32, 8}};
     InputFilterSetting setting = by_code[code & 15];
-    // Codes 1 to 3 sample with the timer clock, the other codes with tDTS.
+    // Codes 1 to 3 sample with the timer clock, codes above 3 with tDTS.
     if (code == 0 || code > 3) setting.divider <<= clock_division;
     return setting;
   }
@@ -38,7 +38,7 @@ class InputFilter {
     passes_at_ = never;
   }
 
-  /// Sets the input level from `when` on. pass() must have handled all earlier changes.
+  /// Sets the input level from `when` on. Before the call, pass() must have handled all earlier changes.
   void drive(bool high, Ticks when) {
     if (high == input_) return;
     input_ = high;

@@ -1,4 +1,4 @@
-// State that all parts of the chip share.
+// Shared state of all parts of the chip.
 #pragma once
 
 #include <array>
@@ -38,14 +38,14 @@ struct ClockTree {
   }
 };
 
-/// Stack space that an exception entry has reserved for the FPU registers, and the state of the interrupted code.
+/// Stack space reserved for the FPU registers at exception entry, and the state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
   int priority;  ///< execution priority
   bool privileged, in_thread;
 };
 
-/// Part of the chip that counts clock cycles; firmware can change the clock.
+/// Interface for models that must react to a clock change.
 class ClockUser {
  public:
   virtual ~ClockUser() = default;
@@ -112,7 +112,7 @@ struct Machine {
   Ticks transfer_lag() const { return options.mode == Mode::exact ? 0 : 10 * (ticks_per_s / 1'000'000); }
 };
 
-/// Returns `old` with the bytes replaced that an access of `size` bytes at `offset` writes.
+/// Returns `old` after a write of `size` bytes of `value` at `offset`.
 constexpr std::uint32_t merge(std::uint32_t old, std::uint32_t value, std::uint32_t offset, unsigned size) {
   if (size == 4) return value;
   const unsigned shift = 8 * (offset & 3);

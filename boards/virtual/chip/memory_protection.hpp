@@ -60,8 +60,9 @@ class MemoryProtection {
       attributes_[region_] = value & writable(mpu.rasr);
     }
   }
-  /// True if all enabled regions have defined behavior: the base is aligned to the size, the size is at least 32 bytes,
-  /// and regions below 256 bytes have no disabled subregion. AP and TEX, C, B must not have reserved values.
+  /// True if all enabled regions have defined behavior. The base must be aligned to the size, and the size must be at
+  /// least 32 bytes. Regions below 256 bytes must not have disabled subregions. The fields AP, TEX, C and B must not
+  /// have reserved values.
   bool is_defined() const {
     for (unsigned i = 0; i < regions; ++i) {
       const std::uint32_t attributes = attributes_[i];
@@ -94,7 +95,7 @@ class MemoryProtection {
     const bool cached = mpu.rasr.c.in(*attributes), buffered = mpu.rasr.b.in(*attributes);
     return !cached && (kind == 0 || (kind == 2 && !buffered));
   }
-  /// True if a region boundary may lie inside the page.
+  /// True if the page may contain a region boundary.
   bool divides(std::uint32_t page, std::uint32_t bytes) const {
     for (unsigned i = 0; i < regions; ++i) {
       if (!mpu.rasr.enable.in(attributes_[i])) continue;

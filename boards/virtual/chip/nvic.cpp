@@ -88,7 +88,7 @@ unsigned Nvic::most_urgent() const {
       const unsigned exception = half * 64 + static_cast<unsigned>(std::countr_zero(bits));
       const int group = group_priority(exception);
       const int full = group < 0 ? group : priority_[exception];
-      // At equal priorities the exception with the lower number wins. This loop visits the exceptions in that order.
+      // At equal priorities the exception with the lower number wins.
       if (group < best_group || (group == best_group && full < best_full)) {
         best = exception;
         best_group = group;

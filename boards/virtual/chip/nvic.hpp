@@ -36,14 +36,13 @@ class Nvic final : public InterruptController {
     non_maskable_ = asserted;
     if (asserted) pend(exception_nmi);
   }
-  /// If `lost` is true, the exception does not reach the core until a call with false.
+  /// While `lost` is true, the exception does not reach the core.
   void lose(unsigned exception, bool lost) {
     assign(lost_, exception, lost);
     changed_ = true;
   }
 
-  /// Delays an exception while `late` is true: when the exception becomes pending, it calls `on_held` and waits for
-  /// let_go().
+  /// While `late` is true, calls `on_held` when the exception becomes pending. The exception then waits for let_go().
   void hold_back(unsigned exception, bool late) { assign(late_, exception, late); }
   void let_go(unsigned exception) {
     assign(held_, exception, false);

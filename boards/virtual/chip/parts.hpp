@@ -1,11 +1,10 @@
 #pragma once
 
-// To add a peripheral:
-// 1. Write a header like crc.hpp, with a RegisterBlock and a map of the registers and fields named in RM0090.
-// 2. Add a line to ChipParts::put_peripherals(), with base address, name and clock.
-// 3. In tests/boards/virtual/chip, add a test firmware that uses the peripheral to firmware/, and add a case to
-//    peripherals_test.cpp.
-// 4. Compare the map with the manufacturer's description of the chip: INKWELL_SVD=FILE tools/test
+// To add a peripheral, first write a header like crc.hpp, with a RegisterBlock and a register map.
+// Register and field names must match RM0090.
+// Add a line to ChipParts::put_peripherals(), with base address, name and clock.
+// In tests/boards/virtual/chip, add a test firmware to firmware/ and a case to peripherals_test.cpp.
+// Run `INKWELL_SVD=FILE tools/test` to compare the map with the manufacturer's chip description.
 
 #include <deque>
 #include <memory>

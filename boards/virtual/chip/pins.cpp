@@ -135,7 +135,7 @@ PinLevel Pins::output_of(unsigned port, unsigned pin) const {
   return level == PinLevel::high && pins.open_drain(pin) ? PinLevel::floating : level;
 }
 
-// Level that a pin has while the chip does not drive it.
+// Level of a pin while the chip does not drive the pin.
 PinLevel Pins::outside(unsigned port, unsigned pin) const {
   const State& s = states_[port * 16 + pin];
   PinLevel level = s.driven;

@@ -59,13 +59,13 @@ class Pins final : public InputPins {
   void hold(char port, unsigned pin, PinLevel level) override;
   /// While `inverted` is true, inverts the level that the circuit drives.
   void invert(unsigned port, unsigned pin, bool inverted);
-  /// Level that a meter would show at the pin.
+  /// Electrical level at the pin.
   PinLevel level(unsigned port, unsigned pin) const;
   PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
   /// Called at each level change of a pin; empty by default.
   std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
-  /// Sets a timer output. Calls are in the order of board time, several hundred thousand per second.
+  /// Sets a timer output. Calls must be in the order of board time.
   void timer_output(unsigned timer, unsigned line, PinLevel level) {
     auto& output = outputs_[timer * timer_lines + line];
     if (output.level == level) return;

@@ -11,7 +11,7 @@ namespace inkwell::virtual_board {
 
 /// Unicorn 2.0.1 treats every store to RAM as a possible change of instructions and searches for translated code. The
 /// search makes stores tens of times slower than loads. Only pages with executed instructions need the search. In the
-/// address cache of Unicorn, this class therefore marks all other pages as plain.
+/// address cache of Unicorn, this class marks pages without executed instructions as plain.
 class PlainStores {
  public:
   /// Marks pages with instructions, so that the engine checks stores to these pages.

@@ -275,8 +275,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   if (!self.block_is_plain_) self.wait_in_block(at, starts[half_word]);
 }
 
-// Exact mode: false if the processor must stop before the instruction, because of time, an interrupt, a debugger or a
-// division by zero.
+// In exact mode, returns false if the processor must stop before the instruction. The reason may be time, an interrupt,
+// a debugger or a division by zero.
 [[gnu::noinline]] bool Processor::may_run(std::uint32_t address) {
   const bool due = cycles_ >= stop_cycle_ || (watch_masks_ && masks_open());
   if (due && !in_if_then_block(address)) {
@@ -293,8 +293,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   return true;
 }
 
-// Exact mode: adds the wait time of an instruction for flash and operands. The instruction starts `after_cycles` after
-// the start of its block.
+// In exact mode, adds the cycles that an instruction waits for the flash and for operands. The instruction starts
+// `after_cycles` after the start of its block.
 [[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
   const auto& requests = block_->requests;
   const auto& divides = block_->divides;
@@ -344,9 +344,8 @@ void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* po
 
 bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  // Unicorn calls this hook also for WFE and YIELD, with the program counter after the instruction. For an undefined
-  // instruction the program counter is at the instruction, which is the last instruction or the first of the last
-  // block.
+  // Unicorn calls this hook also for WFE and YIELD, with the program counter after the instruction. At an undefined
+  // instruction the program counter contains the address of this instruction.
   const std::uint32_t after = self.read(UC_ARM_REG_PC) & ~1u;
   constexpr std::uint16_t yield = 0xBF10, wait_for_event = 0xBF20;
   constexpr std::uint16_t wide_hint = 0xF3AF, wide_yield = 0x8001, wide_wait_for_event = 0x8002;
@@ -368,7 +367,7 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   return false;
 }
 
-// Handles a store to the flash, which starts programming (RM0090, "Flash programming").
+// Handles a store to the flash. The store starts programming (RM0090, "Flash programming").
 bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);

@@ -205,9 +205,10 @@ class Processor final : public ClockUser, private EngineCalls {
   static void watch_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
   bool stop_for_debugger(std::uint32_t address);
   // division.cpp
+
   /// True if the instruction at `address` divides by zero outside of if-then blocks.
   bool divides_by_zero(std::uint32_t address) const;
-  /// Fast mode: true if the block contains divide instructions without a hook. Their hooks are added after the slice.
+  /// In fast mode, true if the block contains divide instructions without a hook. The hooks are added after the slice.
   bool has_new_divides(const BlockPrice& block);
   void hook_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
@@ -246,8 +247,7 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Performs the pending lazy stacking. Returns the reason of a refused access, or nothing.
   std::optional<Outcome> stack_float_context();
   void take_new_rights();
-  /// Exact mode: true if no instruction of the block waits and neither a debugger nor on_instruction needs single
-  /// instructions.
+  /// In exact mode, true if no instruction of the block waits and no debugger or on_instruction is active.
   bool is_plain(const BlockPrice& block) const;
   bool may_run(std::uint32_t address);
   void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
@@ -259,7 +259,7 @@ class Processor final : public ClockUser, private EngineCalls {
       return read(number <= 12 ? UC_ARM_REG_R0 + number : number == 13 ? UC_ARM_REG_SP : UC_ARM_REG_LR);
     };
   }
-  /// Additional cycles of a divide with its present operands, above the shortest divide.
+  /// Additional cycles of a divide with its present operands, compared with the shortest divide.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories(Bus& bus);
   void map_holes();
@@ -290,7 +290,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
   CycleCounter timing_;
   PeripheralBus register_bus_;
-  // Exact mode: current block, its start, and the end of its current instruction.
+  // In exact mode, the current block, its start, and the end of its current instruction.
   const BlockPrice* block_ = nullptr;
   std::uint64_t block_start_ = 0, instruction_end_ = 0;
   std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< within the block
@@ -311,7 +311,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
   bool flash_is_busy_ = false;
-  /// Lazy stacking that was refused at exception entry.
+  /// Lazy stacking refused at exception entry.
   struct UnstackedFloat {
     std::uint32_t address;  ///< FPCAR
     Role role;              ///< of the interrupted code

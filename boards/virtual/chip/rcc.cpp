@@ -173,8 +173,8 @@ void Rcc::step(Ticks) {
   switch_system_clock();
 }
 
-// ES0182: a peripheral clock starts two AHB cycles after it is enabled, or one cycle plus the APB prescaler. Only exact
-// mode measures the time between two accesses.
+// An AHB peripheral clock starts two AHB cycles after the enable bit is set (ES0182). An APB peripheral clock starts
+// after 1 + prescaler AHB cycles. Only exact mode measures the time between two accesses.
 void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   if (risen == 0 || machine_.options.mode != Mode::exact) return;
   const auto& clocks = machine_.clocks.frequencies;

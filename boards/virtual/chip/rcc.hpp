@@ -16,11 +16,11 @@ class Rcc final : public RegisterBlock, public TimedPart {
   explicit Rcc(Machine& machine);
 
   void reset() override;
-  /// Frequency of the real-time clock that RCC_BDCR selects; 0 until its oscillator is ready.
+  /// Frequency of RTCCLK; 0 until the selected oscillator is ready.
   std::uint32_t real_time_clock_Hz() const;
   /// Sets the reset flags of RCC_CSR. Call this function after reset().
   void record_reset(ResetCause cause);
-  /// Pointer to an enable register, which the bus reads: a peripheral whose clock is off does not respond.
+  /// Returns a pointer to an enable register. The bus reads the enable registers to detect peripherals without a clock.
   const std::uint32_t* enable_register(std::uint32_t offset) const { return &words_[offset / 4]; }
   void add_reset(std::uint32_t offset, std::uint32_t mask, Peripheral& peripheral) {
     resets_.push_back({offset, mask, &peripheral});
@@ -34,7 +34,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void step(Ticks now) override;
   /// Stops or restarts the crystal, for example to simulate a broken solder joint. If the crystal stops while the clock
   /// security system is on (RM0090, "Clock security system"), the chip switches to HSI, raises NMI and triggers the
-  /// timer break. Without the clock security system, all parts stop whose clock comes from the crystal.
+  /// timer break. Without the clock security system, all parts that use the crystal stop.
   void let_crystal_swing(bool swings);
   /// Sets the deviation of the crystal from its nominal frequency.
   void drift_crystal(std::int32_t ppm);

@@ -1,4 +1,4 @@
-// Registers of reset and clock control (RM0090, RCC_CR ... RCC_PLLI2SCFGR).
+// Registers of reset and clock control (RM0090, RCC_CR to RCC_PLLI2SCFGR).
 #pragma once
 
 #include <chip/register_map.hpp>

@@ -73,7 +73,7 @@ class RealTimeClock final : public RegisterBlock, public Freezable {
   std::span<const MapEntry> registers() const override { return shown<rtc>(); }
 
  private:
-  /// Returns RTCCLK, which is stopped while RTCEN is clear or the oscillator is not ready.
+  /// Returns RTCCLK. RTCCLK is stopped while RTCEN is clear or the oscillator is not ready.
   Clock clock() const;
   std::uint64_t cycles_per_second() const;
   /// Cycles of RTCCLK since the calendar was set.

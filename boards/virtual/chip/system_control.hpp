@@ -1,5 +1,5 @@
-// Private peripheral bus of the Cortex-M4: system control block, SysTick, floating-point context registers, cycle
-// counter, and the debug registers that firmware uses (ARMv7-M, B3.2, B3.3, C1.6, C1.8).
+// Private peripheral bus of the Cortex-M4 (ARMv7-M, B3.2, B3.3, C1.6, C1.8). The model contains the system control
+// block, SysTick, the floating-point context registers, the cycle counter and some debug registers.
 #pragma once
 
 #include <array>

@@ -2,8 +2,8 @@
 //
 // Each timed part (timer, converter, watchdog) sets two times. `due` is the time of its next internal step. `wake` is
 // the time at which the step affects the processor (interrupt, reset, memory). The processor runs up to the earliest
-// `wake`. Steps that are due before this time are executed later, in order of time, when a part is accessed. PWM edges
-// therefore do not stop the processor.
+// `wake`. Steps before the earliest `wake` wait until a part is accessed, and are then executed in order of time. PWM
+// edges therefore do not stop the processor.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ namespace inkwell::virtual_board {
 class TimedPart {
  public:
   virtual ~TimedPart() = default;
-  /// Called when board time has reached the `due` time of this part. step() must set the next `due` time before it
-  /// returns.
+  /// Called when board time has reached the `due` time of this part. The function must set the next `due` time before
+  /// it returns.
   virtual void step(Ticks now) = 0;
 };
 
@@ -85,7 +85,7 @@ class Timeline {
   bool wake_moved_forward_ = false;
 };
 
-/// Timed part that runs the events of the USB host and the circuit.
+/// Runs the events of the USB host and of the circuit.
 class EventQueue final : public Scheduler, public TimedPart {
  public:
   explicit EventQueue(Timeline& timeline) : timeline_(timeline), slot_(timeline.add(*this)) {}

@@ -100,7 +100,7 @@ void Timer::find_matches() {
     const std::uint32_t compare = channel.active_compare;
     if (!down_ && compare > count_) channel.match = compare - count_;
     if (down_ && compare < count_) channel.match = count_ - compare;
-    // In edge-aligned mode, the last tick of a ramp is the first value of the next ramp.
+    // In edge-aligned mode, the last tick of a ramp sets the counter to the first value of the next ramp.
     const std::uint64_t last = centre_aligned() ? ramp_length_ : ramp_length_ - 1;
     if (channel.match != no_match && channel.match > last) channel.match = no_match;
   }

@@ -1,4 +1,4 @@
-// Registers of the timers (RM0090, TIMx_CR1 ... TIMx_DMAR). TimerTraits selects the registers that a timer has.
+// Registers of the timers (RM0090, TIMx_CR1 to TIMx_DMAR). TimerTraits selects the registers that a timer has.
 #pragma once
 
 #include <chip/register_map.hpp>

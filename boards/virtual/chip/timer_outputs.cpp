@@ -9,9 +9,9 @@ namespace inkwell::virtual_board {
 
 bool Timer::compare_level(unsigned i, std::uint32_t count) const {
   const std::uint32_t compare = channels_[i].active_compare;
-  // PWM mode 1: while counting up, the reference is active if CNT < CCR; while counting down, inactive if CNT > CCR. In
-  // center-aligned mode the count 0 belongs to the upward ramp, so the reference is never active if CCR = 0 (RM0090,
-  // PWM mode: OCxREF is held at 0).
+  // In PWM mode 1, the reference of an up-counting timer is active if CNT < CCR. The reference of a down-counting timer
+  // is inactive if CNT > CCR. In center-aligned mode the count 0 belongs to the upward ramp, so the reference is never
+  // active if CCR = 0 (RM0090, "PWM mode").
   const bool active = down_ ? count <= compare && !(centre_aligned() && compare == 0) : count < compare;
   return output_mode(i) == pwm_2 ? !active : active;
 }
@@ -214,7 +214,7 @@ void Timer::connect_input(unsigned line, bool high) {
   }
 }
 
-// RM0090, TIMx_SMCR: the trigger passes ETP, then ETPS, then ETF. The initial phase of the ETPS prescaler is not
+// The trigger passes ETP, then ETPS, then ETF (RM0090, TIMx_SMCR). The initial phase of the ETPS prescaler is not
 // documented; in this model the first edge passes.
 void Timer::drive_external_trigger(bool high, Ticks when) {
   external_.pin = high;

@@ -1,8 +1,8 @@
 // TIM1 to TIM14 (RM0090, "Advanced-control timers", "General-purpose timers", "Basic timers").
 //
-// The model does not step the counter. A ramp is the counting up to the next overflow or underflow; within a ramp, the
-// count is computed from board time. Steps occur only at ramp ends and at the compare matches that another part of the
-// chip needs. Not modeled: dead time, DMA bursts.
+// The model does not step the counter. A ramp is the time until the next overflow or underflow. Within a ramp, the
+// count is computed from board time. Steps occur only at ramp ends and at compare matches that affect another part of
+// the chip. Not modeled: dead time, DMA bursts.
 #pragma once
 
 #include <array>
@@ -55,11 +55,11 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void input_changed(unsigned line, bool high, Ticks when);
   /// Connects a pin to this timer. The initial level is not counted as an edge.
   void connect_input(unsigned line, bool high);
-  /// Triggers the break because the clock security system has detected a failure (RM0090, "Using the break function").
+  /// Triggers the break after a crystal failure (RM0090, "Using the break function").
   void clock_failed();
   /// Handles a pulse or level change of the trigger output of timer `master`.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
-  /// Handles a USB start of frame from OTG_FS, which TIM2 can select as ITR1.
+  /// Handles a USB start of frame. TIM2 can select this event as ITR1.
   void usb_start_of_frame();
   /// Call this when another part of the chip starts or stops using events of this timer.
   void plan_again();
@@ -124,7 +124,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   bool update_needed() const;
   void trigger_out(bool level, bool is_pulse);
 
-  // timer_outputs.cpp: compare references, outputs, break, inputs
+  // timer_outputs.cpp
   unsigned output_mode(unsigned channel) const { return tim.ccmr1.ocm.of(ccmr_[channel / 2], channel % 2); }
   unsigned selection(unsigned channel) const { return tim.ccmr1.ccs.of(ccmr_[channel / 2], channel % 2); }
   bool preloads(unsigned channel) const { return tim.ccmr1.ocpe.in(ccmr_[channel / 2], channel % 2); }
@@ -156,6 +156,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void channel_edge(unsigned channel);
 
   // timer_registers.cpp
+
   /// Selects the master timer from TS if this timer uses a trigger.
   void listen();
   void write_control(std::uint32_t value);

@@ -1,5 +1,5 @@
 // USART1, USART2, USART3, UART4, UART5 and USART6 (RM0090, "Universal synchronous asynchronous receiver transmitter").
-// An asynchronous frame has its real duration, but the pins have no edges: the model transfers whole characters.
+// The model transfers whole characters with the real duration of an asynchronous frame. The pins have no edges.
 #pragma once
 
 #include <cstdint>

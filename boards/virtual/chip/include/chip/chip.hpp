@@ -50,7 +50,7 @@ struct ChipOptions {
   std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 
-/// Reset flags of RCC_CSR, in the order of its bits 26 to 31, then bit 25.
+/// Reset flags in the order of RCC_CSR bits 26 to 31, then bit 25.
 enum class ResetCause : std::uint8_t {
   pin,
   power_on,
@@ -91,7 +91,7 @@ enum class Stop : std::uint8_t {
   debugger,   ///< a breakpoint, a watch point or the end of a step; see debug_port()
 };
 
-/// Frequencies that the firmware has configured, in Hz. 0 means that the clock is stopped.
+/// Configured frequencies in Hz, 0 for stopped clocks.
 struct Clocks {
   std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
   std::uint32_t timer1_Hz;  ///< timers on APB1
@@ -115,38 +115,37 @@ class Chip {
   Chip& operator=(const Chip&) = delete;
 
   /// Erases the flash sectors that the ELF's load segments overlap, and programs the segments at their physical
-  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, is truncated, is not a 32-bit ARM
-  /// executable, or is too large.
+  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated or too large, or if it is
+  /// not a 32-bit ARM executable.
   void load_elf(const std::filesystem::path& path);
   /// Resets processor and peripherals like the NRST pin. Board time continues.
   void reset(ResetCause cause = ResetCause::pin);
 
-  /// Runs until board time reaches `when` or the firmware exits. run_until() calls the circuit, the peripherals and the
-  /// scheduled events.
+  /// Runs until board time reaches `when` or the firmware exits. The function calls the circuit, the peripherals and
+  /// the scheduled events.
   Stop run_until(Ticks when);
   /// Starts the firmware like the "go" command of the boot loader (AN2606). Call reset() before this function. Clocks,
   /// CCM and vector table have the state that the boot loader leaves, not their reset state.
   void start_by_boot_loader();
   /// Starts the boot loader, like a reset with BOOT0 high.
   void start_boot_loader();
-  /// Sets the program counter, like a debugger between two instructions or a bit flip in the register. Not allowed
-  /// inside run_until().
+  /// Sets the program counter between two instructions, like a debugger or a bit flip. Not allowed inside run_until().
   void jump(std::uint32_t address);
-  // Injected faults. Calls are not allowed inside run_until(). A reset clears stall(), stall_thread() and halt(); the
-  // other faults remain.
+  // Injected faults. Calls are not allowed inside run_until(). A reset clears stall(), stall_thread() and halt(); all
+  // other injected faults remain.
   /// Stops the core for `duration`, like a long bus wait. The peripherals continue.
   void stall(Ticks duration);
   /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
   /// exceptions, the stop begins only after the instruction that unmasks the exceptions.
   void stall_thread(Ticks duration);
-  /// Halts the core for `duration` like a debug probe. Peripherals that firmware selected in DBGMCU_APBx_FZ freeze too.
-  /// In contrast, a halt by debug_port() stops board time.
+  /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ also freeze. Board
+  /// time continues, unlike during a halt by debug_port().
   void halt(Ticks duration);
   /// For `duration`, inverts the level that the circuit drives at the pin, like a voltage spike.
   void glitch(char port, unsigned pin, Ticks duration);
-  /// If `lost` is true, the exception does not reach the core until a call with false.
+  /// While `lost` is true, the exception does not reach the core.
   void lose_exception(unsigned exception, bool lost);
-  /// Delays each further occurrence of an exception by `cycles` of HCLK. 0 removes the delay.
+  /// Delays each further occurrence of an exception by `cycles` of HCLK. A value of 0 removes the delay.
   void delay_exception(unsigned exception, std::uint32_t cycles);
   /// Flips one bit of a byte of RAM or flash. Returns false if there is no memory at `address`.
   [[nodiscard]] bool flip_bit(std::uint32_t address, unsigned bit);
@@ -154,8 +153,8 @@ class Chip {
   void stop_converter(unsigned number, bool stopped);
   /// Prevents both DMA controllers from accepting requests while `stopped` is true.
   void stop_dma(bool stopped);
-  /// Interrupts the power in the middle of a flash operation: 1 is the next erase or program operation. Power returns
-  /// immediately. 0 cancels the interruption.
+  /// Interrupts the power in the middle of an erase or program operation. `number` 1 selects the next operation. Power
+  /// returns immediately. `number` 0 cancels the interruption.
   void cut_power_at_flash_operation(std::uint64_t number);
   /// Number of erase and program operations since construction.
   std::uint64_t flash_operations() const;
@@ -169,14 +168,14 @@ class Chip {
   /// Number of the running exception; 0 in thread mode.
   unsigned current_exception() const;
 
-  /// For callbacks: makes run_until() return as soon as possible.
+  /// Makes run_until() return as soon as possible. Callbacks may call this function.
   void request_stop();
 
   Scheduler& scheduler();
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
-  /// Level that a meter would show at a pin, and level that the chip drives. `port` is 'A' to 'I', `pin` 0 to 15.
+  /// Level at a pin, and level that the chip drives. `port` is 'A' to 'I', `pin` 0 to 15.
   PinLevel pin_level(char port, unsigned pin) const;
   PinLevel pin_output(char port, unsigned pin) const;
   ChipConnections connections();
@@ -202,12 +201,12 @@ class Chip {
   std::function<void(const Violation& violation)> on_violation;
   /// Called when the boot loader in the chip has executed an order. Returns the next order.
   std::function<LoaderOrder()> on_boot_loader;
-  /// Called after each reset, whose cause may be the firmware, a watchdog or reset().
+  /// Called after each reset of any cause.
   std::function<void(ResetCause cause)> on_reset;
 
   /// Sends a character to the receiver of USART `number` (1..6). Characters follow each other at the baud rate.
   void usart_receive(unsigned number, std::uint8_t byte);
-  /// True if the receiver of USART `number` is on. Characters sent before this are lost.
+  /// True if the receiver of USART `number` is on. While the receiver is off, incoming characters are lost.
   bool usart_listens(unsigned number) const;
   /// Number of bytes from usart_receive() that the USART has not received yet.
   std::size_t usart_waiting(unsigned number) const;
@@ -221,7 +220,7 @@ class Chip {
   int exit_code() const;
   /// Description of the fault with its addresses, valid after Stop::locked_up.
   const std::string& lockup_reason() const;
-  /// Most recent fault that did not occur in the handler of another fault. This fault is the cause of a lock-up.
+  /// Most recent fault outside of fault handlers. A lock-up results from this fault.
   const std::optional<Fault>& first_fault() const;
   std::vector<RegisterMap> register_maps() const;
   /// Rules that the firmware has broken, in the order of their first violations.
@@ -229,7 +228,8 @@ class Chip {
   /// Log lines of all accesses to unmodeled registers.
   const std::vector<std::string>& unmodelled_accesses() const;
 
-  /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for other addresses.
+  /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for addresses outside of
+  /// flash, SRAM and CCM.
   std::uint32_t memory_word(std::uint32_t address) const;
   /// Contents of the flash, for programmers. Call reset() after a change of the contents.
   std::span<std::uint8_t> flash();

@@ -52,7 +52,7 @@ class DebugPort {
   virtual FloatRegisters float_registers() const = 0;
   virtual void set_float_registers(const FloatRegisters& registers) = 0;
 
-  /// Reads memory, or peripheral registers with their side effects. Returns false for an unmapped address.
+  /// Reads memory or peripheral registers. Register reads have side effects. Returns false for an unmapped address.
   virtual bool read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
   /// Writes RAM or peripheral registers. Returns false if the address is not writable.
   virtual bool write(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;

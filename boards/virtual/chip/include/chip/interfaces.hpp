@@ -1,6 +1,7 @@
 // Interfaces between the parts of the virtual board: time, events, interrupt lines, peripherals, pins.
 //
-// One thread runs all parts of the virtual board. The socket threads pass their work to this thread through queues.
+// The board thread runs all parts of the virtual board. The socket threads pass their work to the board thread through
+// queues.
 #pragma once
 
 #include <chip/register_map.hpp>
@@ -11,8 +12,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Board time in ticks of 8.4 GHz, a multiple of every clock in use: a period at 168 MHz lasts 50 ticks, at 48 MHz 175
-/// ticks, at 16 MHz 525 ticks.
+/// Board time in ticks of 8.4 GHz, a multiple of every clock in use. One cycle lasts 50 ticks at 168 MHz, 175 ticks at
+/// 48 MHz, and 525 ticks at 16 MHz.
 using Ticks = std::uint64_t;
 inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
@@ -59,7 +60,7 @@ class UnmodelledLog {
   virtual void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) = 0;
 };
 
-/// Present clocks and pin functions of the chip, for peripherals that depend on them.
+/// Present clocks and pin functions of the chip.
 class ChipState {
  public:
   virtual ~ChipState() = default;
@@ -93,7 +94,7 @@ class Circuit {
   virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
   /// Returns the voltage at a pin, in volts. Called at the sampling instant of an ADC.
   virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
-  /// Voltage source at a pin, whose impedance determines the charging time of the sampling capacitor.
+  /// Returns the voltage source at a pin. The source impedance determines the charging time of the sampling capacitor.
   virtual AnalogSource analog_source(char /*port*/, unsigned /*pin*/) const { return {}; }
   /// Advances the circuit to `now`. Called at least once every 50 us of board time.
   virtual void advance(Ticks now) = 0;
@@ -104,8 +105,8 @@ class InputPins {
  public:
   virtual ~InputPins() = default;
   static constexpr Ticks just_now = ~Ticks{0};
-  /// Drives a pin. If the circuit computes in steps, `since` is the earlier time of the edge. `since` must not decrease
-  /// between the calls for one pin.
+  /// Drives a pin. If the circuit computes in steps, `since` is the time of the edge within the step. `since` must not
+  /// decrease between the calls for one pin.
   virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
   /// Forces the pin to a level that overrides the output of the chip. `floating` removes the force.
   virtual void hold(char /*port*/, unsigned /*pin*/, PinLevel /*level*/) {}

@@ -1,6 +1,5 @@
-// Orders to the boot loader in the system memory of the chip. Instructions of the emulated processor execute the
-// orders, with the timing of flash, buses and clocks. The program issues the orders and emulates the USB interface of
-// the boot loader.
+// Orders to the boot loader in the system memory of the chip. The emulated processor executes the orders with realistic
+// timing. The program issues the orders and emulates the USB interface of the boot loader.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,7 @@ class Memory {
   std::uint8_t* ccm() { return ccm_.data(); }
   std::uint8_t* system() { return system_.data(); }
 
-  /// Host pointer to the `bytes` bytes at `address`, or nullptr unless one memory contains all these bytes.
+  /// Host pointer to the `bytes` bytes at `address`, or nullptr if no single memory contains all bytes.
   std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
   const std::uint8_t* at(std::uint32_t address, std::uint32_t bytes) const {
     return const_cast<Memory*>(this)->at(address, bytes);

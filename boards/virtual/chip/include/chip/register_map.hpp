@@ -1,21 +1,11 @@
 // Declarations of registers and their fields by name. The peripheral models of the virtual chip use these declarations.
 //
-// The maps are independent of the firmware's register maps, so that a mistake cannot affect both.
-// tools/check_registers.py compares both sets of maps with the manufacturer's description of the chip.
+// The maps are independent of the firmware's register maps, so that one mistake cannot affect both maps. The script
+// tools/check_registers.py compares both sets of maps with the manufacturer's chip description.
 //
-//   struct CrcRegisters {
-//     struct : Register {
-//       Field dr{"DR", 0, 32};
-//     } dr{{"DR", 0x00, 0xFFFF'FFFF}};
-//     struct : Register {
-//       Field reset{"RESET", 0, 1, Access::w};
-//     } cr{{"CR", 0x08}};
-//   };
-//   inline constexpr CrcRegisters crc_registers;
-//
-// A map contains only registers and fields, so code can read the map as an array of entries. Maps are compile-time
-// constants: `crc_registers.cr.reset.in(word)` compiles to a mask. Register and field names are from the reference
-// manual.
+// CrcRegisters in crc.hpp is a short example. A map contains only registers and fields, so code can read the map as an
+// array of entries. Maps are compile-time constants, so `crc.cr.reset.in(word)` compiles to a mask. Register and field
+// names are from the reference manual.
 #pragma once
 
 #include <array>
@@ -94,7 +84,7 @@ struct Field : MapEntry {
   }
 };
 
-/// A register, which converts to its offset.
+/// A register converts to its offset.
 struct Register : MapEntry {
   consteval Register(const char* text, unsigned offset, std::uint32_t value_after_reset = 0, Repeat repeat = {})
       : MapEntry{named(text),

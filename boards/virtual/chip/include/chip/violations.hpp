@@ -4,11 +4,10 @@
 // peripheral or pin.
 #pragma once
 
-// To add a rule:
-// 1. Add a row to INKWELL_CHIP_RULES.
-// 2. In the model, call violate(Rule::NAME) at the violation and emulate the effect on silicon.
-// 3. In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp. The test firmware must
-//    break only the new rule.
+// To add a rule, first add a row to INKWELL_CHIP_RULES.
+// In the model, call violate(Rule::NAME) at the violation and emulate the effect on silicon.
+// In tests/boards/virtual/chip, add a number to firmware/rules.cc and to violations_test.cpp.
+// The test firmware must break only the new rule.
 //
 // `virtual-board --strict` exits at the first broken rule. System tests and `inkwell experiment` use `--strict`.
 
