@@ -73,25 +73,25 @@ unsigned between(const Instruction& it, const Instruction& next, std::uint32_t n
     const bool only_written_back = it.accesses_memory && it.writes_back && !it.reads_memory;
     cycles += only_written_back ? costs[Cost::same_base_written_back] : costs[Cost::address_from_previous];
   }
-  // float_read excludes the addend register of a multiply-accumulate, which is also the destination register.
+  // float_read excludes the addend register of a multiply-accumulate, because this register is also the destination.
   const bool latency = it.kind == Kind::float_arithmetic || it.kind == Kind::float_accumulate;
   if (latency && (next.float_read & it.float_written) != 0) cycles += costs[Cost::float_result_used_next];
   return cycles;
 }
 
-/// Model of the instruction fetch without wait states: one word per cycle, into a buffer of three words.
+/// Models the instruction fetch without wait states. The core fetches one word per cycle into a buffer of three words.
 class Fetch {
  public:
   Fetch(std::uint32_t address, CodeMemory memory, bool after_branch)
       : fetched_to_(after_branch ? (address & ~3u) + 4 : (address & ~3u) + fetch_buffer_bytes), memory_(memory) {}
-  /// Number of cycles that the instruction at `address` waits until it is fetched completely.
+  /// Wait cycles until the instruction at `address` is fetched completely.
   unsigned wait_for(std::uint32_t address, std::uint32_t bytes) {
     unsigned waited = 0;
     for (; fetched_to_ < address + bytes; fetched_to_ += 4) ++waited;
     return waited;
   }
-  /// Advances the fetch by the execution of an instruction that lasts `cycles`. For code in SRAM, the data accesses of
-  /// the instruction delay the fetch.
+  /// Advances the fetch by the `cycles` of an executed instruction. For code in SRAM, the data accesses of the
+  /// instruction delay the fetch.
   void run(std::uint32_t address, unsigned cycles, unsigned accesses) {
     if (memory_ == CodeMemory::sram) cycles -= std::min(cycles, accesses);
     const std::uint32_t limit = (address & ~3u) + fetch_buffer_bytes;

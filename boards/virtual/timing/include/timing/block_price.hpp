@@ -10,7 +10,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Memory from which the core fetches the instructions.
+/// Instruction memory.
 enum class CodeMemory : std::uint8_t {
   flash,  ///< separate bus, 128 bits per line
   sram,   ///< bus shared with data in SRAM
@@ -30,7 +30,7 @@ struct BlockPrice {
     bool is_signed;
     bool known_at_entry;  ///< the block does not write the operands before the divide
   };
-  /// A load instruction that may read a table in the flash.
+  /// Possible read of a table in the flash.
   struct Read {
     std::uint32_t instruction;  ///< address of the instruction
     std::uint16_t after_cycles;
@@ -57,7 +57,7 @@ struct BlockPrice {
   std::vector<Read> reads;
 };
 
-/// Function that reads a word of memory without side effects. An empty function is allowed.
+/// Reads a word of memory without side effects. An empty function is allowed.
 using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 
 /// Returns the price of the block with the instructions `code` (whole half-words) at `address`. `word` reads the
@@ -65,7 +65,7 @@ using WordReader = std::function<std::uint32_t(std::uint32_t address)>;
 BlockPrice price(std::span<const std::uint8_t> code, std::uint32_t address, CodeMemory memory, const Costs& costs,
                  const WordReader& word = {});
 
-/// Additional cycles of a divide with unknown operands, above the shortest divide.
+/// Additional cycles of a divide with unknown operands, compared with the shortest divide.
 unsigned divide_mean(const Costs& costs);
 
 /// Cycles of a divide. The rule is a guess: one additional cycle for every four quotient bits.

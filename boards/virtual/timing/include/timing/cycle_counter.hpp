@@ -25,7 +25,7 @@ class CycleCounter {
   FlashAccelerator& flash() { return flash_; }
   const FlashAccelerator& flash() const { return flash_; }
 
-  /// Price of the block of `bytes` at `address`, or null if the block has no valid price.
+  /// Price of the block of `bytes` bytes at `address`, or null if the block has no valid price.
   const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
     if (forgets_) forget_prices();
     const Known* known = *place_of(address).known;
@@ -37,9 +37,9 @@ class CycleCounter {
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
   /// Wait cycles at the start of the block at cycle `now`, for the branch refill and the FPU.
   unsigned enter(const BlockPrice& block, std::uint64_t now);
-  /// Cycles that the whole block waits for the flash if the block starts at cycle `now`. `register_value` returns the
-  /// value of a register at cycle `now`. Data reads with an unknown base are not counted. An unknown index is replaced
-  /// by a random index into a small table.
+  /// Flash wait cycles of the whole block if the block starts at cycle `now`. `register_value` returns the value of a
+  /// register at cycle `now`. Data reads with an unknown base are not counted. An unknown index is replaced by a random
+  /// index into a small table.
   template <class RegisterValue>
   unsigned wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value);
   /// Wait cycles of a read at cycle `now`, with the register values at this cycle.
@@ -47,10 +47,9 @@ class CycleCounter {
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
   /// Wait cycles of a flash access at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
-  /// Call this when the emulator has read the instruction at `address` again, because the instruction may have changed.
+  /// Call this when the instruction at `address` may have changed.
   void reread(std::uint32_t address);
-  /// Call this when the next instruction does not follow from the last block: after an exception entry, an exception
-  /// return or a reset.
+  /// Call this after an exception entry, an exception return or a reset.
   void redirect() { redirected_ = true; }
   /// `due` is true if the next FPU instruction must stack the FPU context of the interrupted code.
   void stack_lazily(bool due) { lazy_stacking_due_ = due; }
@@ -86,14 +85,14 @@ class CycleCounter {
   bool in_flash(std::uint32_t address) const {
     return address < map_.flash_bytes || address - map_.flash_base < map_.flash_bytes;
   }
-  /// Checking a block for flash reads takes longer than the block, so only the first runs and every 64th run are
+  /// A check for flash reads takes longer than executing the block, so only the first runs and every 64th run are
   /// checked.
   static bool polls_reads(const BlockPrice& block) {
     if (!block.has_reads) return false;
     const std::uint32_t run = block.runs++;
     return block.reads_flash || run < first_polled_runs || run % runs_between_polls == 0;
   }
-  /// Pseudo-random index into a table of 1 KiB, for an index that the block computes. The sequence is repeatable.
+  /// Pseudo-random substitute for an unknown index into a 1 KiB table. The sequence is repeatable.
   std::uint32_t any_index() {
     random_ = random_ * 1664525 + 1013904223;
     return random_ >> 22 & ~3u;

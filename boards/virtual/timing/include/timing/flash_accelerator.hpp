@@ -9,8 +9,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Cache of 128-bit lines, which replaces the least recently used line. The associativity is not documented; the model
-/// is fully associative.
+/// Cache of 128-bit lines. A new line replaces the least recently used line. The associativity is not documented; the
+/// model is fully associative.
 class LineCache {
  public:
   /// Creates a cache with `places` entries (at most 254) for a memory of `lines` lines.
@@ -27,8 +27,8 @@ class LineCache {
 
  private:
   static constexpr std::uint32_t no_line = ~0u;
-  /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. Its `newer` is the most
-  /// recently used entry, its `older` is the entry that is replaced next.
+  /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
+  /// most recently used entry, and `older` is the least recently used entry.
   struct Place {
     std::uint32_t line = no_line;
     std::uint8_t older = 0, newer = 0;
@@ -50,21 +50,21 @@ class FlashAccelerator {
   void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
   void forget_instructions() { instructions_.forget(); }  ///< ICRST
   void forget_data() { data_.forget(); }                  ///< DCRST
-  /// Call this after an erase or program operation, which invalidates the line buffers of the flash.
+  /// Call this after an erase or program operation, because the line buffers of the flash become invalid.
   void forget_lines() { current_ = ahead_ = no_line; }
   /// True if the flash has no wait states.
   bool is_free() const { return wait_states_ == 0; }
   unsigned wait_states() const { return wait_states_; }
 
-  /// Cycles that the core waits at cycle `now` for the instruction line at `offset`.
+  /// Wait cycles for the instruction line at `offset`, from cycle `now`.
   unsigned fetch(std::uint32_t offset, std::uint64_t now) {
     const std::uint32_t line = offset / line_bytes;
     if (line == current_) return 0;
     return fetch_other(line, now);
   }
-  /// Cycles that the core waits at cycle `now` for data in the line at `offset`.
+  /// Wait cycles for data in the line at `offset`, from cycle `now`.
   unsigned read(std::uint32_t offset, std::uint64_t now);
-  /// Cycles that the core waits at cycle `now` for a line that is not cached.
+  /// Wait cycles for an uncached line, from cycle `now`.
   unsigned miss(std::uint64_t now) const {
     const bool busy = miss_waits_ && ahead_ != no_line && ahead_at_ > now;
     return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;

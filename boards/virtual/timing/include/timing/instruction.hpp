@@ -1,4 +1,4 @@
-// Properties of a Thumb-2 instruction that determine its duration (ARMv7-M Architecture Reference Manual, A5).
+// Duration-related properties of a Thumb-2 instruction (ARMv7-M Architecture Reference Manual, A5).
 #pragma once
 
 #include <cstdint>
@@ -45,8 +45,8 @@ struct Instruction {
   std::uint8_t dividend = 0, divisor = 0;  ///< registers of a divide
   bool is_signed = false;                  ///< for divides
   bool has_literal = false;                ///< reads a word at `literal`, relative to the program counter
-  /// Effect of the instruction on a register constant: none, `literal` as the whole value (ADR, MOVW), or `literal` as
-  /// the high half-word (MOVT).
+  /// Effect of the instruction on a register constant. ADR and MOVW set the whole value to `literal`; MOVT sets only
+  /// the high half-word.
   enum class Constant : std::uint8_t { none, whole, high_half } constant = Constant::none;
   std::uint32_t literal = 0;
   // The address of a load is base + (index << shift) + offset.
