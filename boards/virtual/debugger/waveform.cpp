@@ -53,8 +53,7 @@ Waveform::~Waveform() {
   set_time(chip_.now());
 }
 
-// The time of an exception may be later than the time of the next pin change, by up to one processor slice. Time in the
-// file must never decrease.
+// An exception may be up to one processor slice later than the next pin change. Time in the file must never decrease.
 void Waveform::set_time(Ticks when) {
   if (begun_ && when <= written_until_) return;
   begun_ = true;

@@ -15,8 +15,8 @@ namespace inkwell::virtual_board {
 /// Reads a word of memory without side effects.
 using MemoryReader = std::function<std::uint32_t(std::uint32_t address)>;
 
-/// Returns probable callers of the code at `registers`, innermost first, at most `limit`. Candidates are LR, and stack
-/// words that point to the instruction after a call. Old return addresses on the stack can lead to wrong results.
+/// Returns up to `limit` probable callers of the code at `registers`, innermost first. Candidates are LR and all stack
+/// words with the address after a call instruction. Old return addresses on the stack can lead to wrong results.
 std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const MemoryReader& word, std::size_t limit);
 
 /// Returns text lines that describe the first fault of a lock-up. `elf` is part of the suggested addr2line command.

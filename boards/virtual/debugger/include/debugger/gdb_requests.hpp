@@ -1,4 +1,4 @@
-// Parsing and validation of GDB requests, independent of the chip (GDB manual, appendix "Remote Protocol", "Packets").
+// Parses and validates GDB requests without access to the chip (GDB manual, appendix "Remote Protocol", "Packets").
 #pragma once
 
 #include <cstddef>

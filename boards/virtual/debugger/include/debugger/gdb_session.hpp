@@ -33,7 +33,7 @@ class GdbSession {
     WatchPoint place;
     char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
-  // Each function returns the reply to GDB, which is empty if the request makes the processor run.
+  // Each function returns the reply to GDB. The reply is empty if the request makes the processor run.
   static std::string carry_out(const gdb::Answered& parsed);
   std::string carry_out(gdb::WhyStopped parsed);
   std::string carry_out(gdb::ReadRegisters parsed);

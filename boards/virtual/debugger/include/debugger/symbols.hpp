@@ -16,8 +16,7 @@ class Symbols {
   /// empty string.
   explicit Symbols(const std::filesystem::path& elf);
 
-  /// Returns the function that contains `address`, with the offset of `address`, such as "main+0x12", or an empty
-  /// string.
+  /// Returns the function and offset of `address`, such as "main+0x12", or an empty string.
   std::string name(std::uint32_t address) const;
 
  private:

@@ -1,5 +1,5 @@
-// Writes pin levels and the running exception over board time as a value change dump (IEEE 1364-2005, clause 18), for
-// viewers such as GTKWave.
+// Writes pin levels and the running exception to a value change dump (IEEE 1364-2005, clause 18). Viewers such as
+// GTKWave can display this file format.
 #pragma once
 
 #include <array>
