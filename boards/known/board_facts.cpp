@@ -1,8 +1,5 @@
-// usage: board-facts NAME. Prints the pin uses of a board for scripts, one per line: fact, pin, function and timer
-// channel.
-//
-//   encoders[0].a PA0 AF2 TIM5_CH1
-//   supply PB0 IN8 -
+// usage: board-facts NAME. Prints one line per pin use of a board: fact, pin, function and timer channel. Example lines
+// are `encoders[0].a PA0 AF2 TIM5_CH1` and `supply PB0 IN8 -`.
 #include <cstdio>
 #include <string>
 

@@ -52,9 +52,9 @@ class DescriptionError : public std::runtime_error {
 };
 
 /// Reads an arm description.
-/// @throws DescriptionError if the file is missing or is not TOML. Also thrown if a key is missing, is unknown or has a
-///         wrong unit. Also thrown if a value is not a number, is out of range, or is not an integer although the key
-///         requires an integer. Also thrown if a lower bound is not below its upper bound.
+/// @throws DescriptionError if the file is missing or is not TOML. A missing key, an unknown key or a wrong unit also
+///         causes a DescriptionError. A value must be a number within its range, and an integer if the key requires an
+///         integer. Each lower bound must be below its upper bound.
 Description read(const std::filesystem::path& file);
 
 /// Reads an arm description from a string. Error messages use `source` as the name of the string.

@@ -21,7 +21,7 @@ constexpr bool package_has_pins(const Facts& facts) {
   return true;
 }
 
-/// Whether the pin of an analog input has the given ADC channel (data sheet, pin definitions, "ADC123_INx" and
+/// True if the pin of an analog input has the given ADC channel (data sheet, pin definitions, "ADC123_INx" and
 /// "ADC12_INx").
 constexpr bool is_at_pin(const AnalogInput& input) {
   const auto [port, number] = input.pin;
@@ -38,7 +38,7 @@ constexpr bool third_converter_reaches(const AnalogInput& input) {
   return input.channel <= 3 || (input.channel >= 10 && input.channel <= 13);
 }
 
-/// Whether the bridge legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of alternate
+/// True if the bridge legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of alternate
 /// functions).
 constexpr bool legs_are_at_their_pins(const Facts& facts) {
   unsigned channels = 0;

@@ -50,7 +50,7 @@ struct AnalogInput {
   std::uint8_t channel;  ///< ADC channel number
 };
 
-/// Use of a pin, and the name of the board fact that defines the pin.
+/// Use of a pin, with the name of its board fact.
 struct PinUse {
   constexpr PinUse(std::string_view fact, Pin plain) : name(fact), pin(plain), function("-") {}
   constexpr PinUse(std::string_view fact, PeripheralPin peripheral)
@@ -99,9 +99,9 @@ inline constexpr float encoder_filter_s =
 // ---- bridges -----------------------------------------------------------------------------------------
 
 // Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
-// u) / 2 and (1 - u) / 2. The motor voltage consists of pulses of one sign at twice pwm_Hz. The current crosses its
-// mean in the middle of each zero vector, where the timers reverse and the ADCs sample. Locked antiphase at the servo
-// rate would cause 12 times the ripple.
+// u) / 2 and (1 - u) / 2. The motor voltage consists of pulses of one sign at twice pwm_Hz. In the middle of each zero
+// vector, the timers reverse, the ADCs sample, and the current crosses its mean. With locked antiphase at the servo
+// rate, the ripple would be 12 times larger.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
@@ -122,8 +122,8 @@ constexpr float current_ripple_A(float inductance_H) { return supply_nominal_V /
 /// Tolerated current ripple. The continuous motor current should be at least six times the ripple.
 inline constexpr float current_ripple_maximum_A = 0.2f;
 
-/// A bridge leg is never on for a whole PWM period. Bridges with a charge pump need the off time, and the currents must
-/// be sampled before the next edge.
+/// A bridge leg is never on for a whole PWM period. Bridges with a charge pump need the off time. The off time also
+/// allows the ADCs to sample the currents before the next edge.
 inline constexpr float duty_limit = 0.92f;
 /// Shortest time from a timer update to the next edge of a bridge leg.
 constexpr float time_to_next_edge_s(float duty) { return (1.0f - duty) / (4.0f * pwm_Hz); }
@@ -162,8 +162,8 @@ struct Facts {
   Pin bridge_heartbeat;
   /// Output of the monostable, connected to the bridge enable inputs. This output is high while the bridges may switch.
   Pin bridge_hold;
-  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins, and each pin
-  /// switches off the outputs of its timer in hardware (RM0090, "Using the break function").
+  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. Each pin switches
+  /// off the outputs of its timer in hardware (RM0090, "Using the break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
   AnalogInput motor_current[3];  ///< ADC n converts the current of motor n; all ADCs convert simultaneously
   /// Gimbal potentiometers (yaw, pitch, roll) and supply: regular sequence of ADC1.
@@ -189,8 +189,8 @@ struct Facts {
   /// Filters at the analog pins. The filters must tolerate the charge that the previous channel leaves in the sampling
   /// capacitor.
   float current_filter_ohm, current_filter_F, gimbal_track_ohm, gimbal_filter_F, supply_filter_F;
-  /// Pull-down at each current input. If the wire breaks, the pull-down changes the reading in one control period by
-  /// more than a real current can change.
+  /// Pull-down at each current input. If the wire breaks, the pull-down changes the reading faster than a real current
+  /// can change.
   float current_pull_down_ohm;
 
   /// Limits of the hold time. The tolerances of the monostable, resistor and capacitor add up to one sixth.
