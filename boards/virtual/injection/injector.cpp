@@ -38,14 +38,14 @@ bool is_within(std::uint32_t address, std::uint32_t base, std::uint32_t bytes) {
   return address >= base && address - base < bytes;
 }
 
-/// Size of the image in flash. The flash after the image is erased and unused.
+/// Size of the image in flash. All flash words after the image are erased.
 std::uint32_t programmed_bytes(const Chip& chip) {
   std::uint32_t bytes = flash_bytes;
   while (bytes > 4 && chip.memory_word(flash_base + bytes - 4) == 0xFFFF'FFFF) bytes -= 4;
   return bytes;
 }
 
-/// add() has checked the address. This second check ensures that only a fault that has occurred is listed.
+/// add() has checked the address. If the check in flip_bit() fails, the fault is not listed.
 void flip_bit(Chip& chip, const Injection& injection) {
   if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
     throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} for a bit flip", *injection.address));

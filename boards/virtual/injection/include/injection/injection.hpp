@@ -1,4 +1,4 @@
-// Fault requested by the command line, a script or a client of the control socket, checked against
+// Fault requested by the command line, a script or a client of the control socket. The request has passed the checks of
 // protocol/injections.hpp.
 #pragma once
 
@@ -34,7 +34,7 @@ struct Injection {
   std::optional<double> for_s;  ///< duration, after which the fault is cleared
 };
 
-/// Checks a request, including its wires, which must exist on `board`. Throws InvalidInjection.
+/// Checks a request. The wires of the request must exist on `board`. Throws InvalidInjection.
 Injection checked(const protocol::InjectionRequest& request, const board::Facts& board);
 /// Parses NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2, with times in seconds. Throws
 /// InvalidInjection.
