@@ -102,7 +102,8 @@ MotorDrive::Branch MotorDrive::branch() const {
   };
   if (!floating || current_A_ > 0.0) return with_sign(true);
   if (current_A_ < 0.0) return with_sign(false);
-  // If the current is zero, a current starts only if the voltage of back-EMF and driven leg exceeds the diode voltages.
+  // A current starts from zero only if the bridge voltage, including the diode voltages, exceeds the back EMF in the
+  // direction of the current.
   if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
   if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
   return {back_emf_V_, 0.0, false, false};
@@ -139,8 +140,8 @@ void MotorDrive::run(double duration_s, double decay, double amplifier_decay, co
   const double charge_As = final_A * duration_s + transient_A * time_constant_s_ * (1.0 - decay);
   charges_.motor_As += charge_As;
   charges_.supply_As += path.supply_share * charge_As;
-  // The amplifier is a first-order low-pass filter. Its response is the sum of a lagging forced part and a decaying
-  // free part.
+  // The amplifier is a first-order low-pass filter. The amplifier output is the sum of a forced response and a decaying
+  // free response.
   const double forced_A = amplifier_lead_ * transient_A;
   amplifier_A_ = final_A + forced_A * decay + (amplifier_A_ - final_A - forced_A) * amplifier_decay;
   current_A_ = final_A + transient_A * decay;

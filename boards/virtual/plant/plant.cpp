@@ -56,9 +56,9 @@ double divider_ohm(const board::Facts& board) {
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
-/// Level of a contact that connects the pin to ground; the pull-up in the chip provides the high level.
+/// Level of a contact to ground. The pull-up in the chip provides the high level.
 PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
-/// Level of the open-drain fault wire of the bridges; a pull-up on the board provides the high level.
+/// Level of the open-drain fault wire of the bridges. A pull-up on the board provides the high level.
 PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high; }
 
 }  // namespace
@@ -163,7 +163,7 @@ bool Plant::shoots_through() const {
 
 void Plant::update_legs(unsigned motor, Ticks now) {
   if (bridges_enabled_ && !tripped_ && shoots_through()) {
-    // The shoot-through lasts microseconds. After the shoot-through the bridge trips and reports a fault.
+    // A shoot-through trips the bridge within microseconds, and the bridge reports a fault.
     tripped_ = inputs_stale_ = true;
     for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
     return;
@@ -291,7 +291,7 @@ void Plant::step() {
 }
 
 void Plant::finish_docking() {
-  // The stylus is captured only at the end of the carrier's path, even if the path crosses the funnel earlier.
+  // The inkwell captures the stylus only at the end of the hand's path, even if the path crosses the funnel earlier.
   if (carrier_.is_moving(next_step_)) return;
   if (inkwell_.capture(probe_m_)) carrier_.release();
 }

@@ -13,8 +13,8 @@ const PinName* Wires::neighbour(PinName wire) const {
   return nullptr;
 }
 
-// Returns the level at the receiving end of a wire. If two wires touch, both are low if one is driven low; an undriven
-// wire does not affect the other wire.
+// Returns the level at the receiving end of a wire. Two touching wires are low if either wire is driven low. An
+// undriven wire has the level of the touching wire.
 PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen) {
   const State& s = state(wire);
   switch (s.fault) {

@@ -3,11 +3,11 @@
 // The model uses joint coordinates and link coordinates. The encoders measure the joint coordinates q = (q1, q2, q3).
 // On a serial arm q3 is relative to link 2; on a parallelogram q3 is absolute. The link coordinates are u = (q1, a, b),
 // where a and b are the angles of links 2 and 3 above the horizontal, in the arm's plane. In link coordinates, serial
-// arms and parallelogram arms have the same energies:
+// arms and parallelogram arms have the same energies.
 //
-//   kinetic energy    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2
-//                     with M11 = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b
-//   potential energy  g (S2 sin a + S3 sin b)
+//   Kinetic energy:    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2.
+//   Waist inertia:     M11(a, b) = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b.
+//   Potential energy:  g (S2 sin a + S3 sin b).
 //
 // J2, J3, H, S2 and S3 combine the masses of the links and the probe. I is the inertia of the turret. The motor rotors
 // turn with the joints through the gears. The parallelogram rods are included in links 2 and 3.

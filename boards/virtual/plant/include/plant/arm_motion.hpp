@@ -14,9 +14,9 @@ class ArmMotion {
   ArmMotion(const arms::Description& arm, const Vector3& joints_rad);
 
   /// Advances by one step with the motor torques at the joints and the couplings at the probe. The integrator is
-  /// position Verlet: forces are evaluated in the middle of the step, which avoids energy drift. Damping is implicit.
-  /// The Coulomb friction of a joint is the impulse that would stop the joint, limited by the friction cone (Moreau's
-  /// time stepping). An arm that the hand holds still therefore stops completely and does not creep.
+  /// position Verlet. Position Verlet evaluates forces in the middle of the step to avoid energy drift. Damping is
+  /// implicit. The Coulomb friction impulse stops a joint within the limit of the friction cone (Moreau's time
+  /// stepping). Therefore the arm stops completely and does not creep while the hand holds the stylus in one position.
   void step(double duration_s, const Vector3& torque_Nm, std::span<const Coupling> couplings);
 
   const Vector3& joints_rad() const { return joints_rad_; }

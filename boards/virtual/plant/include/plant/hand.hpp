@@ -1,4 +1,4 @@
-// The user's hand and the inkwell, which act on the probe. Each is modeled as a spring and a damper to a moving point.
+// Models of the user's hand and the inkwell. Each model is a spring and a damper between the probe and a moving point.
 #pragma once
 
 #include <optional>
@@ -26,8 +26,8 @@ struct Waypoint {
   Vector3 target_m;
 };
 
-/// The hand: an impedance with a target that is fixed or moves from point to point. The target follows minimum-jerk
-/// motion, a model of human motion (Flash and Hogan 1985).
+/// Model of the hand: an impedance with a fixed or moving target. The target follows minimum-jerk motion, a model of
+/// human motion (Flash and Hogan 1985).
 class Hand {
  public:
   static constexpr double stiffness_maximum_N_per_m = 5000.0;
@@ -59,7 +59,7 @@ class Hand {
   mutable std::size_t segment_ = 0;  ///< result of the last look-up, since time never decreases
 };
 
-/// The inkwell: a socket with a funnel, a grip that retains the stylus, and a switch.
+/// Model of the inkwell: socket, funnel, grip and switch. The grip retains the stylus.
 class Inkwell {
  public:
   Inkwell(const Vector3& position_m, bool seated) : position_m_(position_m), guide_m_(position_m), seated_(seated) {}

@@ -1,4 +1,4 @@
-// Measures force, energy and motion of the hand over a time interval, whether the chip runs or not.
+// Measures force, energy and motion of the hand over a time interval.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace inkwell::virtual_board {
 /// Command to the gate driver of one leg. If a leg is `floating`, its diodes conduct the current.
 enum class Leg : std::uint8_t { low, high, floating };
 
-/// Fault of a leg: the state that the leg has regardless of its command.
+/// State of a faulty leg, independent of its command.
 enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
@@ -25,8 +25,8 @@ class MotorDrive {
  public:
   MotorDrive(const MotorConstants& motor, const Imperfections& imperfections, double dead_time_s);
 
-  /// Commands leg 0 (A, motor terminal +) or leg 1 (B) from `now` on. The leg switches after the dead time. This
-  /// function first advances the current to `now`.
+  /// Sets the command of leg 0 (A, motor terminal +) or leg 1 (B) from `now` on. The leg switches after the dead time.
+  /// This function first advances the current to `now`.
   void set_leg(unsigned leg, Leg level, Ticks now);
 
   /// Replaces the winding of the motor at `now`; std::nullopt is an open winding.
@@ -35,7 +35,7 @@ class MotorDrive {
   /// Sets an additional delay between the end of the dead time and the conduction of the leg's switches.
   void set_leg_delay(unsigned leg, Ticks delay);
 
-  /// Integrates the current up to `now`, which never decreases.
+  /// Integrates the current up to `now`. The argument `now` never decreases.
   void advance(Ticks now);
 
   /// Supply voltage and back-EMF apply from the time of the last advance() on.

@@ -1,4 +1,4 @@
-// Measures the force of the motors at the probe, with or without a hand.
+// Measures the force of the motors at the probe. The measurement does not require a hand.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace inkwell::virtual_board {
 
 /// Measures the force F that satisfies J^T F = tau. The mean over one control period removes the current ripple, which
 /// a hand cannot perceive. The mean over one millisecond removes short pushes, which a hand hardly perceives. Steps in
-/// which no leg is driven high are excluded, because the motors then only brake.
+/// which no leg is driven high are excluded, because the motors only brake in these steps.
 class MotorForceMeter {
  public:
   static constexpr unsigned steps_per_period = 3, steps_per_ms = 60;

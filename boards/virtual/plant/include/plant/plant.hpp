@@ -57,13 +57,13 @@ class Plant final : public Circuit {
   void set_bridge_fault(bool fault);
   /// Sets whether the USB cable supplies VBUS.
   void set_usb_supply(bool present);
-  /// Turns the gimbal to these angles (yaw, pitch, roll), as the hand does with the stylus.
+  /// Turns the gimbal to these angles (yaw, pitch, roll).
   void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void let_go();
   void follow(const std::vector<Waypoint>& waypoints);
-  /// If `docked` is true, the hand carries the stylus to the inkwell and releases it. Otherwise the hand pulls the
-  /// stylus out.
+  /// If `docked` is true, the hand carries the stylus to the inkwell and releases it. If `docked` is false, the hand
+  /// pulls the stylus out of the inkwell.
   void dock(bool docked);
   /// Moves the arm to a position immediately, for tests.
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
@@ -75,7 +75,7 @@ class Plant final : public Circuit {
   void set_shunt_fault(unsigned motor, const ShuntFault& fault);
   MotorFault motor_fault(unsigned motor) const { return motor_faults_[motor]; }
   void set_motor_fault(unsigned motor, const MotorFault& fault);
-  /// If one switch of a leg is fused, the bridge trips when the other switch is commanded: see `tripped_`.
+  /// If one switch of a leg is fused, a command for the other switch trips the bridge (see `tripped_`).
   void set_leg_fault(unsigned motor, unsigned leg, LegFault fault);
   void set_leg_delay(unsigned motor, unsigned leg, double delay_s) {
     motors_[motor].set_leg_delay(leg, ticks(delay_s));
@@ -167,7 +167,7 @@ class Plant final : public Circuit {
   bool usb_supply_ = false;
   std::array<PinLevel, 7> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply, hold
 
-  // Gimbal: joint angles, and potentiometer characteristics
+  // Gimbal angles and potentiometer characteristics
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope and offset of each potentiometer
   Vector3 gimbal_rad_;
 

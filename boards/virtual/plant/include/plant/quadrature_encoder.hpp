@@ -1,4 +1,4 @@
-// A quadrature encoder on a motor. It derives counts from the joint angle and changes one output at a time.
+// A quadrature encoder on a motor. The model derives counts from the joint angle and changes one output at a time.
 #pragma once
 
 #include <algorithm>

@@ -13,9 +13,10 @@ class Supply {
   Supply(const Imperfections& imperfections, double source_V);
 
   void set_source_V(double volts) { source_V_ = volts; }
-  /// Injects a fault: the source delivers this voltage until a call with std::nullopt.
+  /// Sets the source voltage of an injected fault; std::nullopt clears the fault.
   void fail_at_V(std::optional<double> volts) { failed_V_ = volts; }
-  /// Injects a fault: the source voltage oscillates with this amplitude at 100 Hz, and the source also sinks current.
+  /// Makes the source voltage oscillate with this amplitude at 100 Hz; 0 clears the fault. The oscillating source also
+  /// sinks current.
   void swing_by_V(double amplitude_V);
   double source_V() const;
   double bus_V() const { return bus_V_; }

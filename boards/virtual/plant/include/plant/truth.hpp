@@ -1,4 +1,4 @@
-// The true physical quantities, which no real board can measure, and a trace of these quantities.
+// True physical quantities of the simulation, and a trace of these quantities.
 #pragma once
 
 #include <array>

@@ -19,7 +19,7 @@ enum class WireFault : std::uint8_t {
   frozen,  ///< retains its level
 };
 
-/// Connects a chip and a circuit: it acts as the Circuit of the chip and as the InputPins of the circuit.
+/// Connects a chip and a circuit. The chip uses Wires as its Circuit, and the circuit uses Wires as its InputPins.
 class Wires final : public Circuit, public InputPins {
  public:
   static constexpr double open_input_s = 0.01;  ///< time constant of an analog input without a resistor to ground
