@@ -45,11 +45,11 @@ class Board {
     std::uint64_t number = 0;  ///< from 0 since the last reset
     Ticks began = 0;
   };
-  /// The newest control period. Its number equals the count in the firmware, unless the firmware has missed a control
-  /// interrupt.
+  /// The newest control period. The number of the control period equals the count in the firmware, unless the firmware
+  /// has missed a control interrupt.
   const ControlPeriod& control_period() const { return control_period_; }
   const Profile& profile() const { return profile_; }
-  /// Name of the function at `address`; empty if the ELF file does not contain it.
+  /// Returns the name of the function at `address`. The name is empty if the ELF file has no function at this address.
   std::string name_of_code(std::uint32_t address) const { return symbols_.name(address); }
   Truth truth() { return plant_.truth(chip_.now()); }
   bool locked_up() const { return locked_up_; }

@@ -10,7 +10,7 @@ namespace inkwell::virtual_board {
 class Simulation;
 
 /// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. The
-/// simulation sends the reply to `run` later, when its duration has passed.
+/// simulation sends the reply to `run` after the duration of the run.
 nlohmann::json carry_out(const std::string& line, Simulation& simulation);
 /// Executes a command line in the middle of a frame, while board time waits for a program. Commands that change the
 /// board are refused.

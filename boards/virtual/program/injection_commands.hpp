@@ -7,7 +7,7 @@
 
 namespace inkwell::virtual_board {
 
-/// injected() lists the active faults, still_to_come() the planned faults.
+/// injected() lists the active faults, and still_to_come() lists the planned faults.
 nlohmann::json injected(Board& board);
 nlohmann::json still_to_come(Board& board);
 nlohmann::json inject(const nlohmann::json& request, Simulation& simulation);

@@ -1,4 +1,4 @@
-// Main program of virtual-board, which runs unchanged firmware on the virtual board.
+// Main program of virtual-board. The program runs unchanged firmware on the virtual board.
 #include <atomic>
 #include <csignal>
 #include <cstdio>

@@ -192,8 +192,8 @@ std::string footer() {
          explain_commands();
 }
 
-/// Returns the name of the board for which the firmware in the flash file is built; empty if the file contains no
-/// firmware of this project.
+/// Returns the board name in the firmware of a flash file. The name is empty if the file contains no firmware of this
+/// project.
 std::string board_in_flash(const std::filesystem::path& file) {
   std::ifstream flash(file, std::ios::binary);
   protocol::ImageIdentity identity{};

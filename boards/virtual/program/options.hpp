@@ -51,8 +51,8 @@ struct Options {
                                                  ///< chip
 };
 
-/// Result of reading the command line: the options, or the exit code if the program must exit (0 after --help, 2 after
-/// an invalid option, for which an error is printed on stderr).
+/// Options, or the exit code if the program must exit. The exit code is 0 after --help. After an invalid option, an
+/// error is printed on stderr and the exit code is 2.
 struct CommandLine {
   std::optional<Options> options;
   int exit_code = 0;

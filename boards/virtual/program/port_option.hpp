@@ -1,4 +1,4 @@
-// Listening address from the option of a port.
+// Listening address of a port option.
 #pragma once
 
 #include <optional>

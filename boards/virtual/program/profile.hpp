@@ -7,8 +7,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Records the longest run of an exception handler, instruction by instruction. If a handler is preempted, its parts
-/// count as separate runs.
+/// Records the longest run of an exception handler, instruction by instruction. If a handler is preempted, the sections
+/// before and after the preemption count as separate runs.
 class Profile {
  public:
   /// Call this before each instruction with the active exception (0: thread mode), the address, and the cycle count.

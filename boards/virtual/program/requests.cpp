@@ -129,7 +129,7 @@ Request read_request(std::string_view line) {
   if (values.is_discarded() || !values.is_object())
     throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
   const json& name = at(values, "command", "the name of a command, such as \"status\"");
-  // The error message quotes only strings, because the stack use of printing a nested list grows with its depth.
+  // The error message quotes only strings, because the stack use for a nested list grows with the depth of the list.
   if (!name.is_string()) throw Refused("\"command\" must be the name of a command, such as \"status\"");
   const auto table = command_table();
   const auto found = std::ranges::find(table, name.get_ref<const std::string&>(), &CommandInfo::name);

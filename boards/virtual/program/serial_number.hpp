@@ -20,7 +20,7 @@ UniqueId unique_id_of_seed(std::uint64_t seed);
 UniqueId unique_id_of_flash(const std::filesystem::path& file);
 UniqueId unique_id_of_socket(const std::filesystem::path& file);
 UniqueId unique_id_of_port(std::uint16_t usbip_port);
-/// Used only if no identifier can be derived from a seed, file, socket or port.
+/// Fallback if no identifier can be derived from a seed, file, socket or port.
 UniqueId unique_id_of_process();
 
 }  // namespace inkwell::virtual_board

@@ -118,7 +118,7 @@ void Simulation::serve(ControlRequest request) {
   request.reply.set_value(std::move(reply));
 }
 
-/// Executes commands while board time is stopped in the middle of a frame, waiting for a program to read its transfers.
+/// Executes commands while board time waits in the middle of a frame until a program reads its transfers.
 void Simulation::answer_within_frame() {
   while (auto request = server_.take(Clock::time_point::min()))
     request->reply.set_value(carry_out_within_frame(request->line, *this));

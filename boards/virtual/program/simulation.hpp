@@ -41,7 +41,7 @@ class Simulation {
   /// Dropped lag of board time. Lag is dropped if the computer is too slow.
   double time_dropped_s() const { return time_dropped_s_; }
   void pause();
-  /// Stops board time, except during USB control transfers, during which board time runs freely.
+  /// Stops board time except during USB control transfers.
   void stand_by();
   void resume();
   void quit() { quit_ = true; }

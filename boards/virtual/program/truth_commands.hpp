@@ -1,4 +1,4 @@
-// Control socket commands for the true quantities, which no real board can measure.
+// Control socket commands for the true physical quantities of the simulation.
 #pragma once
 
 #include <string_view>

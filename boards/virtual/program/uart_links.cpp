@@ -15,8 +15,8 @@ namespace {
 
 /// Largest number of bytes that are queued until the firmware enables the receiver.
 constexpr std::size_t kept_maximum = 4096;
-/// Largest number of bytes that are queued in the UART model. The fastest UART receives fewer bytes between two calls
-/// of serve().
+/// Largest number of bytes that are queued in the UART model. Between two calls of serve(), the fastest UART receives
+/// fewer bytes than this limit.
 constexpr std::size_t line_maximum = 4096;
 
 bool may_be_anything(std::string_view) { return true; }

@@ -29,7 +29,7 @@ class ControlServer {
   /// Largest number of clients. Further clients are refused with an error sentence.
   static constexpr std::size_t clients_maximum = 32;
 
-  /// @throws std::runtime_error with an error sentence that names --control if the server cannot listen.
+  /// @throws std::runtime_error if the server cannot listen. The error sentence names --control.
   explicit ControlServer(const local::SocketAddress& where);
   /// Answers pending requests, disconnects all clients and joins their threads.
   ~ControlServer();

@@ -1,4 +1,4 @@
-// Common clock of simultaneous virtual boards: the board times differ by at most one millisecond.
+// Common clock of simultaneous virtual boards. Their board times differ by at most one millisecond.
 #pragma once
 
 #include <array>

@@ -14,18 +14,18 @@
 
 namespace inkwell::virtual_board {
 
-/// Function that returns true if the first bytes of a client may belong to the expected protocol.
+/// Check of a client's first bytes. Returns true if the bytes may belong to the expected protocol.
 using FirstBytes = bool (*)(std::string_view bytes);
-/// True if the first byte is that of an acknowledgment, a GDB packet or Ctrl-C.
+/// True if the first byte is Ctrl-C or may start an acknowledgment or a GDB packet.
 bool may_be_gdb(std::string_view bytes);
-/// True unless the first bytes are those of a browser request (HTTP or TLS).
+/// False if the first bytes belong to a browser request (HTTP or TLS).
 bool may_be_terminal(std::string_view bytes);
 
 class StreamServer final : public ByteStream {
  public:
   /// A client is disconnected if `welcome` rejects its first bytes. Until the first bytes arrive, the client is not
   /// reported as connected. The server thread calls `on_arrival` when take() has data.
-  /// @throws std::runtime_error with an error sentence that names `option` if the server cannot listen.
+  /// @throws std::runtime_error if the server cannot listen. The error sentence names `option`.
   StreamServer(const local::SocketAddress& where, std::string_view option, FirstBytes welcome,
                std::function<void()> on_arrival);
   ~StreamServer() override;
