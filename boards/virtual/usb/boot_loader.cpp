@@ -45,7 +45,7 @@ std::vector<std::byte> configuration_descriptor() {
          {std::uint8_t{9}, std::uint8_t{4}, std::uint8_t{0}, i, std::uint8_t{0}, application_class, firmware_update,
           dfu_mode, static_cast<std::uint8_t>(first_alternate + i)})
       bytes.push_back(byte);
-  // The DFU attributes are: can download, can upload, will detach, not manifestation tolerant.
+  // The DFU attributes are bitCanDnload, bitCanUpload and bitWillDetach.
   for (const unsigned byte : {9u, 0x21u, 0x0Bu, 255u, 0u, BootLoaderDfu::transfer_bytes & 0xFFu,
                               unsigned{BootLoaderDfu::transfer_bytes} >> 8, 0x1Au, 0x01u})
     bytes.push_back(static_cast<std::uint8_t>(byte));

@@ -127,7 +127,7 @@ std::optional<std::vector<std::byte>> BootLoaderDfu::answer(const SetupPacket& r
   if (request.value == 0)
     return std::vector{std::byte{dfu_command::get_commands}, std::byte{dfu_command::set_address},
                        std::byte{dfu_command::erase}, std::byte{dfu_command::read_unprotect}};
-  // AN3156: block addresses are multiples of the request length, not of the transfer size in the descriptor.
+  // Block addresses are multiples of the request length, not of the transfer size in the descriptor (AN3156).
   const std::uint32_t length = std::min(request.length, transfer_bytes);
   asked_ = Operation{.kind = Operation::Kind::read,
                      .address = pointer_ + (request.value - first_data_block) * length,

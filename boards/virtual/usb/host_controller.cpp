@@ -10,7 +10,7 @@ namespace {
 constexpr double nominal_frame_s = 0.001;
 constexpr Ticks byte_ticks = 8 * bit_ticks;
 // Overhead of a transaction in bytes (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronization and turn-around.
-// Therefore 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added separately.
+// With this overhead, 19 bulk packets of 64 bytes fit in a frame. Stuffed bits are added separately.
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
@@ -199,7 +199,7 @@ std::span<const std::byte> HostController::next_out_data(const Pipe& pipe, const
 }
 
 // Returns false if the transaction is too long for the rest of the frame. The device receives an OUT or SETUP packet at
-// the end of a transaction, and an IN token at the start.
+// the end of a transaction, and an IN token at the start of a transaction.
 bool HostController::start(unsigned index) {
   Pipe& pipe = pipes_[index];
   const Urb& urb = pipe.urbs.front();

@@ -10,8 +10,8 @@
 namespace inkwell::virtual_board {
 
 namespace {
-/// Words of the receive FIFO that data packets must leave empty: ten for SETUP packets, one for the global OUT NAK
-/// (RM0090, "Peripheral FIFO architecture").
+/// Reserved words of the receive FIFO: ten for SETUP packets and one for the global OUT NAK (RM0090, "Peripheral FIFO
+/// architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
 /// Longest time within which a device must release the pull-up after VBUS is lost (USB 2.0, section 7.1.5).

@@ -1,4 +1,4 @@
-// Commands of the OTG_FS core that take time: reset, flushes, NAK, endpoint disable.
+// Delayed commands of the OTG_FS core: reset, flush, NAK and endpoint disable.
 #include <algorithm>
 #include <string>
 
@@ -11,7 +11,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr Ticks transceiver_clock = ticks_per_s / 48'000'000;
-/// RM0090, OTG_FS reset register: a flush lasts eight cycles of the slower clock (PHY or AHB).
+/// A flush lasts eight cycles of the slower clock, PHY or AHB (RM0090, OTG_FS reset register).
 constexpr Ticks command_duration = 8 * transceiver_clock;
 /// The manual states no duration for a core reset, but requires the firmware to poll CSRST.
 constexpr Ticks core_reset_duration = ticks_per_s / 1'000'000;
@@ -149,7 +149,7 @@ void OtgFsDevice::cancel_commands() {
   core_reset_until_ = receive_flush_until_ = transmit_flush_until_ = 0;
 }
 
-// --- Register writes that come too early --------------------------------------------------------------------------
+// --- Early register writes --------------------------------------------------------------------------------
 
 bool OtgFsDevice::store_may_come(std::uint32_t offset, std::uint32_t value) {
   const Ticks now = scheduler_.now();

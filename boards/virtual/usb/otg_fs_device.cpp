@@ -308,7 +308,7 @@ void OtgFsDevice::check_connection() {
   if (!otg.gusbcfg.fdmod.in(usb_configuration_) && !chip_.has_function('A', 10, otg_fs)) rules_.violate(Rule::usb_mode);
 }
 
-// Checks all conditions for transfers, after the host has reset the bus.
+// After a bus reset, checks all conditions for transfers.
 void OtgFsDevice::check_core() {
   if (!otg.gusbcfg.physel.in(usb_configuration_))
     rules_.violate(Rule::usb_transceiver);
@@ -317,7 +317,7 @@ void OtgFsDevice::check_core() {
   if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
 }
 
-// Called for each answered packet, because the firmware may set TRDT as late as after speed enumeration.
+// Called for each answered packet, because the firmware may set TRDT after speed enumeration.
 void OtgFsDevice::check_turnaround() {
   if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
     rules_.violate(Rule::usb_turnaround);

@@ -9,8 +9,8 @@ namespace inkwell::virtual_board {
 
 namespace {
 
-/// Longest allowed time from the check of an empty receive FIFO to the clearing of NAK: a few instructions with
-/// interrupts disabled.
+/// Longest allowed time from the check for an empty receive FIFO to the write that clears NAK. This time is sufficient
+/// for a few instructions with interrupts disabled.
 constexpr Ticks check_before_clearing_nak = ticks_per_s / 1'000'000;
 
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
@@ -130,7 +130,7 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
   WordFifo& fifo = transmit_[fifo_number];
 
   if (endpoint.packet_words_to_load != 0 && writing_endpoint_ != number && !endpoint.damaged) {
-    // Observed on silicon: the core repeatedly sends the packet with a bad CRC until the FIFO is flushed.
+    // As observed on silicon, the core repeatedly sends the packet with a bad CRC until the FIFO is flushed.
     rules_.violate(Rule::usb_interleaved);
     endpoint.damaged = true;
   }
@@ -279,7 +279,7 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
 }
 
 // The manual requires firmware to set EPENA and CNAK together. Existing drivers, for example in ChibiOS, start an OUT
-// transfer with CNAK alone, and silicon then accepts packets.
+// transfer with CNAK alone. The real core accepts packets after CNAK alone.
 bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
   const OutEndpoint& endpoint = out_[number];
   const bool clears_nak =
@@ -302,8 +302,8 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
     note("isochronous endpoints are not modeled", where, true, endpoint.control);
 }
 
-// Observed on silicon: the setup-done word of a SETUP packet is lost if NAK on endpoint 0 is cleared before the word is
-// popped. Firmware cannot avoid the loss if the packet arrives just after the last check of the FIFO.
+// As observed on silicon, the setup-done word of a SETUP packet is lost if NAK on endpoint 0 is cleared before the word
+// is popped. Firmware cannot avoid the loss if the packet arrives just after the last check of the FIFO.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
   const bool checked = scheduler_.now() - receive_found_empty_at_ <= check_before_clearing_nak;

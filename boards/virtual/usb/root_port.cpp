@@ -77,7 +77,7 @@ std::optional<Urb> RootPort::unlink(std::uint32_t sequence) {
 }
 
 void RootPort::between_transactions() {
-  // A hub detects within microseconds that the pull-up is off, even if it is on again before the next frame.
+  // A hub detects within microseconds that the pull-up is off, even if the pull-up is on again before the next frame.
   const std::uint32_t attachment = plugged_ ? device_.attachment() : 0;
   if (attachment != attachment_) {
     detach();
@@ -250,7 +250,7 @@ void RootPort::answered(const Urb& urb) {
   }
 }
 
-// Updates the endpoints and toggles of the host controller after a standard request that changes them in the device.
+// Applies a standard request to the endpoints and data toggles of the host controller.
 void RootPort::follow_standard_request(const Urb& urb) {
   const std::uint8_t type = setup_byte(urb, 0);
   const std::uint8_t value = setup_byte(urb, 2);

@@ -1,14 +1,17 @@
 // Shares one device between several simultaneous programs, like an operating system.
 //
-// USB/IP allows only one importer per device. SharedPort lets several programs import the same device, with these
-// rules:
+// USB/IP allows only one importer per device. SharedPort lets several programs import the same device. The following
+// rules apply.
 //
-//   interrupt IN   every program that has requested a report receives the report
-//   bulk           the first requesting program uses the endpoint until it disconnects or unlinks its requests; the
-//                  other programs get "busy", as from a claimed interface
-//   control, OUT   transfers are executed one after the other; SharedPort answers a second SET_CONFIGURATION, because
-//                  it would reset the endpoints of the other programs
-//   import         the import by the first program resets and addresses the device
+//   Every program that has requested an interrupt IN report receives the report.
+//
+//   The first program with a bulk request uses the bulk endpoints until it disconnects or unlinks its requests. The
+//   other programs receive the status "busy", as from a claimed interface.
+//
+//   Control and OUT transfers are executed one after the other. SharedPort itself answers a second SET_CONFIGURATION,
+//   because this request would reset the endpoints of the other programs.
+//
+//   The import by the first program resets and addresses the device.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +49,7 @@ class SharedPort final : private RootPort::Client {
   std::optional<Urb> unlink(std::uint32_t session, std::uint32_t sequence);
 
  private:
-  /// Program and transfer to which the answer of a bus transfer belongs.
+  /// Recipient of the answer to a bus transfer.
   struct Owner {
     std::uint32_t session;
     std::uint32_t sequence;  ///< the program's sequence number
@@ -63,7 +66,7 @@ class SharedPort final : private RootPort::Client {
 
   bool is_of_type(const Urb& urb, TransferType type) const;
   void pass_on(const Owner& owner, Urb&& urb);
-  /// Keeps one request pending on the bus for all programs that wait for a report from this endpoint.
+  /// Submits one bus request on behalf of all programs that wait for a report from this endpoint.
   void keep_polling(std::uint8_t endpoint);
   void stop_useless_polling();
   void hand_out(const Urb& report, std::int32_t status);

@@ -30,7 +30,7 @@ class UsbIpImport {
     bytes_ -= found->second;
     lengths_.erase(found);
   }
-  /// Throws std::runtime_error if more unlink requests are pending than transfers are allowed.
+  /// Throws std::runtime_error if the number of pending unlink requests exceeds the allowed number of transfers.
   void add_unlink() {
     if (++unlinks_ > transfers_maximum)
       throw std::runtime_error("it has more pending unlink requests than the server allows");

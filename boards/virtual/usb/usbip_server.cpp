@@ -24,7 +24,7 @@ namespace inkwell::virtual_board {
 
 namespace {
 constexpr std::size_t connections_maximum = 16;
-/// Largest number of importers, which share the device (SharedPort).
+/// Largest number of simultaneous importers of the device (SharedPort).
 constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
 /// Largest number of unsent bytes per client. A client that exceeds this limit is disconnected, because it does not
@@ -99,7 +99,7 @@ void UsbIpServer::withdraw() {
 
 void UsbIpServer::wake() {
   const std::uint64_t one = 1;
-  // A failed write is ignored: the counter is then full, so the thread is about to wake up.
+  // A failed write is ignored, because a full counter also wakes the thread.
   [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
 }
 
@@ -124,8 +124,8 @@ void UsbIpServer::run() {
   while (true) {
     descriptors.clear();
     descriptors.push_back({wake_.number(), POLLIN, 0});
-    // The listener is polled only if a client can be accepted. Otherwise it would stay readable, and the wait for
-    // remaining data would never end.
+    // The listener is polled only if a client can be accepted. A client that cannot be accepted would keep the listener
+    // readable, and the wait for remaining data would never finish.
     const bool accepts = accepts_now();
     descriptors.push_back({accepts ? listener_.descriptor() : -1, POLLIN, 0});
     for (const Connection& connection : connections_) {

@@ -29,7 +29,7 @@ namespace inkwell::virtual_board {
 
 class UsbIpServer {
  public:
-  /// A request of an importer. `session` is the number of the import, by which late answers are detected.
+  /// A request of an importer. `session` is the import number, which identifies late answers.
   struct Order {
     enum class Kind : std::uint8_t { import, release, submit, unlink };
     Kind kind;
@@ -47,8 +47,8 @@ class UsbIpServer {
     std::uint32_t unlink_sequence = 0;
   };
 
-  /// Throws std::runtime_error with an error sentence that names --usbip if the server cannot listen. The server thread
-  /// calls `on_order` when orders are available to take().
+  /// Throws std::runtime_error if the server cannot listen. The error sentence names --usbip. The server thread calls
+  /// `on_order` when orders are available to take().
   UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
@@ -59,7 +59,7 @@ class UsbIpServer {
   // For the simulation thread.
   /// Appends the received orders to `orders`. The call is fast if no orders have been received.
   void take(std::vector<Order>& orders);
-  /// Waits until all data that clients sent before this call is converted to orders, and all earlier answers are sent.
+  /// Waits until all earlier answers are sent, and all data from before this call is converted to orders.
   void exchange_all();
   /// Waits for orders. Returns false if no order has been received at `deadline`.
   bool wait_for_order(std::chrono::steady_clock::time_point deadline);

@@ -1,4 +1,4 @@
-// Number of stuffed bits in a packet: the sender inserts a 0 bit after six consecutive 1 bits (USB 2.0, section 7.1.9).
+// Number of stuffed bits in a packet. The sender inserts a 0 bit after six consecutive 1 bits (USB 2.0, section 7.1.9).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct StuffedByte {
 
 inline constexpr unsigned ones_before_stuffing = 6;
 
-/// Table that is indexed by the number of preceding 1 bits and by the byte value.
+/// Table, indexed by the number of preceding 1 bits and by the byte value.
 inline constexpr auto stuffed_bytes = [] {
   std::array<std::array<StuffedByte, 256>, ones_before_stuffing> table{};
   for (unsigned before = 0; before < ones_before_stuffing; ++before)
@@ -65,7 +65,8 @@ inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   return stuffed;
 }
 
-/// Largest possible number of stuffed bits, so that the schedule does not depend on the data.
+/// Largest possible number of stuffed bits. The frame schedule uses this number and is therefore independent of the
+/// data.
 constexpr std::uint64_t stuffed_bits_maximum(std::size_t payload_bytes) { return (payload_bytes * 8 + 24 + 5) / 6; }
 
 }  // namespace inkwell::virtual_board

@@ -29,15 +29,16 @@ class BootLoaderDfu {
  public:
   static constexpr std::uint16_t transfer_bytes = 2048;
 
-  /// Resets the state to that after start-up.
+  /// Restores the start-up state.
   void start();
-  /// Returns the next order for the virtual chip. next_order() itself reads memory and registers, without board time.
+  /// Returns the next order for the virtual chip. next_order() itself reads memory and registers, and board time does
+  /// not pass.
   LoaderOrder next_order(DebugPort& memory);
-  /// True while the chip executes an order, so that no request can be answered.
+  /// True while the chip executes an order. During this time no request can be answered.
   bool is_busy() const { return asked_.has_value() || is_working_; }
   /// True if the next order starts the program.
   bool is_about_to_leave() const { return asked_ && asked_->kind == Operation::Kind::leave; }
-  /// Handles a request without data, or with its complete data. Returns false for a stall.
+  /// Handles a request without data or with complete data. Returns false for a stall.
   bool take(const SetupPacket& request, std::span<const std::byte> data);
   /// Answers a request for data; std::nullopt is a stall. If the answer requires a memory read, is_busy() is true; call
   /// answer() again when is_busy() is false.

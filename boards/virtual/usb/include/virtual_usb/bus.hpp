@@ -12,7 +12,7 @@ namespace inkwell::virtual_board {
 
 inline constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 
-/// Largest data packet of a full-speed device, for isochronous transfers; 64 bytes for other types.
+/// Largest data packet of a full-speed device. Only isochronous packets may exceed 64 bytes.
 inline constexpr std::size_t full_speed_packet_maximum = 1023;
 
 /// Result of a transaction as the host receives it (USB 2.0, section 8.4.5).
@@ -35,7 +35,8 @@ class BusDevice {
  public:
   virtual ~BusDevice() = default;
 
-  /// Returns 0 while the pull-up on D+ is off, otherwise a number that changes whenever the pull-up has been off.
+  /// Returns 0 while the pull-up on D+ is off, otherwise the number of the attachment. Each attachment has a different
+  /// number.
   virtual std::uint32_t attachment() const = 0;
   /// Applies or removes VBUS.
   virtual void set_bus_power(bool present) = 0;

@@ -8,7 +8,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Properties of the remote end that are available without a search.
+/// Port or process of the remote end.
 struct Peer {
   std::uint16_t port = 0;  ///< over TCP
   pid_t process = 0;       ///< over a Unix socket

@@ -1,4 +1,4 @@
-// The USB device of the board: the OTG_FS core, which either the firmware or the boot loader controls.
+// The USB device of the board: the OTG_FS core or the boot loader.
 #pragma once
 
 #include <virtual_usb/boot_loader.hpp>
@@ -6,7 +6,7 @@
 
 namespace inkwell::virtual_board {
 
-/// Registers and bus interface of the OTG_FS core. While the boot loader runs, it answers the bus instead of the core.
+/// Registers and bus interface of the OTG_FS core. A running boot loader answers the bus instead of the core.
 class Connector final : public Peripheral, public BusDevice {
  public:
   explicit Connector(const ChipConnections& chip) : core_(chip) {}

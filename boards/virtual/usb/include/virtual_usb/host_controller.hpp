@@ -2,8 +2,8 @@
 //
 // A frame lasts 1 ms of the host's clock. As in USB 2.0, section 5, a frame contains the start of frame, then
 // transactions of due interrupt endpoints, of control endpoints, and of bulk endpoints in rotation. Transactions are
-// sequential and have the duration that they have on a 12 Mbit/s bus, including stuffed bits. A transaction that does
-// not fit in the frame waits for the next frame.
+// sequential and last as long as on a 12 Mbit/s bus, including stuffed bits. A transaction that does not fit in the
+// frame waits for the next frame.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ class HostController {
   void set_polling(bool polls) { is_polling_ = polls; }
   /// Sets the device address in tokens and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);
-  /// Enables the endpoints of all interfaces in `configuration`, with their toggles at DATA0.
+  /// Enables the endpoints of all interfaces in `configuration` and sets their data toggles to DATA0.
   void configure(const ConfigurationDescription* configuration);
   void select_alternate(const ConfigurationDescription& configuration, std::uint8_t interface, std::uint8_t alternate);
   /// Call after CLEAR_FEATURE(ENDPOINT_HALT).

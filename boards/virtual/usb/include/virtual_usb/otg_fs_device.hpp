@@ -47,7 +47,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool finish_in(unsigned endpoint) override;
 
  private:
-  /// IN direction of an endpoint, which sends to the host.
+  /// IN direction of an endpoint (device to host).
   struct InEndpoint {
     std::uint32_t control = 0;               ///< DIEPCTL without its command bits
     std::uint32_t interrupts = 0;            ///< DIEPINT except TXFE, which is a level
@@ -64,7 +64,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     bool disabling = false;  ///< from EPDIS to EPDISD
     Scheduler::Id nak_event = 0, disable_event = 0;
   };
-  /// OUT direction of an endpoint, which receives from the host.
+  /// OUT direction of an endpoint (host to device).
   struct OutEndpoint {
     std::uint32_t control = 0;
     std::uint32_t interrupts = 0;
@@ -99,7 +99,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   Ticks free_of_packet(const InEndpoint& endpoint) const;
   std::uint32_t reset_control() const;
   void check_flush(std::uint32_t reset_control_written);
-  /// Returns false if the register write comes too early and has no effect.
+  /// Returns false if the register write is too early and has no effect.
   bool store_may_come(std::uint32_t offset, std::uint32_t value);
   void check_flushed_fifo(std::uint32_t offset, std::uint32_t value);
   void check_disabled_endpoints(std::uint32_t offset, std::uint32_t value);

@@ -1,7 +1,8 @@
-// The host port to which the cable connects the device: connection, reset, enumeration, import, suspend.
+// Host port of the USB cable: connection, reset, enumeration, import and suspend.
 //
-//   detached -> debouncing -> resetting -> ... descriptors read ... -> suspended
-//   suspended -> (import) resetting, addressing -> in use -> (release) suspended
+//   Start:    detached -> debouncing -> resetting -> reading descriptors -> suspended.
+//   Import:   suspended -> resetting -> addressing -> in use.
+//   Release:  in use -> suspended.
 //
 // USB/IP has no messages for bus reset and device address. An importer expects a device that has just been reset and
 // addressed, so RootPort resets and addresses the device at each import.

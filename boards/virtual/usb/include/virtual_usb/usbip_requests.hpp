@@ -17,14 +17,14 @@ namespace inkwell::virtual_board {
 /// Bus identifier, bus number and device number of the exported device.
 inline constexpr char exported_bus_id[] = "1-1";
 inline constexpr std::uint32_t exported_bus_number = 1, exported_device_number = 2;
-/// Largest accepted transfer in bytes, which is also the limit of Linux usbfs.
+/// Largest accepted transfer in bytes, equal to the limit of Linux usbfs.
 inline constexpr std::uint32_t transfer_maximum = 16u << 20;
-/// Largest number of packets in an isochronous transfer, which is also the limit of Linux.
+/// Largest number of packets in an isochronous transfer, equal to the limit of Linux.
 inline constexpr std::uint32_t packets_maximum = 1024;
 
-/// Parses the requests of one client. A request is returned when all its bytes have been received. An invalid request
-/// throws std::runtime_error, whose text completes the sentence "... because". After an invalid request, no further
-/// bytes of the client can be parsed.
+/// Parses the requests of one client. A request is returned when all its bytes have been received. For an invalid
+/// request, the functions throw std::runtime_error. The error text completes the sentence "... because". After an
+/// invalid request, no further bytes of the client can be parsed.
 class UsbIpRequests {
  public:
   struct ListDevices {};
@@ -41,8 +41,8 @@ class UsbIpRequests {
   void feed(std::span<const std::byte> bytes);
   /// Returns the next request of a client that has not imported the device.
   std::optional<Operation> take_operation();
-  /// Returns the next request of a client that has imported the device. An OUT transfer contains all its data, an
-  /// isochronous transfer all its packets.
+  /// Returns the next request of a client that has imported the device. An OUT transfer contains all its data, and an
+  /// isochronous transfer contains all its packets.
   std::optional<Transfer> take_transfer();
 
  private:
