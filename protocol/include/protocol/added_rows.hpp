@@ -1,7 +1,7 @@
-// Rows that a force law adds at the end of the parameter and signal tables.
+// Rows of a force law at the end of the parameter and signal tables.
 //
-// The firmware contains its force law. A PC program reads the rows from the device that it opens. Window, files and
-// command line use the added rows like all other rows.
+// A firmware image contains one force law and its rows. A PC program reads these rows from the device. Window, files
+// and command line use the added rows like all other rows.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
 template <class Info>
 inline constexpr Info nameless_row{};
 
-/// Table with rows that are added at run time. `own` is the number of rows of the table itself. Constant expressions
+/// Table with rows that are added at run time. `own` is the number of rows without the added rows. Constant expressions
 /// use the table instead of this class.
 ///
-/// The constructor must not call std::is_constant_evaluated(): with GCC 14 the added rows would be missing in a
-/// range-based for loop. GCC 14 evaluates this function to true wherever a reference is bound to the new object.
+/// The constructor must not call std::is_constant_evaluated(). GCC 14 evaluates std::is_constant_evaluated() to true if
+/// a reference is bound to the new object. A range-based for loop would therefore omit the added rows.
 template <class Info, std::size_t own>
 class KnownRows {
  public:

@@ -2,9 +2,9 @@
 // force is switched on again or the power is lost. Consecutive rows are 1 ms apart, and one row shows the control
 // period of the fault.
 //
-//   host <- device   feature report  BlackBoxReport: presence, fault and crash data
-//   host -> device   feature report  BlackBoxRequest: first row of the next BlackBoxRowsReport
-//   host <- device   feature report  BlackBoxRowsReport: the same rows until the next request
+//   BlackBoxReport (device to host): presence, fault and crash data.
+//   BlackBoxRequest (host to device): first row of the next BlackBoxRowsReport.
+//   BlackBoxRowsReport (device to host): the same rows until the next request.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace inkwell::protocol {
 
-/// Control periods from one row to the next, except before the row of the fault.
+/// Number of control periods between consecutive rows, except before the row of the fault.
 inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
 /// 100 rows (100 ms) before the fault, and 101 rows from the fault's row on.
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;

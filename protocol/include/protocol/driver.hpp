@@ -1,8 +1,9 @@
 // The driver: the program that drives the arm. Results of commands and shapes.
 //
-// Several programs may be connected to one arm, and one of them drives it. The driver claims the arm with a random
-// number and sends this claim with its commands, forces, shapes and parameters. From other programs the board accepts
-// only commands that need no claim (needs_claim()). A claim expires if no report contains it for claim_expiry_s.
+// Several programs may be connected to one arm, but only one program drives the arm. The driver claims the arm with a
+// random number and sends this claim with its commands, forces, shapes and parameters. From other programs the board
+// accepts only commands that need no claim (needs_claim()). A claim expires if no report contains it for
+// claim_expiry_s.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +60,8 @@ struct DriverReport {
   std::uint32_t refused;       ///< requests since start-up from programs that were not the driver
 };
 
-/// Identifies a claim without revealing it, so that no program uses the claim of another program by mistake.
+/// Returns a digest that identifies a claim without disclosing the claim. A program therefore cannot use the claim of
+/// another program by mistake.
 constexpr std::uint32_t digest_of(std::uint32_t claim) {
   std::uint32_t mixed = claim ^ 0x9E3779B9u;
   mixed = (mixed ^ mixed >> 16) * 0x85EBCA6Bu;

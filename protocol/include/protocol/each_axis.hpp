@@ -1,8 +1,8 @@
 // Groups of three table rows: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
 //
 // The names of the three rows differ only in the digit or letter, for example gear_ratio_1, gear_ratio_2, gear_ratio_3.
-// Callers pass the first row and an index: of_axis() counts from 0 as in arrays, of_number() from 1 as in the row
-// names.
+// Callers pass the first row and an index: of_axis() counts from 0 as in arrays, and of_number() counts from 1 as in
+// the row names.
 #pragma once
 
 #include <array>
@@ -31,7 +31,8 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// False if a row for axis 1, 3, x or z has no row for axis 2 or y, or differs from that row (alike()).
+/// Compares a row for axis 1, 3, x or z with the row for axis 2 or y. Returns false if the row for axis 2 or y is
+/// missing or differs (see alike()).
 template <class Table>
 constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
   const auto& row = table[index];
@@ -56,7 +57,7 @@ class EachAxis {
  public:
   // The constructor is implicit, so that callers can pass a row where a function expects an EachAxis.
   consteval EachAxis(Row first) : EachAxis(first, named_after(first, 1), named_after(first, 2)) {}
-  /// For three rows with unrelated names.
+  /// Groups three rows with unrelated names.
   consteval EachAxis(Row first, Row second, Row third) : rows_{first, second, third} {
     for (const Row row : rows_)
       if (!alike(info(row), info(first))) detail::the_three_rows_differ_in_unit_range_or_kind();

@@ -1,4 +1,4 @@
-// Request for an injected fault, from a user or a program, and the names of the possible locations. The virtual board
+// Request of a user or a program for an injected fault, and the names of the possible locations. The virtual board
 // checks requests (injection/injection.hpp), because pins and memory depend on the simulated board.
 #pragma once
 

@@ -177,9 +177,9 @@ constexpr const ParameterInfo& info(Parameter parameter) {
   return place < parameter_count ? parameter_table[place] : known_parameters()[place];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
-/// True if the parameter is part of the arm's geometry. A change would make the force jump, and is therefore allowed
-/// only while the force is off. Parameters outside the group "arm" can change at any time, even if belongs_to_arm is
-/// set.
+/// True if the parameter is part of the arm's geometry. A change of the geometry would make the force jump, and is
+/// therefore allowed only while the force is off. Parameters outside the group "arm" can change at any time, even if
+/// belongs_to_arm is set.
 constexpr bool needs_force_off(const ParameterInfo& row) { return row.group == "arm"; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
   return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
@@ -202,7 +202,8 @@ inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad,
 struct Bounds {
   Parameter lower;
   Parameter upper;
-  /// If true, `upper` must exceed `lower` by more than the sphere's diameter, otherwise by any amount.
+  /// If true, `upper` must exceed `lower` by more than the sphere's diameter. If false, `upper` may exceed `lower` by
+  /// any amount.
   bool hold_sphere;
 };
 

@@ -1,24 +1,25 @@
 // Reports of the HID interface. All structures are little-endian and have no padding. CommandReport is packed; all
 // other structures are naturally aligned.
 //
-//   device -> host   input report    PoseReport, one per bus frame (1 ms of the host's clock)
-//   host -> device   output report   CommandReport, ForceReport; each is also a sign of life
-//   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport,
-//                                    FrameReport, ForceLawReport
-//   host -> device   feature report  ParametersReport (set): one transaction, applied completely or not at all;
-//                                    ShapesReport, in the same way
-//   both             feature report  black box: protocol/black_box.hpp
-//   host <- device   feature report  self-test: protocol/self_test.hpp; parameter store: protocol/store.hpp, and
-//                                    a ParametersReport with the parameters after the next start
-//   both             feature report  claim of the driver: protocol/driver.hpp
-//   host <- device   feature report  results of commands and shapes: protocol/driver.hpp
+//   PoseReport: input report, one per bus frame (1 ms of the host's clock).
+//   CommandReport, ForceReport: output reports. Each report is also a sign of life.
+//   InformationReport, TransactionReport, FrameReport, ForceLawReport: feature reports (get).
+//   ParametersReport: feature report (get and set). A written report is one transaction, which is applied completely or
+//   not at all.
+//   ShapesReport: feature report (set). A written report is applied completely or not at all.
+//   Black box: feature reports in protocol/black_box.hpp.
+//   Self-test: feature report in protocol/self_test.hpp.
+//   Parameter store: feature report in protocol/store.hpp.
+//   Parameters after the next start: a ParametersReport (get).
+//   Claim of the driver: feature reports in protocol/driver.hpp.
+//   Results of commands and shapes: feature report in protocol/driver.hpp.
 //
 // Sizes and directions of all reports are in protocol/report_table.hpp. A report that the host sets may be longer than
 // its used part, and the device ignores the rest. Some hosts pad every report to the length of the longest report of
 // its kind. A report that the host reads is filled with zeros up to its declared size or the requested length (HID
 // 1.11, section 7.2.1).
 //
-// ControllerReport has a separate interface, which every program that supports joysticks can read.
+// ControllerReport has a separate interface. Every program that supports joysticks can read this interface.
 #pragma once
 
 #include <algorithm>
@@ -259,7 +260,7 @@ struct ForceReport {
 };
 
 /// Largest age of the pose that a force report answers. The device refuses a force for an older pose, because the hand
-/// may have moved since then.
+/// may have moved since that pose.
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
 /// Heat above which the current limit of a motor falls. At heat 1 the limit equals the continuous current.
@@ -368,8 +369,8 @@ struct SurfaceEntry {
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
   float static_friction;    ///< 0..friction_maximum, relative to the normal force
   float dynamic_friction;   ///< 0..static_friction
-  /// Life of the shape, 0..shape_life_maximum_s, from the moment at which it takes effect. An infinite life lasts until
-  /// the claim ends, and a life of 0 means no shape.
+  /// Life of the shape after it takes effect, 0..shape_life_maximum_s. An infinite life lasts until the claim ends, and
+  /// a life of 0 means no shape.
   float life_s;
 };
 
@@ -419,7 +420,7 @@ struct ForceLawReport {
   std::uint16_t size;  ///< size of the whole report, up to force_law_report_maximum
 };
 
-/// Largest size of a ForceLawReport, because some kernels do not accept longer reports.
+/// Largest size of a ForceLawReport. Some kernels do not accept longer reports.
 inline constexpr std::size_t force_law_report_maximum = 2048;
 
 constexpr std::size_t shapes_report_size(std::size_t plane_count) {

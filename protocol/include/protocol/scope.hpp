@@ -6,16 +6,17 @@
 //
 // Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
 // floats per sample, each frame leaves an idle time of two packets. A frame of only 36 samples would leave an idle time
-// of less than half a packet. A gap in `sequence` is a lost frame. The `first_period` of the next frame then shows the
-// number of lost samples.
+// of less than half a packet. A gap in `sequence` indicates a lost frame. The `first_period` of the next frame then
+// shows the number of lost samples.
 //
-//   full     A sample has the value of every selected signal, in the order of the selection.
-//   changes  A sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values that differ
-//            from the previous sample follow in rising order of i. The first sample of a frame has every bit set, so
-//            that a reader can decode each frame alone.
+// In the encoding `full`, a sample has the value of every selected signal, in the order of the selection.
 //
-// The encoding is `full` for samples of up to scope_full_sample_maximum bytes. 14 floats at 20 kHz are 1.12 MB/s, and
-// full-speed USB transmits 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
+// In the encoding `changes`, a sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values
+// that differ from the previous sample follow in rising order of i. The first sample of a frame has every bit set, so
+// that a reader can decode each frame alone.
+//
+// The encoding is `full` for samples of up to scope_full_sample_maximum bytes. At 20 kHz, 14 floats require 1.12 MB/s.
+// Full-speed USB transmits up to 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +30,7 @@ enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
 
 inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" in little-endian byte order
 inline constexpr std::size_t scope_frame_maximum = 6144;
-/// 109 samples take 5.5 ms, which bounds the latency for a selection of few signals.
+/// 109 samples last 5.5 ms. This duration bounds the latency for a selection of few signals.
 inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
 inline constexpr std::size_t scope_full_sample_maximum = 56;
 

@@ -144,7 +144,7 @@ struct StateTransition {
 };
 
 /// Rows with the same `from` are consecutive, and the supervisor follows the first open transition among them. A fault
-/// has precedence: it leads to `fault` from each state except `fault` and `update`.
+/// has precedence and leads to `fault` from each state except `fault` and `update`.
 inline constexpr auto transition_table = std::to_array<StateTransition>({
     {State::starting, State::update, events(Event::update), 0},
     {State::starting, State::testing, events(Event::measured), 0},
@@ -198,8 +198,8 @@ enum class Clearing : std::uint8_t {
 /// Method by which a fault switches the motors off.
 enum class Off : std::uint8_t {
   coast,  ///< bridges off: for faults that make currents, bridges, supply or speed unreliable
-  /// The low sides are on until the probe is slow, so that the back EMF brakes the motors. A measured motor current
-  /// above the current for the force limit switches the bridges off for one period.
+  /// The low-side switches are on, and the back EMF brakes the motors until the probe is slow. If a motor current
+  /// exceeds the current for the force limit, the bridges are off for one period.
   brake,
   /// Like `brake`, but with a lower current threshold, because the hand may continue its motion.
   brake_gently,
@@ -214,8 +214,8 @@ struct Condition {
   bool voids_reference = false;
 };
 
-/// If several faults occur in one period, the board reports the fault that comes first in this table, because that
-/// fault explains the others. The reported fault remains until it is cleared.
+/// If several faults occur in one period, the board reports the fault with the first row in this table. The first fault
+/// in the table explains the other faults. The reported fault remains until it is cleared.
 inline constexpr auto condition_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};

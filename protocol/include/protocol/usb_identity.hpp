@@ -5,8 +5,8 @@
 
 namespace inkwell::protocol::usb {
 
-/// Vendor identifier of pid.codes, and the product identifier that pid.codes reserves for private tests.
-/// docs/flashing.md lists the steps for registering a separate identifier for Inkwell.
+/// Vendor identifier of pid.codes, and its product identifier for private tests. docs/flashing.md lists the steps for
+/// registering a separate identifier for Inkwell.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
 inline constexpr bool is_test_identity = true;
@@ -19,8 +19,8 @@ inline constexpr std::uint8_t hid_out_endpoint = 0x01;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t scope_interface = 1;
 inline constexpr std::uint8_t scope_in_endpoint = 0x82;  ///< bulk, 64 bytes
 
-/// Multi-axis controller for programs that support joysticks. The controller has a separate interface: two collections
-/// of one interface would share an endpoint, and the device would lose poses.
+/// Multi-axis controller for programs that support joysticks. The controller has a separate interface, because two
+/// collections of one interface would share an endpoint. With a shared endpoint, the device would lose poses.
 inline constexpr std::uint8_t controller_interface = 2;
 inline constexpr std::uint8_t controller_in_endpoint = 0x83;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t controller_interval_ms = 8;
