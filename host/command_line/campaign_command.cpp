@@ -47,7 +47,7 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
   return 0;
 }
 
-/// Creates a folder. `option` is the command-line option that selects another folder.
+/// Creates a folder. `option`: command-line option for the folder.
 void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
@@ -56,7 +56,7 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
                                     folder.string(), code.message(), option));
 }
 
-/// Creates the folder of the page before the cases run, because the runs may take hours.
+/// Called before the cases run, so that an invalid folder is reported immediately.
 void make_folder_of_page(const CampaignOptions& command) {
   make_folder(campaign::folder_of_details(command.page), "--page");
 }
@@ -77,7 +77,6 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
         const std::string off = result.off_after_s
                                     ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
                                     : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
-        // The location helps to explain the result.
         const std::string place = result.place.empty() ? "" : " at " + result.place;
         const std::string text = campaign::fault_text(result);
         fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,

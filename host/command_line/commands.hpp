@@ -2,9 +2,9 @@
 #pragma once
 
 // To add a command:
-// 1. Add a line to INKWELL_COMMANDS.
-// 2. Define add_NAME_command() in NAME_command.cpp in this folder. The help text needs examples with units.
-// 3. Add the command and its subcommands to the list in tests/system/bad_input_test.cpp.
+// (1) Add a line to INKWELL_COMMANDS.
+// (2) Define add_NAME_command() in NAME_command.cpp in this folder. The help text needs examples with units.
+// (3) Add the command and its subcommands to the list in tests/system/bad_input_test.cpp.
 //
 // Manual pages, completion and the command page are generated from the help texts.
 
@@ -18,10 +18,10 @@ namespace inkwell::command_line {
 
 /// The action of the chosen command; returns the exit code.
 using Action = std::function<int()>;
-/// Opens the window, and a recording if its name is not empty. Returns the exit code.
+/// Opens the window. Replays the recording, unless the file name is empty. Returns the exit code.
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
-/// The program to which a command adds itself, and the objects that the command may use.
+/// Arguments of the functions that add commands.
 struct Place {
   CLI::App& program;
   const DeviceOptions& device;
@@ -57,11 +57,11 @@ struct Place {
 INKWELL_COMMANDS(X)
 #undef X
 
-/// Without a command the program opens the window. Returns a function that opens the window for a command.
+/// Adds the window options. Returns the function for commands that open the window.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
-/// Throws UsageError if a window option was given with a command that opens no window. The program would otherwise
-/// ignore the option and any mistake in its value.
+/// Throws UsageError if a window option was given with a command that opens no window. Otherwise the program would
+/// ignore the option, including an invalid value.
 void refuse_window_options_in_vain(const CLI::App& program);
 
 }  // namespace inkwell::command_line

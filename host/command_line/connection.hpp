@@ -1,4 +1,4 @@
-// Options that select a device, and the connection to it.
+// Device options, and the connection to the selected device.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class UsageError : public device::Error {
   using Error::Error;
 };
 
-/// Pace of a virtual board's time without --real-time.
+/// Pace of a virtual board's time. --real-time has priority.
 enum class BoardPace : std::uint8_t {
   as_it_can,
   real_time,  ///< synchronized with wall time
@@ -50,20 +50,20 @@ struct DeviceOptions {
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the selected device, and takes the arm over if --take-over was given. With --arm, a virtual board receives the
-/// parameters of the arm description.
+/// Opens the selected device. With --take-over, takes over the arm. With --arm, a virtual board receives the parameters
+/// of the arm description.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 
-/// A parsed value, and the device if parsing needed it.
+/// A parsed value. If the parser opened the device, `connection` is the open device.
 template <class Value>
 struct Typed {
   Value value;
   std::optional<device::OpenArm> connection;
 };
 
-/// Parses with `read()`. A mistake is reported before any device is opened. Only an unknown name requires the device,
-/// because the name may belong to the device's force law.
+/// Parses with `read()`. Reports a mistake without opening the device. An unknown name requires the device, because the
+/// name may belong to the device's force law.
 template <class Read>
 Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
                                              BoardPace pace = BoardPace::as_it_can) {

@@ -34,7 +34,7 @@ struct Listed {
   std::string board;  ///< empty: not reported by the firmware, or the device did not answer
 };
 
-/// Devices that do not answer are also listed. Firmware with another protocol version also answers the information
+/// Devices that do not answer are also listed. Firmware with a different protocol version also answers the information
 /// request.
 Listed query_arm(const Endpoint& endpoint) {
   Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};

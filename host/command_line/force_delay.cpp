@@ -30,7 +30,7 @@ constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = peri
 /// Time to wait for the last samples of a vibration.
 constexpr std::int64_t sample_delay_periods = periods_in(0.01);
 
-/// A program that answers each pose with a force along x, and reads the scope between two poses.
+/// Answers each pose with a force along x, and reads the scope between poses.
 class Program {
  public:
   /// The force as a function of the control period.
@@ -81,7 +81,7 @@ class Program {
   std::int64_t poses_missed_ = 0;
 };
 
-/// The force rises linearly, so that its value identifies the control period for which it was computed.
+/// The force rises linearly, so each force value identifies its control period.
 ForceDelay::Recording record_ramp(Program& program) {
   program.select({Signal::program_force_x_N});
   const std::int64_t begin = program.now();
@@ -104,7 +104,7 @@ ForceDelay::Recording record_ramp(Program& program) {
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 
-/// A sine that starts in period 0, and the component of a signal at the frequency of the sine.
+/// A sine force, which starts in period 0. Also evaluates signals at the frequency of the sine.
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}

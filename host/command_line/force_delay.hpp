@@ -1,4 +1,4 @@
-// Delay from a pose to the program's force that answers it, and the frequency response of that force.
+// Measures the delay from a pose to the program's force, and the frequency response of the program's force.
 #pragma once
 
 #include <vector>
@@ -29,7 +29,7 @@ struct ForceDelay {
   std::int64_t poses_missed = 0;  ///< missed by the program, except during requests
 };
 
-/// Amplitude of the vibrations, and limit of all forces.
+/// Maximum of all forces, including the vibrations.
 inline constexpr float delay_force_N = 0.5f;
 
 /// Requires that the force is on and a hand holds the stylus. Answers each pose with a force along x. Throws

@@ -18,7 +18,7 @@ using device::Pose;
 using protocol::Command;
 using protocol::State;
 
-/// Intervals in board time. The request is repeated, because a device that is not referenced yet drops it.
+/// Intervals in board time. The request is repeated, because an unreferenced device ignores the request.
 constexpr std::int64_t retry_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
 /// Repeats the command until the desired state, a fault, or the time limit.
@@ -51,7 +51,7 @@ void clear_what_a_host_left(device::Device& device) {
   });
 }
 
-/// Returns the reason why the force is off, with a leading space, or an empty text if nothing prevents the force.
+/// Returns a space and the reason why the force is off. Returns an empty text if the device is ready.
 std::string what_keeps_it_off(const Pose& pose) {
   if (pose.state == State::ready) return {};
   return " " + (pose.state == State::fault ? device::fault_line(pose.fault) : std::string(info(pose.state).meaning));
@@ -61,7 +61,7 @@ std::string what_keeps_it_off(const Pose& pose) {
 
 Pose switch_force_off(device::Device& device) {
   device.switch_force_off();
-  // Poses from before the confirmation may still be in the queue.
+  // The queue may still contain poses with force.
   Pose pose = next_pose(device);
   const std::int64_t begin_periods = pose.time_periods;
   while (protocol::force_is_on(pose.state) && pose.time_periods - begin_periods < patience_periods)

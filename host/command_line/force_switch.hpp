@@ -9,8 +9,8 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force off, whichever program switched it on. Returns the first pose without force, or after two seconds
-/// of board time the newest pose.
+/// Switches the force off, even if a different program switched the force on. Waits until the force is off, for at most
+/// two seconds of board time. Returns the newest pose.
 device::Pose switch_force_off(device::Device& device);
 
 /// The force is on during the lifetime of this object. The owner must send signs of life.
@@ -22,9 +22,9 @@ class ForceSwitch {
   ForceSwitch(const ForceSwitch&) = delete;
   ForceSwitch& operator=(const ForceSwitch&) = delete;
 
-  /// Like switch_force_off(), but without effect after another program has taken over the arm. Throws device::Error.
+  /// Calls switch_force_off(), except if a different program has taken over the arm. Throws device::Error.
   device::Pose switch_off();
-  /// Returns the reason if `pose` or the driver shows that this program has lost the force.
+  /// Returns the reason if this program has lost the force.
   std::optional<std::string> loss(const device::Pose& pose) const;
 
  private:

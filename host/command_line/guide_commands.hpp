@@ -11,7 +11,7 @@
 
 namespace inkwell::command_line {
 
-/// Choices and consent of the user, filled in while the options are parsed.
+/// The user's choices and consent, from the command-line options.
 struct GuideOptions {
   guides::Choices choices;
   Consent consent;

@@ -133,7 +133,7 @@ class GuideRun {
     std::this_thread::sleep_for(1ms);
   }
 
-  /// --yes agrees to the actions of the device. Only the user or button 1 can confirm the end of the user's task.
+  /// --yes confirms only actions of the device. The user must press Enter or button 1 at the end of each manual task.
   bool agrees() {
     if (guide_.phase() == Phase::awaits_consent && consent_.yes) return true;
     if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
@@ -179,7 +179,7 @@ class GuideRun {
   Clock::time_point heard_at_ = Clock::now();
 };
 
-/// Returns true if the changes are to be stored. If the user cannot be asked, prints how to store the changes.
+/// Returns true if the user wants to store the changes. Without a terminal, prints the command that stores the changes.
 bool wants_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
   if (consent.store) return true;
   if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {

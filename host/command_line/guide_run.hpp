@@ -1,4 +1,4 @@
-// Runs guides on a terminal: text of each step, a prompt before motion, and live measured values.
+// Runs guides on a terminal. The terminal shows the steps, a prompt before each motion, and measured values.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ struct Consent {
 };
 
 /// Runs guides one after another on the selected device, until one fails. After the last guide, stores the changes on
-/// the board if the user agrees. Returns the exit code. Throws device::Error with the failure, and UsageError if
-/// consent is required and standard input is closed.
+/// the board if the user agrees. Returns the exit code. Throws device::Error if a guide fails. Throws UsageError if a
+/// guide requires consent and standard input is closed.
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
                const guides::Choices& choices);
 

@@ -27,7 +27,8 @@ class GuidedDevice {
   /// The frames received since the last call.
   std::vector<device::ScopeSamples> take_frames();
   void carry_out(const guides::UserTask& task);
-  /// Stores the parameters on the board. Throws device::Error with the reason if the board does not store them.
+  /// Stores the parameters on the board. Throws device::Error with the reason if the board does not store the
+  /// parameters.
   void store_parameters();
 
  private:

@@ -21,8 +21,7 @@ class HelpStyle final : public CLI::Formatter {
   HelpStyle() { column_width_ = name_width; }
 
  private:
-  /// Returns type, default and repetition of an option. The descriptions already state the ranges and dependent
-  /// options.
+  /// Returns type, default and repetition of an option. The option descriptions state ranges and dependent options.
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_type_size() == 0) return {};
     std::string text;

@@ -11,10 +11,10 @@ namespace inkwell::command_line {
 /// Sets the help style of the program and of all commands that are added afterwards.
 void set_help_style(CLI::App& program);
 
-/// Adds the text after a command's options: one example per line, and the hints that all commands share.
+/// Adds the examples, one per line, and the common hints after a command's options.
 void add_examples(CLI::App& command, const std::string& examples);
 
-/// Validators for numbers, with messages that state the range.
+/// Validators for numbers. The error messages state the range.
 CLI::Validator zero_or_more();
 CLI::Validator more_than_zero();
 CLI::Validator number_within(double low, double high);

@@ -1,4 +1,4 @@
-// Marks set from standard input while a recording runs.
+// Reads marks from standard input during a recording.
 #pragma once
 
 #include <optional>

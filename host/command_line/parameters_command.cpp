@@ -145,7 +145,7 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
   return {std::move(loaded), std::move(connection)};
 }
 
-/// Refuses to replace an existing file, which may be the only copy of a calibration.
+/// Refuses to replace an existing file. The file may be the only copy of a calibration.
 void check_is_free(const std::string& file) {
   std::error_code code;
   if (std::filesystem::is_directory(file, code))

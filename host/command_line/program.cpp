@@ -63,7 +63,7 @@ int run(int argument_count, char** arguments) {
 
   try {
     program.parse(argument_count, arguments);
-    // CLI11 does not parse words after "--" as commands, so the program would open the window.
+    // After "--" CLI11 ignores a command, so the program would open the window.
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
           "\"--\" is not allowed before the command. Omit it, or put it after the command of `inkwell run`.");

@@ -71,7 +71,7 @@ class RecordingThread {
       for (int silent_reads = 0; !stopping_ && !is_done_;) {
         auto samples = device_.read_scope(read_timeout);
         silent_reads = samples ? 0 : silent_reads + 1;
-        // The limit is twice the limit for poses, so that a completely silent board is reported as silent.
+        // This limit is twice the limit for poses, because the error for a silent board has priority.
         if (silent_reads * read_timeout > 2 * silence_limit)
           throw device::Error("The board sends poses but no samples. Start the recording again.");
         if (samples) take(*samples);

@@ -16,9 +16,10 @@ class RecordedSpan {
   /// Removes samples after the end of the recording. Samples after a board restart are retained, but do not count
   /// towards the length. The recorder reports the restart.
   void cut(device::ScopeSamples& samples);
-  /// True if samples up to the end of the recording have arrived.
+  /// True if the last samples of the recording have arrived.
   bool is_over() const { return is_over_; }
-  /// Returns the number of missing periods at the end of a recording, from the numbers of stored and lost samples.
+  /// Returns the number of control periods that are missing at the end. `samples` and `lost` are the numbers of stored
+  /// and lost samples.
   std::uint64_t missing_at_end(std::uint64_t samples, std::uint64_t lost) const;
 
  private:

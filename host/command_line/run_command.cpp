@@ -1,4 +1,4 @@
-// Starts a program that was written for another arm, with the drop-in libraries instead of that arm's libraries.
+// Runs an HDAPI or libhdPhantom program with the drop-in libraries.
 #include "commands.hpp"
 
 #include <spawn.h>

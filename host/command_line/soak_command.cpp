@@ -28,7 +28,7 @@ constexpr double default_board_time_s = 60;
 
 struct SoakOptions {
   soak::Choices choices;
-  /// Total of all sittings. Default: default_board_time_s, or a complete sitting of `choices` if a sitting is selected.
+  /// Total of all sittings. The default is default_board_time_s, or one complete sitting if `sitting` is set.
   std::optional<double> board_time_s;
   unsigned jobs = 1;
   std::optional<unsigned> sitting;  ///< runs only this sitting
@@ -40,7 +40,7 @@ struct Plan {
   std::vector<unsigned> numbers;  ///< numbers of the sittings
 };
 
-/// All sittings have the same length. The sum of all sittings is the requested time, independent of the number of jobs.
+/// All sittings have the same length. The total is the requested time, independent of the number of jobs.
 Plan plan_of(const SoakOptions& command) {
   if (command.sitting && !command.board_time_s) return {command.choices, {*command.sitting}};
   const double board_time_s = command.board_time_s.value_or(default_board_time_s);
@@ -57,7 +57,7 @@ Plan plan_of(const SoakOptions& command) {
   return plan;
 }
 
-/// Checks before the soak whether the file can be written. The existing content remains until the result replaces it.
+/// Checks before the soak whether the file can be written. Does not change an existing file.
 void check_writable(const std::string& file) {
   std::error_code ignored;
   const bool was_there = std::filesystem::exists(file, ignored);
@@ -66,7 +66,7 @@ void check_writable(const std::string& file) {
   if (!was_there) std::filesystem::remove(file, ignored);
 }
 
-/// The completed sittings, and the reason if any sittings are missing.
+/// The completed sittings, and the error of a failed sitting.
 struct Outcome {
   soak::Soak soak;
   std::string trouble;

@@ -5,7 +5,8 @@
 
 namespace inkwell::command_line {
 
-/// Warns if values are lost when the virtual board of this command exits, and names the option that retains them.
+/// Prints a warning if values are lost when the virtual board exits. The warning names the option that retains the
+/// values.
 void print_unstored(const DeviceOptions& options, bool is_stored);
 
 void add_store_commands(CLI::App& parameters, const Place& place);

@@ -18,7 +18,8 @@
 namespace inkwell::command_line {
 namespace {
 
-/// The completion generator recognizes the group by the word "Window" and does not offer it after a command.
+/// The completion generator recognizes the group by the word "Window", and does not complete these options after a
+/// command.
 constexpr char window_group[] = "Window (without a command, or with replay)";
 constexpr std::string_view command_with_window = "replay";
 

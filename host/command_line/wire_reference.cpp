@@ -60,8 +60,8 @@ namespace {
 
 namespace layouts = protocol::layouts;
 
-/// True if the fields have no gaps. A field of a union or a bit field may start at the same offset as the previous
-/// field.
+/// True if there are no gaps between the fields. A field of a union or a bit field may start at the same offset as the
+/// previous field.
 constexpr bool is_whole(const layouts::Struct& row) {
   std::size_t begin = 0, end = 0;
   for (const auto& field : row.fields) {
