@@ -1,4 +1,4 @@
-// The companion's window, which lays out and draws all panes.
+// The companion's window with all panes.
 #pragma once
 
 #include <optional>
@@ -36,7 +36,7 @@ class Companion final : public FrameContent {
   bool needs_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
-  /// True once the user requests a virtual board. The window then restarts with the virtual board.
+  /// True once the user requests a virtual board. The window restarts with the virtual board.
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
@@ -74,7 +74,7 @@ class Companion final : public FrameContent {
   void use_theme(Theme theme);
   void stop();
 
-  /// Returns the parameters of the replayed recording or, without a replay, of the device.
+  /// Returns the parameters of the replayed recording. Without a replay, returns the parameters of the device.
   ParameterEditor& shown_parameters() { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
   const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
 

@@ -152,7 +152,7 @@ float StatusBar::height(float width, const Style& style) const {
   return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
-/// Draws the buttons to the left of `corner`, with the STOP button at the right end.
+/// Draws the buttons to the left of `corner`. The STOP button is at the right end.
 void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
                              StatusBarOutcome& outcome) const {
   const Palette& palette = *style.palette;

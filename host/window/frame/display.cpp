@@ -24,7 +24,7 @@ float monitor_scale() {
   return std::clamp(std::max(x, y), 1.0f, 4.0f);
 }
 
-/// Returns the usable area of the main display; none if the desktop does not report this area.
+/// Returns the usable area of the main display; empty if the desktop does not report the area.
 std::optional<ScreenSize> monitor_room() {
   int x = 0, y = 0;
   ScreenSize room{0, 0};

@@ -92,7 +92,7 @@ void FrameLoop::lay_out(Frame& frame) {
   imgui_.end();
 
   const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
-  // Frames at rest and photographed frames are always antialiased.
+  // Frames below the full rate and frames for screenshots are always antialiased.
   frame.smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed;
   PictureDigest canvas;
   canvas.add(content_.canvas_digest());
@@ -138,7 +138,7 @@ void FrameLoop::draw_part(const Frame& frame, const Box& part) {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const ImVec4 ground = vector(content_.ground());
   glClearColor(ground.x, ground.y, ground.z, 1.0f);
-  // ImGui's back end enables the scissor test, which slows down the clearing of a whole buffer.
+  // The scissor test slows down the clearing of a whole buffer.
   part == frame.picture.window ? glDisable(GL_SCISSOR_TEST) : glEnable(GL_SCISSOR_TEST);
   glScissor(pixels(part.left), height - pixels(part.bottom), pixels(part.right - part.left),
             pixels(part.bottom - part.top));
@@ -161,7 +161,7 @@ void FrameLoop::show(const Frame& frame) {
   if (!frame.is_lively) rhythm_.took(drawn_s - frame.now_s);
   display_.show();
   on_screen_ = frame.picture;
-  // The report excludes frames at rest, whose rate is intentionally low.
+  // The report contains only frames at the full rate.
   if (frame.is_lively) frames_report_.add(frame.now_s - shown_s_, drawn_s - frame.now_s, content_.pose_age_s());
   shown_s_ = frame.now_s;
 }

@@ -45,7 +45,7 @@ void set_up_keys() {
 
 void note_tap(KeyTaps& taps, int key) {
   taps.note(key);
-  // The modifier keys are also recorded, because the user may release them before the next frame.
+  // The modifier keys are also recorded, because the user may release the keys before the next frame.
   const bool* down = ImGui::GetIO().KeysDown;
   for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
                              GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
@@ -66,7 +66,7 @@ void apply_keys(KeyTaps& taps) {
 }  // namespace
 
 KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
-  // Hides the window's callback from the back end, which would otherwise receive every key.
+  // Hides the window's callback from the back end. Otherwise the back end would receive every key.
   const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   glfwSetKeyCallback(window_, callback);

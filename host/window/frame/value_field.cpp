@@ -43,7 +43,7 @@ void draw_ground(ImVec2 corner, ImVec2 end, float part, bool is_typed_in, const 
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  // The line is at the bottom, because it must not cross the number.
+  // The line is at the bottom and does not cross the number.
   list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
 }
 

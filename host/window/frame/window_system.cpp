@@ -38,7 +38,7 @@ bool start_window_system() {
   std::array order{GLFW_PLATFORM_X11, GLFW_PLATFORM_WAYLAND};
   if (prefers_wayland()) std::swap(order[0], order[1]);
   for (const int platform : order) {
-    // Without this variable, the Wayland library might connect to the session of a different desktop.
+    // Without WAYLAND_DISPLAY, the Wayland library might connect to the session of a different desktop.
     if (platform == GLFW_PLATFORM_WAYLAND && variable("WAYLAND_DISPLAY").empty()) continue;
     if (glfwPlatformSupported(platform) != GLFW_TRUE) continue;
     glfwInitHint(GLFW_PLATFORM, platform);

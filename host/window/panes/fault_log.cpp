@@ -15,7 +15,8 @@ using Phase = LoggedFault::Phase;
 /// fault may never be reached.
 constexpr int patience_answers = 8;
 
-/// True for a fault that may stop the control interrupt. The period count is then too low until the firmware restarts.
+/// True if the fault may stop the control interrupt. A stopped control interrupt does not count periods until the
+/// firmware restarts.
 bool stops_the_count(const device::PutInFault& put_in) {
   const auto fault = protocol::find_injection(put_in.fault);
   if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts continue

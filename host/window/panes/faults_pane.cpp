@@ -1,4 +1,4 @@
-// The pane that injects faults into a virtual board and shows the faults that the firmware detects.
+// The pane injects faults into a virtual board and shows the faults that the firmware detects.
 #include <algorithm>
 #include <memory>
 #include <optional>

@@ -1,4 +1,4 @@
-// The pane that runs a guide and shows its step, measured values and results.
+// The pane runs a guide, and shows the current step, the measured values and the results.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -61,7 +61,7 @@ class GuidesPane final : public Pane {
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
   void draw_what_lasts(const Style& style) const;
-  /// Draws one line per proposal, with a tooltip that shows the reason of the proposal.
+  /// Draws one line per proposal. The tooltip shows the reason for the proposal.
   void draw_proposals(const Style& style);
   void draw_curves(const Style& style);
   void draw_buttons(const Style& style);
@@ -217,7 +217,7 @@ void GuidesPane::draw_checks(const Style& style) {
     right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
                0.42f * width);
     if (check.expected.empty()) continue;
-    // Words show the result in addition to the color.
+    // The text shows the result in addition to the color.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
          fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
   }
@@ -230,7 +230,7 @@ void GuidesPane::draw_result(const Style& style) {
                applied ? "Finished. The device uses the proposed values." : guide_->outcome());
   if (applied) draw_what_lasts(style);
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
-  // Decisions are drawn first, followed by the curves and the log of the measurement.
+  // Proposals are drawn first, followed by the curves and the log of the measurement.
   if (guide_->phase() == Phase::finished && !guide_->findings().proposals.empty()) draw_proposals(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});

@@ -1,5 +1,5 @@
-// The pane that lists events with UTC time and board time. The events are from the replayed recording, or from the
-// device since the window was opened.
+// The pane lists events with UTC time and board time. A replay shows the events of the recording. Without a replay, the
+// pane shows the device's events since the window was opened.
 #include <algorithm>
 #include <array>
 #include <filesystem>

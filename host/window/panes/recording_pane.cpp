@@ -1,4 +1,4 @@
-// The pane that records signals with marks, and opens a recording for replay.
+// The pane records signals and marks, and opens recordings for replay.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -40,7 +40,7 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
   right_text(colour, value, 0.55f * width);
 }
 
-/// Returns the time until the disk is full, as a text; empty while the time is unknown.
+/// Returns a text with the time until the disk is full; empty while the time is unknown.
 std::string time_left(const RecorderStatus& status) {
   if (status.duration_s < 1 || status.bytes == 0) return {};
   const double left_s =
@@ -95,7 +95,7 @@ class RecordingPane final : public Pane {
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
   bool force_is_on() const { return protocol::force_is_on(desk_.view().state()); }
-  /// Asks for the permission to switch the force off before a replay.
+  /// Before a replay, asks the user for permission to switch the force off.
   void draw_question(const Style& style);
 
   DeviceDesk& desk_;

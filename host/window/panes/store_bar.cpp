@@ -44,7 +44,7 @@ struct Question {
   bool is_grave;
 };
 
-/// Draws the open question. The question closes when the device is disconnected.
+/// Draws the confirmation dialog, if open. The dialog closes when the device is disconnected.
 Answer draw_question(const Question& question, bool has_device, const Style& style) {
   const Palette& palette = *style.palette;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});

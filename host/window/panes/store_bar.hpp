@@ -1,4 +1,4 @@
-// State of the stored values, and the buttons that store, restore and erase them.
+// State of the stored values, and the buttons Store, Restore and Factory reset.
 #pragma once
 
 #include <string>

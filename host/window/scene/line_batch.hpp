@@ -20,7 +20,7 @@ class LineBatch {
 
   /// Adds a line between two points in view space. The color and its alpha are interpolated.
   void add(glm::vec3 from, glm::vec3 to, glm::vec4 from_colour, glm::vec4 to_colour, float width_pixels);
-  /// Draws the lines in the order of their addition and clears the batch.
+  /// Draws the lines in the order of addition, and clears the batch.
   void draw(const glm::mat4& to_clip, glm::vec2 viewport_pixels);
 
  private:

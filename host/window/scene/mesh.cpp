@@ -67,7 +67,7 @@ Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_arou
   for (int step = 0; step <= steps; ++step) {
     const float part = static_cast<float>(step) / static_cast<float>(steps);
     const float angle = 2.0f * pi * static_cast<float>(turns) * part;
-    // The coil radius decreases to zero at both ends of the spring.
+    // The coil radius decreases to zero at each end of the spring.
     const float radius = std::min({1.0f, part * 8.0f, (1.0f - part) * 8.0f});
     const glm::vec3 outward{std::cos(angle), std::sin(angle), 0.0f};
     for (int i = 0; i <= segments_around; ++i) {

@@ -25,13 +25,13 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws into a part of the window's framebuffer, whose depth and stencil buffers have been cleared.
+  /// Draws into a part of the window's framebuffer. The depth and stencil buffers of this part must be clear.
   void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
             const Viewport& viewport);
 
  private:
   void show_target(const Viewport& viewport) const;
-  /// Returns false if the target already has this size and its picture is still valid.
+  /// Returns false if the target has this size and a valid picture.
   bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;

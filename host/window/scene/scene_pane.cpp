@@ -202,7 +202,7 @@ void ScenePane::note_handles() const {
                on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
 }
 
-// Draws the label below the proxy, with a tooltip.
+// Draws the label below the proxy. The label has a tooltip.
 void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
   const glm::vec2 proxy = to_glm(on_screen(scene_.proxy_m));
   const float radius =

@@ -1,4 +1,4 @@
-// Shaders of the scene, which must also be fast on a CPU without a graphics card.
+// Shaders of the scene. The shaders must be fast on a CPU without a graphics card.
 #pragma once
 
 namespace inkwell::window::shaders {
@@ -84,7 +84,7 @@ void main() {
   gl_Position = to_clip * vec4(corner + part.x * edge_u + part.y * edge_v, 1.0);
 })";
 
-/// Draws the surface of a wall, with a glow around the contact point.
+/// Draws the surface of a wall, including a glow around the contact point.
 inline constexpr char wall_fragment[] = R"(#version 330 core
 in vec2 place;
 uniform vec4 base_colour;
@@ -97,7 +97,7 @@ void main() {
   colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
 
-/// Draws lines as bands, which are already in clip space. The distance across a band is in pixels and is therefore
+/// Draws lines as bands. The vertices are in clip space. The distance across a band is in pixels and is therefore
 /// interpolated without perspective correction.
 inline constexpr char line_vertex[] = R"(#version 330 core
 layout(location = 0) in vec4 place;

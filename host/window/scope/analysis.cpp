@@ -65,8 +65,7 @@ Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t
 
   Spectrum result{static_cast<double>(protocol::servo_rate_Hz) / static_cast<double>(count), {}};
   result.amplitudes.reserve(count / 2 + 1);
-  // A factor of 2 accounts for the unused half of the spectrum. Another factor of 2 accounts for the mean of the Hann
-  // window.
+  // The unused half of the spectrum and the mean of the Hann window each require a factor of 2.
   const double scale = 4.0 / static_cast<double>(count);
   for (std::uint64_t i = 0; i <= count / 2; ++i)
     result.amplitudes.push_back(scale * std::hypot(output[i][0], output[i][1]));

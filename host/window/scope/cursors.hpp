@@ -19,7 +19,7 @@ class Cursors {
   void draw(const PlotArea& area, const Style& style);
   /// Moves the first (0) or second (1) cursor by `steps` percent of the span.
   void step(std::size_t cursor, int steps);
-  /// True while the user drags a cursor. The plot then cannot be dragged.
+  /// True while the user drags a cursor. A cursor drag disables plot dragging.
   bool is_dragged() const { return dragged_ >= 0; }
 
   /// Returns the values of a signal at both cursors; NaN if a value is unknown.

@@ -1,4 +1,4 @@
-// Menu that selects the layout of the scope, and saves, renames and deletes user layouts.
+// The menu selects the layout of the scope. The user can also save, rename and delete layouts.
 #pragma once
 
 #include <cstdint>

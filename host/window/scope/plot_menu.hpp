@@ -1,4 +1,4 @@
-// The menu that selects the type and the signals of a plot.
+// The menu selects the type and the signals of a plot.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Views that draw the plots of the scope. Each plot type has a view class.
+// Views of the plots in the scope. Each plot type has a view class.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ScopeFrame {
   bool& has_motion;          ///< set to true if a signal leaves its range, but not for scrolling
 };
 
-/// View of a plot, with state that persists between frames.
+/// View of a plot. The state persists between frames.
 class PlotView {
  public:
   explicit PlotView(ScopePlot plot) : plot_(std::move(plot)) {}
@@ -36,7 +36,7 @@ class PlotView {
 
   /// Returns the height of the statistics above the plot.
   virtual float numbers_height(const ScopeFrame&) const { return 0.0f; }
-  /// Draws the plot into the area and determines its axis ranges. The last ImGui item must cover the area.
+  /// Draws the plot into the area and determines the axis ranges. The last ImGui item must cover the area.
   virtual void draw(PlotArea area, ScopeFrame& frame) = 0;
 
  protected:

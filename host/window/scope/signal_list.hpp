@@ -23,7 +23,8 @@ class SignalList {
   bool is_shown() const { return is_shown_; }
   void toggle() { is_shown_ = !is_shown_; }
 
-  /// Draws the visible list to the left of the next item, and the open formula dialog.
+  /// Draws the list to the left of the next item, unless the list is hidden. Draws the formula dialog if the dialog is
+  /// open.
   void draw(ScopeLayout& layout, const Style& style);
 
  private:

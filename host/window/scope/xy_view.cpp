@@ -1,4 +1,4 @@
-// View that plots all other signals over the first signal.
+// Plots the first signal on the x axis and all other signals on the y axis.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,7 +35,7 @@ class XyView final : public PlotView {
   }
 
  private:
-  /// Draws the signals of one source. `over`: the overlaid recording, in paler colors.
+  /// Draws the signals of a source. `over`: the overlaid recording, in paler colors.
   void draw_lane(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame, bool over, std::uint64_t first,
                  std::uint64_t last) const {
     const SignalHistory& history = frame.timeline.history();

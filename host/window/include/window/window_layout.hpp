@@ -1,4 +1,4 @@
-// Layout of the window: bars at the top, scene and scope on the left, pane column on the right.
+// Layout of the window. Bars are at the top, scene and scope are on the left, and the pane column is on the right.
 #pragma once
 
 #include <imgui.h>

@@ -23,8 +23,8 @@ struct ReplayRequest {
 };
 
 struct WindowOptions {
-  /// Lists the available arms. Mandatory. Called from other threads about once per second while no device is connected
-  /// or the device list is open. The window shows the message of a thrown device::Error.
+  /// Lists the available arms. Mandatory. Called from background threads about once per second while no device is
+  /// connected or the device list is open. The window shows the message of a thrown device::Error.
   std::function<std::vector<device::Endpoint>()> list_devices;
   /// Connects only to the arm with this serial number. If the serial number is empty, the user chooses between several
   /// arms.
@@ -40,7 +40,7 @@ struct WindowOptions {
   /// parameters.
   std::optional<protocol::ParameterSet> simulated_arm;
 
-  /// Image for boards that run different firmware; empty: none. `board` is the address of the board. An empty serial
+  /// Firmware image for updates; empty: no updates are offered. `board` is the address of the board. An empty serial
   /// number selects the chosen board.
   std::filesystem::path firmware;
   device::Address board;

@@ -11,8 +11,7 @@
 
 namespace inkwell::window {
 
-/// A message across the whole window about a fault, force during a replay, another driver, a hot motor, or different
-/// firmware.
+/// The banner reports a fault, force during a replay, a different driver, a hot motor, or different firmware.
 enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
 
 struct Banner {

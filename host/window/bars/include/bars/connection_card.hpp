@@ -1,4 +1,4 @@
-// The card that shows the state of the connection.
+// The card for the connection state.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace inkwell::window {
 const char* connection_title(const device::SessionStatus& status);
 Colour connection_colour(device::Connection connection, const Palette& palette);
 
-/// Offer to start a virtual board if no device is connected.
+/// Offers a virtual board while no device is connected.
 struct VirtualBoardOffer {
   bool is_made;
   const std::string& problem;  ///< error of the last start of a virtual board; empty: no error

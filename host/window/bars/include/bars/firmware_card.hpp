@@ -11,7 +11,7 @@ struct FirmwareCardOutcome {
   bool update = false, dismiss = false;
 };
 
-/// True while an update has progress or a result to show, or while a board is in its boot loader.
+/// True if the card has to show an update, an update result, or a board in boot loader mode.
 bool has_firmware_card(const FirmwareUpdater::Sight& sight, const DeviceView& view);
 /// Draws the state of the update on the card.
 FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater::Sight& sight);

@@ -20,7 +20,7 @@ class FirmwareUpdater {
  public:
   /// `asks`: the board's firmware is newer. A second call of begin() permits the downgrade.
   enum class Phase : std::uint8_t { idle, runs, awaits_consent, failed, done };
-  /// State of the updater in one frame.
+  /// State of the updater during a frame.
   struct Sight {
     Phase phase = Phase::idle;
     std::string message{};  ///< step, question, error, or the new firmware version
@@ -31,8 +31,8 @@ class FirmwareUpdater {
     std::string version{};  ///< version of the image; empty: no image
   };
 
-  /// Boards that do not report their name receive `image`, which is read again for each update. `address` is the
-  /// address of the board.
+  /// Boards without a reported name receive `image`. The file is read again for each update. `address` is the address
+  /// of the board.
   FirmwareUpdater(std::filesystem::path image, device::Address address);
   /// Waits for the end of a running update, because an interrupted update leaves incomplete firmware on the board.
   ~FirmwareUpdater() = default;
@@ -42,7 +42,7 @@ class FirmwareUpdater {
   /// Call once per frame with the name of the connected board. The updater stores the name, because a board with
   /// incomplete firmware does not report its name.
   void meet(const std::string& board_name);
-  /// Starts an update unless one is running. An empty `serial_number` selects the only board.
+  /// Starts an update, unless an update is running. An empty `serial_number` selects the only board.
   void begin(const std::string& serial_number);
   /// Closes the message.
   void dismiss();

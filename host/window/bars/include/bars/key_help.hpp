@@ -1,4 +1,4 @@
-// The page that lists all keys and mouse actions.
+// The page with all keys and mouse actions.
 #pragma once
 
 #include <frame/style.hpp>

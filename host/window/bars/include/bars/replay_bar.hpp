@@ -1,4 +1,4 @@
-// The replayed recording and the bar that controls the replay.
+// The replayed recording, and the bar with the replay controls.
 #pragma once
 
 #include <filesystem>
@@ -38,7 +38,7 @@ class ReplayBar {
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
 
-  /// Draws the bar and handles its buttons. The button Close closes the recording.
+  /// Draws the bar and handles the buttons. The button Close closes the recording.
   void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:

@@ -1,4 +1,4 @@
-// The card that compares the parameter values before and after a reconnection.
+// The card compares the parameter values before and after a reconnection.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Device access of the window: the chosen device and its data in the current frame.
+// Access to the chosen device, and the device data for the current frame.
 #pragma once
 
 #include <atomic>
@@ -42,16 +42,16 @@ class DeviceDesk {
   /// Returns the current pose, which may be newer than the view. Empty while not connected.
   std::optional<device::Pose> newest_pose() const { return session_->newest_pose(); }
 
-  /// Requests another device, or any device if the serial number is empty. follow_choice() then connects to the device.
+  /// Requests a device for the next call of follow_choice(). An empty serial number requests any device.
   void choose(const std::string& serial_number) { choice_ = serial_number; }
   bool has_choice() const { return choice_.has_value(); }
-  /// Closes the session with the present device and connects to the chosen device.
+  /// Disconnects the current device and connects to the chosen device.
   void follow_choice();
   const std::string& wanted_serial_number() const { return wanted_; }
   /// Searches for devices continuously while `searching` is true.
   void keep_searching(bool searching) { is_searching_ = searching; }
 
-  /// Selects the streamed signals. The selection also applies to the next device.
+  /// Selects the streamed signals of the current device and of later devices.
   void select_signals(std::vector<protocol::Signal> signals);
   /// Events of the devices since the window was opened.
   const device::EventLog& events() const { return events_; }

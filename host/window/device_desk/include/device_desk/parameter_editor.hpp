@@ -29,7 +29,7 @@ class ParameterEditor {
   protocol::ParameterSet shown() const;
   bool differs_from_default(protocol::Parameter parameter) const;
 
-  /// All edits between begin_step() and end_step() form one undo step, such as the drag of a slider.
+  /// One undo step contains all edits between begin_step() and end_step(). Example: a slider drag.
   void begin_step(std::string title);
   void edit(std::span<const device::ParameterChange> changes, double now_s);
   void end_step();
@@ -43,7 +43,7 @@ class ParameterEditor {
   void undo(double now_s);
   void redo(double now_s);
 
-  /// Returns the changes to be sent as one transaction; empty if there are none.
+  /// Returns the changes for the next transaction; empty if there are no changes.
   std::vector<device::ParameterChange> take_changes();
 
  private:

@@ -1,4 +1,4 @@
-// Parameter values that differ after a reconnection, until the user accepts or restores these values.
+// Parameter values before and after a reconnection. If the values differ, the user decides which values are used.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ class ReturnedValues {
 
   /// Call once per frame.
   void follow(const DeviceView& view, double now_s);
-  /// True while the card is shown. Equal values are shown for a few seconds, and different values until the user
-  /// decides or the values change.
+  /// True while the card is shown. If the values are equal, the card closes after a few seconds. Otherwise the card
+  /// remains until the user decides or the values change.
   bool is_shown() const { return is_shown_; }
   /// True while the user has to decide which values are used.
   bool waits_for_user() const { return is_shown_ && !rows_.empty(); }

@@ -14,7 +14,7 @@ std::vector<protocol::Parameter> not_stored(const DeviceView& view);
 /// Returns a title: "3 values are not stored", "All values are stored" or "All values are defaults".
 std::string stored_title(const DeviceView& view);
 
-/// Returns why the board currently refuses to store or erase values, and the remedy; empty: no refusal.
+/// Returns the reason why the board refuses to store or erase values, and the remedy; empty: no refusal.
 std::string why_storing_waits(const DeviceView& view);
 
 }  // namespace inkwell::window

@@ -47,14 +47,14 @@ class Display {
   void close();
   void take_events();                      ///< processes the events of the user and the window system
   void wait_for_events(double at_most_s);  ///< waits for events and processes them
-  /// Makes `wait_for_events` return. Any thread may call this.
+  /// Makes `wait_for_events` return. May be called from any thread.
   static void wake();
   /// Shows the drawn picture on the screen.
   void show();
 
   /// True if there was an event since the last call.
   bool take_input() { return std::exchange(had_input_, false); }
-  /// True if the screen has lost the picture, which must then be redrawn.
+  /// True if the window lost its content, so that the picture must be redrawn.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
   /// Sets the function that receives every key event of the window.

@@ -1,4 +1,4 @@
-// Shortens labels that do not fit.
+// Shortens labels to the available width.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace inkwell::window {
 
-/// Returns the text, or its longest prefix that fits with an ellipsis; empty if no prefix fits. `width_of` returns the
-/// width of a text. UTF-8 characters of the text are not split.
+/// Returns the text if its width is at most `room`. Otherwise returns the longest possible prefix with an ellipsis, or
+/// an empty text. `width_of` returns the width of a text. UTF-8 characters of the text are not split.
 std::string with_ellipsis(std::string_view text, float room, const std::function<float(std::string_view)>& width_of);
 
 }  // namespace inkwell::window

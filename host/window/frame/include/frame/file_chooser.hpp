@@ -1,4 +1,4 @@
-// The window's file dialog, with a typed path and a confirmation before a file is replaced.
+// The window's file dialog. The user can type a path, and must confirm the replacement of a file.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct FileQuestion {
 class FileChooser {
  public:
   void ask(FileQuestion question);
-  /// Draws the dialog while it is open. Returns the chosen file once.
+  /// Draws the dialog if the dialog is open. The first call after the user's choice returns the file.
   std::optional<std::filesystem::path> draw(const Style& style);
 
  private:

@@ -1,4 +1,4 @@
-// Layout of items in rows, which wrap in a narrow window or with large text.
+// Layout of items in rows. The rows wrap in a narrow window or with large text.
 #pragma once
 
 #include <span>

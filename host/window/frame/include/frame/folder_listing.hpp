@@ -24,7 +24,7 @@ struct FolderListing {
   std::string problem;               ///< reason why the folder could not be read; empty on success
 };
 
-/// Lists the folders and the files with one of these endings, such as ".toml". Without endings, all files are listed.
+/// Lists all folders, and the files with the extensions in `endings`. If `endings` is empty, lists all files.
 FolderListing list_folder(const std::filesystem::path& folder, std::span<const std::string> endings);
 
 /// Converts typed text to a path. The path is relative to the folder unless the text starts with "/" or "~/".

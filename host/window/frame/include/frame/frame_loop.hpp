@@ -1,4 +1,4 @@
-// The main loop of the window, which lays out and draws frames when necessary.
+// The main loop of the window. Lays out and draws frames when necessary.
 #pragma once
 
 #include <cstdint>
@@ -36,29 +36,29 @@ class FrameContent {
 
   /// Handles a key event, independent of the focus.
   virtual void key(const KeyEvent& event) = 0;
-  /// True if the content has changed visibly since the last frame. The function must be fast, because the loop at rest
-  /// calls it often.
+  /// True if the content has changed visibly since the last frame. The function must be fast, because the idle loop
+  /// calls the function 60 times per second.
   virtual bool needs_frame() const = 0;
 
   /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;
-  /// True if the laid-out frame contains motion, which needs the full frame rate.
+  /// True if the laid-out frame contains motion and needs the full frame rate.
   virtual bool is_moving() const = 0;
   /// True if the loop must stop.
   virtual bool is_over() const { return false; }
   /// Area of the scene, in screen coordinates.
   virtual Box canvas() const = 0;
-  /// Digest of the laid-out scene: equal digests mean equal pictures.
+  /// Digest of the laid-out scene. Equal digests mean equal pictures.
   virtual std::uint64_t canvas_digest() const = 0;
 
   /// Background color of the panes.
   virtual Colour ground() const = 0;
-  /// Paints the scene below the panes. The depth and stencil buffers of the scene area are already clear.
+  /// Paints the scene behind the panes. The depth and stencil buffers of the scene area are already clear.
   virtual void paint(const Canvas& canvas) = 0;
 
   /// Returns the state of the laid-out frame for an inspection.
   virtual nlohmann::json inspect() const = 0;
-  /// Board time between the pose of this frame and the newest received pose; none if no pose is shown.
+  /// Board time between the pose of this frame and the newest received pose; empty if no pose is shown.
   virtual std::optional<double> pose_age_s() const = 0;
 };
 
@@ -69,8 +69,8 @@ struct FrameLoopOptions {
   bool frames_report = false;        ///< print the measured frame rate at exit
 };
 
-/// After this call, SIGINT, SIGTERM and SIGHUP stop the loop, as the close button does. The program then switches the
-/// force off, restores trial parameters and saves the settings.
+/// After this call, SIGINT, SIGTERM and SIGHUP close the window. When the window closes, the program switches the force
+/// off, restores trial parameters and saves the settings.
 void end_loop_at_signals();
 
 class FrameLoop {

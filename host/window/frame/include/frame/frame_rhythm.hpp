@@ -13,11 +13,11 @@ struct FrameEvidence {
 
 class FrameRhythm {
  public:
-  /// True if a frame must be laid out now. `something_happened`: input, or a moving device.
+  /// True if a frame must be laid out now. `something_happened`: there was input, or the device moves.
   bool is_due(bool something_happened, double now_s) const;
   /// True if the laid-out frame must be drawn.
   bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
-  /// Records the drawing time of a frame at rest. Slow drawing reduces the rate at rest.
+  /// Records the drawing time of a frame below the full rate. Slow drawing reduces the rate of these frames further.
   void took(double drawing_s);
   /// True while frames are drawn at the full rate.
   bool is_lively(double now_s) const { return now_s < lively_until_s_; }

@@ -14,7 +14,7 @@
 
 namespace inkwell::window {
 
-// Record the last drawn item with the name of its pane, such as "status/STOP". Without an inspection, the functions do
+// Record the last drawn item under a name with the pane, such as "status/STOP". Without an inspection, the functions do
 // nothing.
 void note_item(std::string_view name);
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum);
@@ -28,11 +28,11 @@ class Inspection {
   Inspection(const Inspection&) = delete;
   Inspection& operator=(const Inspection&) = delete;
 
-  /// True if the next frame must be drawn, because it answers a request.
+  /// True if the next frame must be drawn for the answer to a request.
   bool is_asked();
   /// True if a picture was requested.
   bool wants_picture() const;
-  /// Starts recording items and texts. `origin`: corner of the window on the screen, which is added to all positions.
+  /// Starts recording items and texts. `origin`: screen position of the window. The origin is added to all positions.
   void begin_frame(ImVec2 origin);
   /// Answers the requests that arrived before the frame. The bound framebuffer contains the frame. `more` is added to
   /// the answer to `look`. Returns false if the window must be closed.

@@ -8,7 +8,7 @@ struct GLFWwindow;
 
 namespace inkwell::window {
 
-/// ImGui's GLFW back end, which receives only the keys that this class passes.
+/// ImGui's GLFW back end with filtered key events.
 class KeyFeed {
  public:
   /// Starts the back end. The ImGui context must exist, and the window's callbacks must be set.

@@ -8,8 +8,8 @@ namespace inkwell::window {
 /// The GLFW key of each letter from a to z.
 using KeyLetters = std::array<int, 26>;
 
-/// Returns the keys of the current layout. `name_of(key)` returns the character of a key, or null. A letter without a
-/// key, as on a Greek keyboard, has its American key.
+/// Returns the keys of the current layout. `name_of(key)` returns the character of a key, or null. If no key has the
+/// letter (Greek keyboard), the American key is used.
 template <class NameOf>
 KeyLetters key_letters(const NameOf& name_of) {
   constexpr int key_a = 'A', key_z = 'Z';         // GLFW_KEY_A to GLFW_KEY_Z

@@ -18,7 +18,7 @@ namespace inkwell::window {
 /// receives the focus. The focus does not move while a dialog or menu is open.
 class KeyboardTour {
  public:
-  /// Moves the focus to the pane with this name in the next frame. "" does not change the focus.
+  /// Moves the focus to the pane with this name in the next frame. An empty name does not change the focus.
   void go_to(std::string part) { wanted_ = std::move(part); }
   /// Moves the focus to the next pane in the next frame.
   void go_on(bool backwards) { steps_ += backwards ? -1 : 1; }
@@ -51,7 +51,7 @@ KeySteps key_steps_in_part(KeyModifiers modifiers);
 /// Prevents arrow keys with a modifier from moving the focus. Call between ImGui::NewFrame() and the first pane.
 void keep_modified_arrows();
 
-/// Lets Page Up and Page Down scroll the current child window, which has no focusable items.
+/// Lets Page Up and Page Down scroll a child window without focusable items.
 void scroll_by_page_keys();
 
 }  // namespace inkwell::window

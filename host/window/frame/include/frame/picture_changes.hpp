@@ -1,4 +1,5 @@
-// Finds the differences between two pictures, because drawing the whole window is slow without a graphics card.
+// Finds the differences between two pictures. Only the differences are drawn, because drawing is slow without a
+// graphics card.
 #pragma once
 
 #include <cstdint>

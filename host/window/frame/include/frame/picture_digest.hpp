@@ -1,4 +1,4 @@
-// A digest that is equal for equal pictures, computed without drawing.
+// A digest of a picture, computed without drawing. Equal pictures have equal digests.
 #pragma once
 
 #include <cstddef>

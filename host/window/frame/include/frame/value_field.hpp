@@ -1,4 +1,4 @@
-// A field for a number. Typed text has no effect before its confirmation.
+// A field for a number. Typed text has no effect until the user confirms the text.
 #pragma once
 
 #include <optional>

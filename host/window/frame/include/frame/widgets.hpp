@@ -34,7 +34,7 @@ void help_on_hover(std::string_view title, std::string_view help, const Style& s
 
 /// An ImGui button. This widget and all following widgets have names for inspections.
 bool button(const char* label, ImVec2 size = {0, 0});
-/// A button whose background is visible only while the mouse hovers over the button.
+/// A button without a background, except while the mouse hovers over the button.
 bool quiet_button(const char* label, const Style& style);
 /// A button in a custom color, such as the stop button.
 bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size);

@@ -10,10 +10,10 @@ struct ScreenSize {
   bool operator==(const ScreenSize&) const = default;
 };
 
-/// Smallest size without overlapping parts. A point is 1/96 inch.
+/// Smallest size without overlapping panes. A point is 1/96 inch.
 inline constexpr ScreenSize smallest_window_points{900, 560};
 
-/// Returns `scale`, or the largest scale of at least 1 that fits the smallest window onto the display.
+/// Returns `scale`, reduced if the display is too small for the smallest window. A reduced scale is at least 1.
 float fitting_scale(float scale, std::optional<ScreenSize> room);
 
 /// Converts a window size from points to pixels. `room`: usable area of the display, if known.

@@ -34,9 +34,9 @@ class BoardFaults {
   void heal(const std::string& fault, const std::string& of);
   void heal_all();
 
-  /// Returns all news since the last call. A newer answer replaces a directly preceding answer.
+  /// Returns answers and errors since the last call. Of consecutive answers, only the newest answer is returned.
   std::vector<News> take_news();
-  /// True if the news contains more than a repetition of the last answer.
+  /// True if there is an error, or an answer that differs from the last answer.
   bool has_changed() const;
 
  private:

@@ -1,4 +1,4 @@
-// Search for faults, conversion of typed fields to a request, and texts about faults.
+// Search for faults, conversion of input fields to a request, and texts about faults.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ std::string_view obstacle(const device::SessionStatus& status, bool knows_contro
 /// Returns a title such as "Bridge legs".
 std::string_view title_of(protocol::InjectionPart part);
 
-/// True if each word of the search occurs in the fault's name, part or help, ignoring case. An empty search matches
-/// every fault.
+/// True if each word of the search occurs in the fault's name, part or help. The search ignores case. An empty search
+/// matches every fault.
 bool is_found(const protocol::InjectionInfo& row, std::string_view search);
 
 /// Returns the names of all wires into which faults can be injected.

@@ -14,7 +14,7 @@ struct LoggedFault {
   enum class Phase : std::uint8_t { to_come, in, over };
   struct Noticed {
     protocol::Fault fault;
-    /// Board time from the start of the injected fault to the end of the detecting control period; empty if unknown.
+    /// Board time from the start of the injected fault to the detection; empty if unknown.
     std::optional<double> after_s;
   };
 
@@ -25,10 +25,10 @@ struct LoggedFault {
 
 class FaultLog {
  public:
-  /// Number of past faults in the log.
+  /// Maximum number of past faults in the log.
   static constexpr std::size_t over_maximum = 4;
 
-  /// Adds an injected fault, which the next answer of the board may no longer contain.
+  /// Adds an injected fault. The next answer of the board may not contain a short fault.
   void add(const device::PutInFault& put_in);
   /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
   /// the log is cleared.

@@ -2,14 +2,14 @@
 #pragma once
 
 // To add a pane:
-// 1. Write host/window/panes/NAME_pane.cpp with a class derived from Pane and the function NAME_pane(), which creates
-//    the pane. title() is the text of the tab.
-// 2. Add the line PANE(NAME_pane) to host/window/panes/registry.cpp.
-// 3. Return the displayed signals from shown_signals(). follow() receives the samples of all streamed signals, in the
-//    order of ScopeSamples::signals. Override stream() only if the pane needs the stream exclusively.
-// 4. Put code that needs no display into the library inkwell_window_panes_parts, with tests in
-//    tests/host/window/panes.
-// 5. Add a system test to tests/system and a picture to tests/system/pictures.cpp.
+// (1) Write host/window/panes/NAME_pane.cpp. The file defines a class derived from Pane and the function NAME_pane(),
+//     which creates the pane. The function title() returns the text of the tab.
+// (2) Add the line PANE(NAME_pane) to host/window/panes/registry.cpp.
+// (3) Return the displayed signals from shown_signals(). The function follow() receives the samples of all streamed
+//     signals, in the order of ScopeSamples::signals. Override stream() only if the pane needs the stream exclusively.
+// (4) Put code that needs no display into the library inkwell_window_panes_parts. Put the tests of this code into
+// tests/host/window/panes.
+// (5) Add a system test to tests/system and a picture to tests/system/pictures.cpp.
 
 #include <cstdint>
 #include <filesystem>
@@ -32,7 +32,7 @@ namespace inkwell::window {
 /// Constructor argument of a pane. All referenced objects outlive the pane.
 struct PaneSurroundings {
   DeviceDesk& desk;
-  /// Path of the last loaded or saved parameter file, which the settings store.
+  /// Path of the last loaded or saved parameter file. The path is saved in the settings.
   std::filesystem::path& parameters_file;
   std::filesystem::path parameters_to_send;  ///< file that is sent once a device is connected; empty: none
   /// Control socket of the virtual board; empty for a real device.
@@ -42,7 +42,7 @@ struct PaneSurroundings {
   /// Starts the replay of a recording. Throws device::Error if the recording cannot be read.
   std::function<void(const std::filesystem::path&)> replay;
   bool starts_with_replay = false;
-  /// Returns the replayed recording; null if none is open.
+  /// Returns the replayed recording; null if no recording is open.
   std::function<const recording::Recording*()> replayed;
   /// Moves the replay to a time in seconds after the first sample.
   std::function<void(double)> seek;
@@ -83,14 +83,14 @@ class Pane {
   /// Stops all device actions of the pane. Called when the user stops the force or changes the device.
   virtual void cancel() {}
 
-  /// Returns signals that are streamed in addition to the scope's signals while the pane is shown and no pane reserves
-  /// the stream. PaneNews contains the samples.
+  /// Returns additional signals for the scope stream while the pane is shown. The signals are not streamed if a pane
+  /// has reserved the stream. PaneNews contains the samples.
   virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
   /// Reserves the scope stream, for example during a guide or a recording.
   virtual PaneStream stream() const { return {}; }
   /// Returns a short state text for the tab; empty if the pane is idle.
   virtual std::string running() const { return {}; }
-  /// True if values in the pane are not stored. The tab is then marked while another pane is shown.
+  /// True if values in the pane are not stored. The tab has a mark while the pane is not shown.
   virtual bool has_values_to_store() const { return false; }
   /// True if the content changes without input.
   virtual bool is_moving() const { return false; }

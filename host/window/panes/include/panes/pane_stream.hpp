@@ -14,7 +14,7 @@ struct PaneStream {
   bool feeds_scope = true;                ///< `signals` includes the signals of the scope
 };
 
-/// Appends the signals in `more` that `signals` does not contain, up to the size limit of a selection.
+/// Appends the missing signals of `more` to `signals`, up to the size limit of a selection.
 std::vector<protocol::Signal> joined(std::vector<protocol::Signal> signals, std::span<const protocol::Signal> more);
 
 }  // namespace inkwell::window

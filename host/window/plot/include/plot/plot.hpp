@@ -57,7 +57,7 @@ class Polyline {
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
                const std::string& y_unit, bool x_is_logarithm = false);
 
-/// Connects points, which are in axis units. NaN makes a gap.
+/// Draws a line through points in axis units. NaN interrupts the line.
 void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pair<double, double>> points,
                  Colour colour, const Style& style);
 

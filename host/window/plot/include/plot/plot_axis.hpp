@@ -23,15 +23,15 @@ std::vector<double> ticks(const AxisRange& range, int wanted);
 /// unknown unit.
 double extent_around_zero(std::string_view unit);
 
-/// Returns the smallest range that contains the data with a margin and whose bounds are round numbers. The range around
-/// a constant is a fifth of its value. The range for constant zero or missing data (NaN) is `around_zero`.
+/// Returns the smallest range with round bounds that contains the data and a margin. The range around a constant is a
+/// fifth of its value. The range for constant zero or missing data (NaN) is `around_zero`.
 AxisRange enclosing_range(double minimum, double maximum, double around_zero = 2.0);
 
 /// Formats a tick value with enough digits to distinguish adjacent ticks, such as "0.25", "1500", "2e-06".
 std::string tick_label(double value, double step);
 
-/// Axis range that grows immediately and shrinks after a delay, so that the axis does not jitter. The first change of a
-/// constant replaces its estimated range.
+/// Axis range. The range grows immediately and shrinks after a delay, so that the axis does not jitter. When a constant
+/// signal first changes, the measured range replaces the estimated range.
 class SteadyRange {
  public:
   explicit SteadyRange(double around_zero = 2.0) : around_zero_(around_zero) {}

@@ -29,7 +29,7 @@ struct Camera {
   float metres_per_pixel(glm::vec3 at_m, float view_height_pixels) const;
   /// Returns the ray through a pixel; (0,0) is the top left corner.
   Ray ray(glm::vec2 pixel, glm::vec2 view_size_pixels) const;
-  /// Projects a point to pixels. z is the depth, which is between 0 and 1 for visible points.
+  /// Projects a point to pixels. The depth z of visible points is between 0 and 1.
   glm::vec3 project(glm::vec3 point_m, glm::vec2 view_size_pixels) const;
 
   static constexpr float field_of_view_rad = 0.62f;

@@ -1,4 +1,4 @@
-// The pane that shows arm, sphere and walls, and handles the mouse.
+// The pane shows arm, sphere and walls, and handles the mouse.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// A signal that a formula computes from other signals, such as force_x_N - program_force_x_N.
+// A formula computes a new signal from device signals. Example: force_x_N - program_force_x_N.
 #pragma once
 
 #include <memory>

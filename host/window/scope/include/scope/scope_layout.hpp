@@ -4,10 +4,10 @@
 // To add a layout, add a row to built_in_layouts() in host/window/scope/scope_layout.cpp.
 //
 // To add a kind of plot:
-// 1. Add a value to PlotKind and update plot_kind_count.
-// 2. Write a PlotView in a file like host/window/scope/time_view.cpp. Add the file to CMakeLists.txt and the view
-//    to plot_view.hpp and to view_of() in plot_view.cpp.
-// 3. Add the names to host/window/scope/plot_menu.cpp and host/window/window_settings.cpp.
+// (1) Add a value to PlotKind and update plot_kind_count.
+// (2) Write a PlotView class in a new file. An example is host/window/scope/time_view.cpp. Add the file to
+//     CMakeLists.txt. Add the view to plot_view.hpp and to view_of() in plot_view.cpp.
+// (3) Add the names to host/window/scope/plot_menu.cpp and host/window/window_settings.cpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -83,10 +83,9 @@ const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
 
 /// Finds a device signal or a formula by name.
 std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas);
-/// Replaces the formula named `before` in the layout and its plots, or adds the new formula if no formula has this
-/// name.
+/// Replaces the formula named `before` in the layout and all plots. If no formula has this name, adds the new formula.
 void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before);
-/// Removes the formula from the layout and its plots, and then removes plots without signals.
+/// Removes the formula from the layout and all plots. Removes plots without signals.
 void remove_formula(ScopeLayout& layout, std::string_view name);
 /// Returns the formulas that the plots show, without repetitions.
 std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);

@@ -29,7 +29,7 @@ class ScopePane {
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
-  /// Clears the history before samples that do not continue the previous samples.
+  /// Clears the history. Call before samples that do not directly follow the previous samples.
   void restart() { timeline_.restart(); }
   double span_s() const { return timeline_.span_s(); }
 
@@ -37,11 +37,11 @@ class ScopePane {
   std::vector<protocol::Signal> signals() const;
   /// Returns the settings to save.
   ScopeSettings settings() const;
-  /// True if a signal has left its range since the last call. Scrolling does not count as motion.
+  /// True if a signal exceeded its previous range since the last call. Scrolling does not count as motion.
   bool take_motion() { return std::exchange(has_motion_, false); }
 
  private:
-  /// Creates the views of new plots. The views of unchanged plots remain.
+  /// Creates the views of new plots. Unchanged plots retain their views.
   void follow_layout();
   /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
   void take_keys();

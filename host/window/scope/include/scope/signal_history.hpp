@@ -1,6 +1,7 @@
-// The last minutes of the scope's signals, stored for fast drawing of any section. Each signal has a ring of samples,
-// and rings with the minimum and maximum of 16, 256, 4096... samples. The extremes of any section then need a few dozen
-// look-ups. The cost of a plot therefore depends on the number of pixels instead of the number of samples.
+// The last minutes of the scope's signals, stored for fast drawing of any section. Each signal has a ring buffer of
+// samples. Additional ring buffers contain the minimum and maximum of sample blocks. The block sizes are the powers of
+// 16. The extremes of a section need only a few dozen look-ups. The cost of a plot therefore depends on the number of
+// pixels instead of the number of samples.
 #pragma once
 
 #include <algorithm>
@@ -111,8 +112,8 @@ class SignalHistory {
   SignalLane shown_, over_;
 };
 
-/// Divides [first, last) into `columns` columns and returns the extremes of each column. The widths of the columns
-/// differ by at most a sixteenth. Each sample belongs to exactly one column.
+/// Divides [first, last) into `columns` columns and returns the extremes of each column. The column widths differ by at
+/// most one sample, or by at most 1/16 for wide columns. Each sample belongs to exactly one column.
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
 
 }  // namespace inkwell::window

@@ -28,7 +28,7 @@ class Timeline {
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
-  /// Clears the history before samples that do not continue the previous samples.
+  /// Clears the history. Call before samples that do not directly follow the previous samples.
   void restart();
   const SignalHistory& history() const { return history_; }
 
@@ -37,13 +37,13 @@ class Timeline {
 
   double span_s() const { return span_s_; }
   void set_span_s(double span_s) { span_s_ = span_s; }
-  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the point below the mouse does
-  /// not move. `right_part` is its distance from the right end as a fraction of the span.
+  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the sample at the mouse position
+  /// does not move. `right_part`: distance of the mouse from the right end, as a fraction of the span.
   void zoom(double steps, double right_part);
 
   bool is_paused() const { return paused_; }
   void pause(bool paused);
-  /// Pauses and moves the displayed section into the past by a fraction of the span, within the stored samples.
+  /// Pauses, and moves the displayed section by a fraction of the span. Positive values move into the past.
   void drag(double part);
 
   const TriggerSettings& trigger() const { return trigger_settings_; }

@@ -1,4 +1,4 @@
-// The scope's trigger, which finds the event for the alignment of the plots.
+// The scope's trigger. Finds the event at which the plots are aligned.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class Trigger {
   void arm();  ///< clears the event
   /// Examines the new samples of the series. `span` is the displayed number of samples.
   void advance(const SignalSeries& series, const TriggerSettings& settings, double span);
-  /// Returns the index of the last event with a complete span, if any.
+  /// Returns the index of the last event with a complete span; empty: no event.
   std::optional<std::uint64_t> event() const { return event_; }
 
  private:
