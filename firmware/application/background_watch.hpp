@@ -1,6 +1,6 @@
-// Checks in the main loop: memory, supplies and wires. None of these checks needs a reaction within one or two control
-// periods, and the control interrupt has no spare cycles. The CPU supply needs a faster reaction and has a separate
-// interrupt. The main loop only polls whether the CPU supply is still low.
+// Checks in the main loop: memory, supplies and wires. The control interrupt has no spare cycles for these checks. A
+// delay of two control periods is permitted. The CPU supply needs a faster reaction and has a separate interrupt. The
+// main loop only polls whether the CPU supply is still low.
 #pragma once
 
 #include <array>

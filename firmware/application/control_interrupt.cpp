@@ -1,4 +1,4 @@
-// The control interrupt, which reads the sensors and sets the bridges 20 000 times per second.
+// The control interrupt reads the sensors and sets the bridges 20 000 times per second.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/interrupts.hpp>
@@ -75,7 +75,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t last_round_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - last_round_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  // The hang record is requested once per stall, and not during start-up.
+  // The hang record is requested once per stall. During start-up the record is not requested.
   if (missed_periods == main_loop_stalled_periods + 1 && last_round_periods != first_period) [[unlikely]]
     drivers::CallAfterInterrupts::request();  // calls hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | condition(Fault::main_loop_stalled, main_loop_stalls) |

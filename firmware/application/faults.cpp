@@ -19,14 +19,14 @@ namespace {
 
 using protocol::CrashFacts;
 
-/// Registers that the handlers in this file save: r4 to r11 and the return value of the exception (EXC_RETURN).
+/// Saved registers: r4 to r11 and the return value of the exception (EXC_RETURN).
 struct SavedRegisters {
   std::uint32_t r4_to_r11[8];
   std::uint32_t exception_return;
 };
 
-/// Frame that the processor pushes on exception entry. If the floating-point registers were in use, space for these
-/// registers follows.
+/// Stack frame of an exception. If the floating-point registers were in use, space for these registers follows the
+/// frame.
 struct ExceptionFrame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12, link_register, program_counter, program_status;
@@ -41,8 +41,8 @@ std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_
          ((frame->program_status & was_aligned) != 0 ? 4 : 0);
 }
 
-/// Whether the address is in firmware code, directly after a BL instruction or a BLX instruction with a register
-/// (ARMv7-M, A7.7.18 and A7.7.19).
+/// Returns true if the address directly follows a call instruction in firmware code. Call instructions are BL, and BLX
+/// with a register (ARMv7-M, A7.7.18 and A7.7.19).
 bool is_after_call(std::uint32_t address) {
   const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
     return address >= address_of(begin) + 4 && address < address_of(end);

@@ -1,4 +1,4 @@
-// Functions that the processor calls.
+// Reset, fault and interrupt handlers.
 #pragma once
 
 namespace inkwell::application {
@@ -8,8 +8,8 @@ extern "C" {
 [[noreturn]] void reset_handler();
 /// Handles all faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void fault_handler();
-/// PendSV handler, which runs after all other interrupts. drivers::CallAfterInterrupts requests this handler. Records
-/// the code location of the main loop.
+/// PendSV handler. After all other interrupts, this handler records the code location of the main loop. The function
+/// drivers::CallAfterInterrupts::request() requests this handler.
 void hang_handler();
 /// Runs once per control period, at the end of the injected conversions.
 void control_interrupt();

@@ -5,7 +5,7 @@
 
 namespace inkwell::application {
 
-/// Time without a round of the main loop after which the control interrupt raises a fault.
+/// If the main loop completes no round within this time, the control interrupt raises a fault.
 inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
 /// Call this function once per round of the main loop. This function feeds the watchdog only if the control interrupt

@@ -10,7 +10,7 @@
 namespace inkwell::application {
 namespace {
 
-/// Only a few words per step, so that the main loop is not slowed down.
+/// Each step checks only a few words, so that the main loop is not slowed down.
 constexpr std::ptrdiff_t words_per_step = 4;
 
 /// Memory range that start-up copied.

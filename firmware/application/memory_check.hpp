@@ -6,10 +6,10 @@
 
 namespace inkwell::application {
 
-/// One round takes about 0.2 s and checks:
-/// - the image in flash, against the checksum that the build appends (tools/seal_image.py)
-/// - the copies from which interrupts run, against the image
-/// - the settings of the control interrupt, and the parameters from which new settings are computed
+/// One round takes about 0.2 s.
+/// The image in flash is compared with the checksum that the build appends (tools/seal_image.py).
+/// The copies from which interrupts run are compared with the image.
+/// The settings of the control interrupt and the parameters are compared with their checksums.
 class MemoryCheck {
  public:
   /// Runs the whole first round, because no motor may be driven if the memory is damaged. Returns false if a bit is

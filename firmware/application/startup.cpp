@@ -1,4 +1,4 @@
-// From reset to main(): floating-point unit, memory, constructors.
+// Start-up before main(): floating-point unit, memory, constructors.
 #include <algorithm>
 #include <cstring>
 

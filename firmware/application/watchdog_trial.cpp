@@ -17,8 +17,8 @@ struct Course {
 };
 
 [[gnu::section(".noinit")]] drivers::KeptOverReset<Course> kept_course;
-/// Time since the start of the watchdog, which is not fed during the trial. The time is a separate variable, because
-/// the reset can occur between any two instructions.
+/// Time since the start of the watchdog. The time is a separate variable, because the reset can occur between any two
+/// instructions.
 [[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
 
 /// The timeout is 20 ms at the nominal 32 kHz of the watchdog oscillator (17 to 47 kHz), plus some oscillator cycles.
@@ -38,7 +38,7 @@ void wait_for_reset() {
 }  // namespace
 
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
-  // If BOOT0 is still high, the watchdog reset would start the boot loader instead of the firmware.
+  // If BOOT0 is still high, a watchdog reset starts the boot loader instead of the firmware.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
     kept_course.store({cause.flags, Outcome::open});
     wait_for_reset();
