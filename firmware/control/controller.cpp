@@ -38,8 +38,8 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
 /// before it is added to the other forces, and both operations may round the force down by a few millionths.
 constexpr float at_limit_part = 1.0f - 1e-4f;
 
-/// Decrease of a motor's over-current bound in every third period. The bound falls from the largest limit to the
-/// smallest limit in 10 ms.
+/// Decrease of the over-current bound per update. The bound falls from the largest limit to the smallest limit in 10
+/// ms.
 constexpr float over_current_fall_A = 0.06f;
 
 bool joint_implausible(std::size_t joint, const Triple& joint_rad, Transmission transmission, const Limits& limits) {
@@ -244,15 +244,14 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
-/// Updates the assumed resistance of this period's motor from the measured resistance and the present heat.
+/// Updates the assumed resistance of one motor per period. The measured resistance is corrected for the present heat.
 void Controller::update_resistance(const Settings& settings) {
   resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
                                        settings.motor_model.resistance_ohm[turn_]);
 }
 
 void Controller::watch_motors(const Settings& settings) {
-  // With the force on, the resistance changes only with the heat, so the resistance is updated only together with the
-  // heat.
+  // While the force is on, the resistance is updated only when the heat is updated.
   if (!force_is_on() || heat_.readings == 0) update_resistance(settings);
   if (!force_is_on()) {
     reset(motor_watch_);
@@ -267,9 +266,9 @@ void Controller::watch_motors(const Settings& settings) {
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
-/// If a current reading is too low, the current loop drives too much current. The voltage range of this period's motor
-/// is therefore limited to the voltage for its reference current plus a current margin. The margin is the current at
-/// which this motor alone produces the unused part of the force limit at the end of the longer link.
+/// If a current reading is too low, the current loop drives too much current. The voltage is therefore limited to the
+/// voltage for the sum of reference current and current margin. The margin corresponds to the difference between force
+/// limit and present force. Each period updates the voltage range of one motor.
 void Controller::bound_voltages(const Settings& settings) {
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
   const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
@@ -336,15 +335,15 @@ void Controller::follow_test(protocol::Conditions found, const Settings& setting
   if (test_.moved_J > settings.energy.reserve_J) test_.end_pulse();
 }
 
-/// Compares the angle of this period's joint with the joint angle in the inkwell. If the arm is not referenced, the
+/// Compares one joint angle per period with the angle for a stylus in the inkwell. If the arm is not referenced, the
 /// joint angle is meaningless, and the supervisor ignores this fault.
 void Controller::watch_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);
 }
 
-// A lowered current limit applies to the references immediately. The current follows with the delay of the current
-// loop. If the voltage is limited, the current follows with the delay of the winding.
+// A lowered current limit applies to the references immediately. The current follows its reference with the delay of
+// the current loop. If the voltage is limited, the current follows its reference with the delay of the winding.
 void Controller::follow_over_current(const Settings& settings) {
   const float limit_A = settings.limits.over_current_A[turn_];
   over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
@@ -390,7 +389,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   protocol::Conditions found = pending_.found | condition(Fault::bridge_fault, samples.bridge_fault) |
                                condition(Fault::motor_hot, heat_.too_hot);
   protocol::Events now = pending_.events;
-  // Branches are cheaper: an unconditional bit operation would double the cost of each check.
+  // Branches are used, because unconditional bit operations would double the cost of each check.
   const auto find = [&found](Fault fault, bool is_there) {
     if (is_there) [[unlikely]]
       found |= condition(fault);
@@ -416,8 +415,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::risen, force_gain_ == 1.0f);
   note(Event::landed, force_gain_ == 0.0f);
   note(Event::held_back, limits_ != 0);
-  // These faults void the reference even while another fault is active. Clearing the other fault does not restore the
-  // reference.
+  // These faults void the inkwell reference even while another fault is active. The reference is not restored when the
+  // user clears a fault.
   if ((found & protocol::voiding_conditions) != 0 && reference_.valid) [[unlikely]]
     forget(reference_, (found & condition(Fault::inkwell_implausible)) != 0);
   if (!stays_unchanged(supervisor_.state, {now, found})) [[unlikely]]

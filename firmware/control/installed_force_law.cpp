@@ -20,7 +20,7 @@ namespace inkwell::control {
 
 namespace {
 
-// ---- requirements on a law ----------------------------------------------------------------------------
+// ---- requirements ----------------------------------------------------------------------------
 
 template <class Law>
 concept IsDefined = requires {
@@ -209,7 +209,7 @@ constexpr std::size_t report_size = write_report(nullptr, 0);
 static_assert(report_size <= protocol::force_law_report_maximum,
               "names, units and helps of the force law are longer than protocol::force_law_report_maximum");
 
-// Data for the main loop only. The rest of firmware/control is in the interrupt RAM.
+// Only the main loop uses this data, so the data is in flash and not in the interrupt RAM.
 #if defined(__arm__)
 #define INKWELL_IN_FLASH [[gnu::section(".force_law_rows")]]
 #else

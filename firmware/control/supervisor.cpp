@@ -14,10 +14,10 @@ using protocol::Fault;
 using protocol::State;
 using protocol::StateTransition;
 
-/// Local copy, because a table in a header may be in flash.
+/// The table is copied, because a table in a header may be in flash.
 constexpr auto transitions = protocol::transition_table;
 
-/// Row of a table indexed by state, so that an interrupt reads only one row.
+/// The table is indexed by state, so that an interrupt reads only one row.
 struct OfState {
   Conditions monitored = 0;
   protocol::Events idle_events = 0;  ///< values of the `key_events` events for which every transition is closed
@@ -36,8 +36,8 @@ constexpr auto of_state = []() {
       if (transition.from != state) continue;
       if (here.transitions_begin == nullptr) here.transitions_begin = &transition;
       here.transitions_end = &transition + 1;
-      // A single missing or excluded event closes a transition. The last event in the event list is used, because it is
-      // the rarest event.
+      // A transition is impossible if a needed event is missing or if an excluded event occurs. The last event in the
+      // event list is used, because it is the rarest event.
       const protocol::Events key = std::bit_floor(transition.needs != 0 ? transition.needs : transition.unless);
       here.key_events |= key;
       if (transition.needs == 0) here.idle_events |= key;
@@ -59,7 +59,7 @@ constexpr auto faults = []() {
   return result;
 }();
 
-/// For each fault code, the check that prevents the user from clearing the fault.
+/// Conditions that prevent the user from clearing each fault.
 constexpr auto clearing_blocker = []() {
   std::array<Conditions, protocol::fault_code_end> result{};
   for (const auto& row : protocol::condition_table)
@@ -83,7 +83,7 @@ Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
   if (supervisor.state == State::fault) [[unlikely]]
     now |= protocol::when(Event::cause,
                           (situation.found & clearing_blocker[static_cast<std::size_t>(supervisor.fault)]) != 0);
-  // A board that waits for its boot loader still stores the reported fault.
+  // In the state `update` the reported fault is still stored.
   now |= protocol::when(Event::raised, supervisor.fault != Fault::none);
   for (const StateTransition* transition = here.transitions_begin; transition != here.transitions_end; ++transition)
     if (transition->is_open(now))

@@ -26,8 +26,8 @@ float cosine_near_zero(float r) {
 
 SineCosine sine_cosine(float angle_rad) {
   constexpr float quarters_per_rad = 0.6366197724f;
-  // pi/2 in two parts. The first part has few significant bits, so that its product with the number of quarter turns is
-  // exact.
+  // The first of two summands of pi/2 has few significant bits. Its product with the number of quarter turns is
+  // therefore exact.
   constexpr float quarter_high_rad = 1.5703125f;
   constexpr float quarter_low_rad = 4.838267949e-4f;
 

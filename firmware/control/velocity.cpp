@@ -8,8 +8,7 @@ namespace inkwell::control {
 
 namespace {
 
-/// Larger than the motion of any arm within `rest_periods`. With this bound, the following products need at most 32
-/// bits.
+/// No arm moves this far within `rest_periods`. With this bound, the following products need at most 32 bits.
 constexpr std::int32_t farthest_counts = 65'536;
 static_assert(2LL * (farthest_counts + 1) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
 
@@ -22,7 +21,7 @@ struct Slope {
 
 bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
-/// Returns the slope of the longest useful window whose line passes all edges of the window within the tolerance.
+/// Returns the slope of the longest useful window whose edges are within the tolerance of a line.
 // The function is not inlined, because the compiler would duplicate the code after the call for each exit of the
 // function.
 [[gnu::noinline]] Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {

@@ -5,15 +5,14 @@
 // The internal reference voltage VREFINT does not depend on VDDA. The reading of VREFINT is proportional to VREFINT /
 // VDDA, so the reading falls as VDDA rises.
 //
-// Accuracy (STM32F405 data sheet, "Embedded internal reference voltage" and "ADC characteristics"):
-// - VREFINT is between 1.18 V and 1.24 V for all chips (1.21 V with a tolerance of 2.5 %).
-// - The manufacturer measures VREFINT of each chip with a VDDA of 3.3 V, which has an error of 10 mV (0.3 %).
-// - Between -40 C and 105 C, VREFINT changes by 3 mV (0.25 %).
-// - The converter error is at most 5 counts of 1500 (0.3 %).
+// The errors are from the STM32F405 data sheet ("Embedded internal reference voltage", "ADC characteristics"). VREFINT
+// is between 1.18 V and 1.24 V for all chips (1.21 V with a tolerance of 2.5 %). The manufacturer measures VREFINT of
+// each chip at a VDDA of 3.3 V with an error of 10 mV (0.3 %). Between -40 C and 105 C, VREFINT changes by 3 mV (0.25
+// %). The converter error is at most 5 counts of 1500 (0.3 %).
 //
-// The last three errors of this list add up to less than 1 %. The error of a 3.3 V regulator is at most 3 %. The bound
-// of 5 % exceeds the sum of measurement error and regulator error. Amplifiers and potentiometers still work with a
-// supply error of 5 %.
+// Measurement, temperature and converter errors add up to less than 1 %. The error of a 3.3 V regulator is at most 3 %.
+// The bound of 5 % exceeds the sum of measurement error and regulator error. Amplifiers and potentiometers still work
+// with a supply error of 5 %.
 //
 // The check uses only integers. If the main loop used floats, every interrupt would save the floating-point registers.
 #pragma once
@@ -37,7 +36,7 @@ struct AnalogSupply {
                                  maximum_counts = counts_at_nominal(1.24f);
   /// Largest error of the manufacturer's measurement: 1 %.
   static constexpr std::uint16_t calibration_error_counts = typical_counts / 100;
-  /// Consecutive wrong readings that are tolerated. A current loop does not follow a shorter disturbance.
+  /// Number of tolerated consecutive wrong readings. A current loop does not follow a tolerated disturbance.
   static constexpr std::uint32_t tolerated_readings = 12;
 
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA
@@ -58,7 +57,7 @@ constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
   return {.tolerance_per_mille = tolerance_per_mille + spread_per_mille};
 }
 
-/// Whether this reading of VREFINT corresponds to a valid VDDA.
+/// Returns true if this reading of VREFINT corresponds to a valid VDDA.
 inline bool is_right(const AnalogSupply& supply, std::uint16_t reference_counts) {
   // VDDA / nominal VDDA = expected reading / this reading.
   const std::int32_t off_counts = std::abs(supply.expected_counts - reference_counts);
@@ -74,7 +73,7 @@ inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
   return supply.wrong_readings > AnalogSupply::tolerated_readings;
 }
 
-/// VDDA from this reading of VREFINT. Returns 0 for a reading of 0, which no VDDA can cause.
+/// VDDA from this reading of VREFINT. Returns 0 for the impossible reading 0.
 inline float analog_supply_V(const AnalogSupply& supply, std::uint16_t reference_counts) {
   if (reference_counts == 0) return 0.0f;
   return nominal_analog_supply_V * static_cast<float>(supply.expected_counts) / static_cast<float>(reference_counts);

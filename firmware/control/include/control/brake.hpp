@@ -21,8 +21,8 @@ struct Brake {
   /// Below this speed the arm coasts. The kinetic energy of the heaviest arm in boards/arms is then less than 1 mJ.
   static constexpr float speed_m_per_s = 0.1f;
   static constexpr std::uint32_t duration_maximum_periods = periods_in(0.5f);
-  /// Current bound of gentle braking, as a part of Limits::brake_A. With the usual force limit of an Omni, one motor
-  /// brakes with an average of 0.3 to 0.6 N at up to 2 m/s, and with 1.1 N at 3 m/s (computed).
+  /// Current bound of gentle braking, relative to Limits::brake_A. At the usual force limit of an Omni, the computed
+  /// average braking force of one motor is 0.3 to 0.6 N up to 2 m/s, and 1.1 N at 3 m/s.
   static constexpr float gentle_part = 0.15f;
 
   std::uint32_t remaining_periods = 0;
@@ -33,7 +33,7 @@ struct Brake {
   bool is_on() const { return remaining_periods != 0; }
 };
 
-/// Whether the motors may be shorted: true if none of these faults requires coasting.
+/// Returns true if none of these faults requires coasting. The motors may then be shorted.
 constexpr bool may_brake(protocol::Conditions found) {
   return (found & protocol::conditions([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
 }

@@ -22,7 +22,7 @@ struct BridgePins {
 };
 
 struct BridgeWire {
-  /// Consecutive wrong readings that are tolerated. A wire settles within 1 us, but a single reading may coincide with
+  /// Number of tolerated consecutive wrong readings. A wire settles within 1 us, but a single reading may coincide with
   /// a spike.
   static constexpr std::uint32_t tolerated_readings = 1;
 

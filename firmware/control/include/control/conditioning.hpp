@@ -22,7 +22,7 @@ struct CurrentOffsets {
   /// A healthy amplifier with a 1 % reference has an offset below 0.1 A. An offset above this bound indicates a broken
   /// sensor.
   static constexpr float plausible_A = 0.25f;
-  /// Waiting time, longer than the decay of a winding current after the bridge is switched off.
+  /// Waiting time after the bridges are switched off. Winding currents decay within this time.
   static constexpr std::uint32_t patience_periods = periods_in(0.01f);
 
   Triple sum_A{};
@@ -42,8 +42,8 @@ struct CurrentOffsets {
 /// duty cycles.
 struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
-  /// Lower bound of the voltage, so that the reciprocal is finite if the supply is off. The bound is far below any
-  /// voltage at which the bridges may be on.
+  /// Lower bound of the filtered voltage. The bound keeps the reciprocal finite if the supply is off. The bound is far
+  /// below any voltage at which the bridges may be on.
   static constexpr float floor_V = 1.0f;
   static constexpr std::uint32_t stale_periods = periods_in(protocol::samples_stale_s);
 
@@ -56,7 +56,7 @@ void filter_supply(SupplyFilter& filter, float sample_V);
 
 // ---- switches ------------------------------------------------------------------------------------------
 
-/// Accepts a switch level that has not changed for 5 ms. Each control period filters one of the switches.
+/// Accepts a switch level that has not changed for 5 ms. One switch is filtered per control period.
 struct SwitchFilter {
   static constexpr std::uint32_t settle_periods = periods_in(0.005f);
   static constexpr std::size_t count = protocol::switch_count;

@@ -39,8 +39,8 @@ constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall w
 }
 
 /// F = k d e + c d' e on each axis in contact, with the penetration d, its rate d' and the unit normal e. A wall never
-/// pulls the probe: the force on an axis is zero if the damper force would exceed the spring force while the probe
-/// leaves the wall.
+/// pulls the probe. While the probe leaves the wall, the force on an axis is zero if the damper force would exceed the
+/// spring force.
 constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, Wall wall) {
   const Vector3& out_m = contact.penetration_m;
   return {axis_force_N(out_m.x, velocity_m_per_s.x, wall), axis_force_N(out_m.y, velocity_m_per_s.y, wall),

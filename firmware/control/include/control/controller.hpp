@@ -24,9 +24,9 @@
 
 namespace inkwell::control {
 
-/// All functions that change the state run in the control interrupt. The call order is settings_changed / carry_out /
-/// host_alive / drive / replace_shapes / leave_for_update / raise, self-test, step, finish. Only the constructor, raise
-/// and start_warm are called before the control interrupt is enabled.
+/// All functions that change the state run in the control interrupt. In each control period, step() follows the request
+/// functions, such as settings_changed() and raise(). The last call of a period is finish(). Only the constructor,
+/// raise and start_warm are called before the control interrupt is enabled.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
@@ -67,8 +67,8 @@ class Controller {
     for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
   }
 
-  /// Call this function when the settings have changed. Walls, force law, shapes and force limit blend over to the new
-  /// settings; motor current limits apply immediately.
+  /// Call this function when the settings have changed. Changes of walls, force law, shapes and force limit are
+  /// blended. Changes of motor current limits apply immediately.
   void settings_changed() { world_changed_ = true; }
   /// Executes a command in the next step. The link has validated the command. A command also resets the host timeout.
   [[gnu::cold]] void carry_out(const protocol::CommandReport& command);
@@ -84,20 +84,20 @@ class Controller {
   void raise(protocol::Conditions found) { pending_.found |= found; }
   void raise(protocol::Fault fault) { raise(protocol::condition(fault)); }
 
-  // ---- while the state is `testing`, also before step ----
+  // ---- self-test ----
 
   /// Starts a round of test pulses.
   void start_pulses() { pulses_.start(); }
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }
-  /// Call this function after a self-test without a fault that prevents the force.
+  /// Call this function after a self-test, unless a fault prevents the force.
   [[gnu::cold]] void pass_self_test(const MeasuredMotors& measured);
   /// Number of self-tests since boot.
   std::uint32_t self_tests() const { return self_tests_; }
 
   /// Writes the signals of the last step. Before finish(), the cycle counts of the last stage and of the whole
-  /// interrupt are those of the previous period.
+  /// interrupt belong to the previous period.
   void write_signals(protocol::SignalValues& signals) const;
   protocol::SignalValues signals() const {
     protocol::SignalValues signals;
@@ -114,7 +114,7 @@ class Controller {
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since boot; wraps
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< cycles of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }  ///< 1 is the steady-state heat at the continuous current
-  /// Motor heat that the next run passes to start_warm().
+  /// Motor heat for start_warm() in the next run.
   Warmth warmth() const { return {heat_.heat, heat_.housing, heat_.too_hot ? 1u : 0u}; }
   bool force_is_on() const { return force_is_on_; }  ///< according to the state
 
@@ -135,7 +135,7 @@ class Controller {
   void regulate_currents(const Settings& settings);
   [[gnu::cold]] void watch_idle_currents();
   [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
-  /// Largest current magnitude that the sensor reliably measures.
+  /// Largest reliably measured current magnitude.
   float known_A(std::size_t motor) const { return board_.current_measurable_A - std::fabs(offsets_.offset_A[motor]); }
   [[gnu::cold]] void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;

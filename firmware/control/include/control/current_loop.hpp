@@ -19,7 +19,7 @@ struct CurrentLoopGains {
   float voltage_limit_V;
 };
 
-/// State of one current loop, which is zero while the bridge is off.
+/// State of one current loop. The state is zero while the bridge is off.
 struct CurrentLoop {
   float integral_V = 0.0f;
   float error_A = 0.0f;  ///< of the previous period
@@ -34,9 +34,9 @@ struct VoltageRange {
   float least_V, most_V;
 };
 
-/// Voltage range, within +-bound_V, that a motor needs for currents up to +-`most_A`. `back_emf_V` is the approximate
-/// back EMF of the motor, and `bridge_V` is the voltage drop of the bridge. The range always contains 0 V, so that a
-/// wrong speed value cannot drive the motor.
+/// Returns the voltage range of a motor for currents up to +-`most_A`. The range is limited to +-`bound_V`.
+/// `back_emf_V` is the approximate back EMF of the motor, and `bridge_V` is the voltage drop of the bridge. The range
+/// always contains 0 V, so that a wrong speed value cannot drive the motor.
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =

@@ -1,4 +1,4 @@
-// Detects the loss of one of the two wires of an encoder.
+// Detects an encoder with one dead wire.
 //
 // Counting needs alternating edges on both wires. With one dead wire (broken, shorted or stuck), each edge of the other
 // wire changes the count by one. The next edge reverses this change. The count then alternates between two neighboring
@@ -6,12 +6,11 @@
 // the changes distinguishes a dead wire from a vibration.
 //
 // The bound is 120 changes in 0.1 s, which corresponds to a vibration of 600 Hz across an edge. Normal vibrations are
-// slower:
-// - A program sets one force per millisecond, so this force alternates at 500 Hz at most and causes 100 changes in 0.1
-//   s.
-// - An arm in contact with a wall or a shape vibrates at its natural frequency: 41 Hz for 3000 N/m and 45 g.
-// - A current loop could oscillate faster, but with a small amplitude. At 600 Hz, the largest force of 8 N moves the
-//   probe by only 0.013 mm, a quarter of a count. A hand tremor moves the arm away from an edge within 0.1 s.
+// slower.
+// A program sets one force per millisecond, so this force alternates at 500 Hz at most and causes 100 changes in 0.1 s.
+// An arm in contact with a wall or a shape vibrates at its natural frequency, 41 Hz for 3000 N/m and 45 g.
+// A current loop could oscillate faster, but with a small amplitude. At 600 Hz, the largest force of 8 N moves the
+// probe by only 0.013 mm, a quarter of a count. A hand tremor moves the arm away from an edge within 0.1 s.
 //
 // Input filters and Schmitt triggers prevent chatter of an encoder that rests at an edge.
 //
@@ -35,7 +34,7 @@ struct EncoderWire {
 };
 
 /// Checks one reading at period `now_periods`. Period numbers may be skipped and may wrap. Returns true after
-/// `dead_changes` changes between two neighboring counts within `within_periods`; counting then restarts. Edges are
+/// `dead_changes` changes between two neighboring counts within `within_periods`. Counting then restarts. Edges are
 /// missed if they are closer together than the readings, but a fast joint still causes enough changes.
 inline bool is_dead(EncoderWire& wire, std::uint16_t timer_count, std::uint32_t now_periods) {
   if (timer_count == wire.count) return false;

@@ -9,9 +9,9 @@
 
 namespace inkwell::control {
 
-/// Extends a wrapping 16-bit or 32-bit timer: returns the count nearest to `unwrapped` that agrees with `timer_count`
-/// in the timer's bits. The result is valid if the timer changes by less than half its range between two calls. For 16
-/// bits and 50 us, this limit corresponds to 100 times the speed of the fastest arm.
+/// Extends the count of a wrapping 16-bit or 32-bit timer. Returns the count nearest to `unwrapped` whose lower bits
+/// are equal to `timer_count`. The result is valid if the timer changes by less than half its range between two calls.
+/// For 16 bits and 50 us, this limit corresponds to 100 times the speed of the fastest arm.
 template <class TimerCount>
 constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   static_assert(std::is_unsigned_v<TimerCount> && sizeof(TimerCount) <= 4);
@@ -33,8 +33,8 @@ constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const s
 struct EncoderScale {
   Triple rad_per_count;  ///< negative if the encoder counts down as its joint turns forward
   Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
-  /// Smallest count change per control period that a joint cannot cause, equivalent to at least 100 rad/s. The value is
-  /// a power of two, so that one test covers all three encoders.
+  /// Count change per control period that indicates an encoder jump. The value is equivalent to at least 100 rad/s,
+  /// which no joint reaches. The value is a power of two, so that one test covers all three encoders.
   std::uint32_t jump_counts;
 };
 

@@ -3,10 +3,10 @@
 //
 // Walls, shapes and dampers return less energy than the hand puts into them. A program that pushes along the motion, a
 // wrong force law or an oscillating loop could deliver energy indefinitely. The observer integrates the force over the
-// measured motion of the probe, which results in the delivered energy. The method is from Hannaford and Ryu,
-// "Time-domain passivity control of haptic interfaces", 2002. The remaining energy is bounded on both sides. Even after
-// a long press into a wall, the force delivers at most the reserve to the hand. In addition, a small power may be
-// delivered continuously.
+// measured motion of the probe to obtain the delivered energy. The method is from Hannaford and Ryu, "Time-domain
+// passivity control of haptic interfaces", 2002. The remaining energy is bounded on both sides. Even after a long press
+// into a wall, the force delivers at most the energy reserve to the hand. In addition, a small power may be delivered
+// continuously.
 #pragma once
 
 #include <control/vector.hpp>
@@ -43,7 +43,7 @@ inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return part_left(reserve, limits) < 1.0f;
 }
 
-/// Part of the driving force component to remove, 0..1.
+/// Fraction of the driving force component to remove, 0..1.
 inline float driving_reduction(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
 }

@@ -1,12 +1,12 @@
 // Interface of custom force laws. The page docs/force-laws.md describes how to write a law. The default law of an image
 // is the paper's box in firmware/force_laws/box.hpp.
 //
-// A law is a struct in inkwell::force_laws. The struct has the name of its file and contains
+// A law is a struct in inkwell::force_laws. The struct has the name of its file and the following members.
 //
-//   Parameters, Signals   structs of floats, whose rows are in `parameter_rows` and `signal_rows`; both may be empty
-//   State                 its state between control periods
-//   force_N               function that returns the force on the hand, called 20 000 times per second while the force
-//   is on
+//   `Parameters`   contains floats with rows in `parameter_rows`, and may be empty.
+//   `Signals`      contains floats with rows in `signal_rows`, and may be empty.
+//   `State`        contains the state between control periods.
+//   `force_N`      returns the force on the hand, 20 000 times per second while the force is on.
 //
 // A law uses only its arguments, so a test on the PC can run the same code as the control interrupt.
 #pragma once

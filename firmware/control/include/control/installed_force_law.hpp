@@ -43,7 +43,7 @@ struct ForceLawRange {
   float default_value;
 };
 
-/// Force law data in flash, which interrupts must not read.
+/// Force law data in flash. Interrupts must not read these data.
 struct InstalledForceLaw {
   std::size_t parameter_count;
   std::size_t signal_count;

@@ -1,9 +1,9 @@
 // Forward kinematics, Jacobian and virtual work of a three-joint arm (paper, Eq. 1 to 6 and 10 to 15).
 //
-// Every supported arm has two links in a vertical plane that joint 1 rotates. phi2 and phi3 are the link directions in
-// this plane. The probe has the following reach r and height h relative to the shoulder:
+// Every supported arm has two links in a vertical plane that joint 1 rotates. The angles phi2 and phi3 are the link
+// directions in this plane. The probe has the following reach r and height h relative to the shoulder:
 //
-//   r = l2 cos(phi2) + l3 cos(phi3)      h = l2 sin(phi2) + l3 sin(phi3)
+//   r = l2 cos(phi2) + l3 cos(phi3) and  h = l2 sin(phi2) + l3 sin(phi3).
 //
 // The probe position is origin + r (cos(q1) forward + sin(q1) side) + h up. The arms differ in the zero direction of
 // joint 3 (link 2 or the base). The arms also differ in the workspace axes that represent forward, side and up.
@@ -38,7 +38,7 @@ struct Arm {
   Vector3 origin_m;  ///< shoulder in the workspace
 };
 
-/// Column i is the probe velocity per unit speed of joint i, in m/rad, workspace axes.
+/// Column i is the probe velocity per unit speed of joint i, in m/rad and in workspace axes.
 struct Jacobian {
   std::array<Vector3, 3> column;
 };

@@ -10,10 +10,10 @@ namespace inkwell::control {
 
 /// Temperature rise of each winding above room temperature, relative to the steady-state rise at its continuous
 /// current. The rise is the sum of two temperature differences: winding to housing (fast) and housing to room (slow).
-/// The squared current increases both differences, which decay with separate time constants. At power-on the motors
-/// count as cold. After any other restart, the Warmth of the motors is unchanged.
+/// The squared current increases both differences. Each difference decays with a separate time constant. At power-on
+/// the motors count as cold. After any other restart, the motor heat is unchanged.
 struct MotorHeat {
-  /// Number of readings whose squares are summed, because the heat of one reading is below the resolution of a float.
+  /// Number of readings per heat update. The heat of one reading is below the resolution of a float.
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
@@ -24,8 +24,7 @@ struct MotorHeat {
   std::uint32_t readings = 0;  ///< number of readings in each sum
 };
 
-/// Part of MotorHeat that is retained across a restart. The struct has no initial values, because start-up does not
-/// clear its memory.
+/// Contents of MotorHeat after a restart. The struct has no initial values, because start-up does not clear its memory.
 struct Warmth {
   Triple heat, housing;
   std::uint32_t too_hot;  ///< 0 or 1

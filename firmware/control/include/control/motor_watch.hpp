@@ -1,14 +1,15 @@
 // Checks that voltage, current and speed of a motor are consistent.
 //
-// The motor equation is u = R i + k w: the voltage is resistance times current plus back EMF. The voltage is the
+// The motor equation is u = R i + k w. The voltage is resistance times current plus back EMF. The voltage is the
 // command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
 // be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
-// explain. An open motor and a stuck bridge leg have the same effect. In all these cases the force is undefined. A
-// voltage that is too small for its current indicates shorted turns or a current reading that is too large.
+// explain. An open motor and a stuck bridge leg also cause an unexplained voltage. In all these cases the force is
+// undefined. A voltage that is too small for its current indicates shorted turns or a current reading that is too
+// large.
 //
 // Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
-// of a healthy motor are integrated over time, which results in a flux. The equation neglects the inductance, which
-// adds at most L di to this flux. A large difference is detected sooner than a small difference.
+// of a healthy motor are integrated over time. The result is a flux. The equation neglects the inductance, which adds
+// at most L di to this flux. A large difference is detected sooner than a small difference.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ struct MotorModel {
   Triple back_emf_Vs_per_rad;
 };
 
-/// Voltage drop of a bridge, which opposes the current. At small currents the bridge may add this voltage instead.
+/// Voltage drop of a bridge. The drop opposes the current. At small currents the drop may have the opposite sign.
 struct BridgeLoss {
   float measured_V;  ///< from the self-test, including brushes; 0 if unknown
   float most_V;      ///< from the dead time of the bridge
@@ -45,16 +46,18 @@ struct MeasuredMotors {
 
 /// Assumed resistance of a motor.
 struct Resistance {
-  /// Tolerated excess resistance of a measured motor. The tolerance covers an error of 50 K in the heat model.
+  /// Tolerated excess resistance of a motor with a measured resistance. The tolerance covers an error of 50 K in the
+  /// heat model.
   static constexpr float tolerated_increase_if_measured = 0.2f;
-  /// Tolerated excess resistance without a measurement. Copper that is 100 K hotter has 39 % more resistance. Switches
-  /// and shunt add 4 %.
+  /// Tolerated excess resistance of a motor without a measured resistance. Copper that is 100 K hotter has 39 % more
+  /// resistance. Switches and shunt add 4 %.
   static constexpr float tolerated_increase_if_unmeasured = 0.43f;
-  /// Part of the tolerance that the voltage range of a current loop includes: 5 % of the resistance of a measured
-  /// motor. The resistance of a healthy motor may be higher, depending on angle or heat. A motor with a higher
-  /// resistance gets less current at the force limit, but no fault is raised.
+  /// The voltage range of a current loop includes this part of the resistance tolerance. For a motor with a measured
+  /// resistance, this part is 5 % of the resistance. The resistance of a healthy motor may be higher, depending on
+  /// angle or heat. A motor with a higher resistance gets less current at the force limit, but no fault is raised.
   static constexpr float room_part = 0.25f;
-  /// Increase of copper resistance at a temperature rise of 100 K, the steady-state rise at the continuous current.
+  /// Increase of copper resistance at a temperature rise of 100 K. This rise is the steady state at the continuous
+  /// current.
   static constexpr float part_per_heat = 0.39f;
 
   float value_ohm;
@@ -65,8 +68,8 @@ struct Resistance {
   /// `warmer` is the heat gained since the measurement.
   static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
     if (!(measured_ohm > 0.0f)) return {parameter_ohm, tolerated_increase_if_unmeasured};
-    // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat at the
-    // measurement may have been overestimated.
+    // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat model
+    // may have overestimated the heat at the measurement.
     const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
     return {measured_ohm + measured_ohm * more, tolerated_increase_if_measured};
   }
@@ -77,8 +80,8 @@ struct MotorWatch {
   /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
   /// arm stops.
   static constexpr float tolerance_V = 0.3f;
-  /// Above this value, a current does not change its sign during a PWM period, despite its ripple. The bridge drop then
-  /// does not depend on the current.
+  /// The current ripple does not change the sign of a current above this value. The bridge drop of such a current does
+  /// not depend on the current.
   static constexpr float steady_A = 0.3f;
   /// A motor that has cooled by 100 K since its measurement has 28 % less resistance.
   static constexpr float tolerated_decrease_of_resistance = 0.28f;
@@ -96,7 +99,7 @@ struct MotorWatch {
   BridgeLoss loss{};       ///< voltage drop of the bridge in that period
 };
 
-/// Voltage that the model does not explain, and its tolerance for a healthy motor.
+/// Unexplained voltage, and its tolerance for a healthy motor.
 struct Unexplained {
   float voltage_V, tolerance_V;
 };
@@ -115,7 +118,7 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
                                  MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
-/// Checks the motor of this period. Returns whether its voltage, current and speed are consistent.
+/// Checks the motor of this period. Returns true if voltage, current and speed of the motor are consistent.
 bool update_motor_check(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
                         const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
 
@@ -125,8 +128,8 @@ inline void reset(MotorWatch& watch) {
   watch.voltage_V = 0.0f;
 }
 
-/// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. Until then, `voltage_V` is the
-/// bridge voltage of this motor, and `loss` is its bridge drop.
+/// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. `voltage_V` is the bridge voltage
+/// of this motor until the next call, and `loss` is the voltage drop of the bridge.
 inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;

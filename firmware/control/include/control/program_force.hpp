@@ -23,8 +23,7 @@ struct ProgramForceLimits {
   std::uint32_t expiry_periods;  ///< time without a report after which the force fades
 };
 
-/// Part of the rendered force that comes from a program. This force changes towards the newest report and fades if no
-/// other report arrives.
+/// Force of a program. The force changes towards the newest report and fades if no other report arrives.
 struct ProgramForce {
   /// Duration of the fade after the last report has expired: 10 ms.
   static constexpr std::uint32_t fade_periods = protocol::servo_rate_Hz / 100;

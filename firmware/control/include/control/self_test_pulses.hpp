@@ -1,10 +1,5 @@
-// Small voltage pulses for the self-test of motors, bridges and shunts. The pulses drive one motor after another.
-//
-//   high    +--+
-//   low  +--+  |
-//   0  --+     |     +-- rest, next motor
-//              |  +--+
-//              +--+
+// Small voltage pulses for the self-test of motors, bridges and shunts. The pulses drive one motor after another. Each
+// motor is driven with the levels low, high, -high and -low, followed by a rest.
 //
 // The current rise from the low level to the high level depends on the resistance. The dead time of the bridge and a
 // constant back EMF reduce both levels equally. The force impulses on the hand add up to zero.
@@ -20,7 +15,7 @@
 
 namespace inkwell::control {
 
-/// Measurements during the pulses, which the main loop evaluates.
+/// Measurements during the pulses. The main loop evaluates these measurements.
 struct PulseRound {
   static constexpr std::size_t levels = 4;  ///< low, high, -high, -low
   struct Motor {
@@ -50,16 +45,16 @@ class SelfTestPulses {
   static constexpr std::uint32_t mean_periods = 8;
   static constexpr std::uint32_t rest_periods = 10;
   static constexpr std::uint32_t round_periods = 3 * (PulseRound::levels * level_periods + rest_periods);
-  /// Expected current at the high level, which applies 1.4 N to the hand for 1 ms. The current at the low level is
-  /// `low_part` of this current.
+  /// Expected current at the high level. This current applies 1.4 N to the hand for 1 ms. The current at the low level
+  /// is `low_part` of this current.
   static constexpr float high_A = 0.7f, low_part = 0.4f;
-  /// Smallest pulse current, even for motors with a lower limit. A smaller current would not reveal the resistance.
-  /// Every motor tolerates this current for 1 ms.
+  /// Smallest pulse current, even for motors with a lower limit. The resistance cannot be measured with a smaller
+  /// current. Every motor tolerates this current for 1 ms.
   static constexpr float high_minimum_A = 0.3f;
   /// Over-current bound during the pulses. The bound includes the effects of the back EMF and of the other motors'
   /// pulses.
   static constexpr float maximum_A = 1.5f * high_A;
-  /// Voltage bound for windings with a higher resistance.
+  /// Voltage bound for windings with a high resistance.
   static constexpr float ohmic_maximum_V = 7.5f;
 
   void start() {
@@ -74,7 +69,7 @@ class SelfTestPulses {
   [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
                             const PulseScale& scale);
 
-  /// Measurements, which are complete after the round has finished.
+  /// The measurements are complete after the round has finished.
   const PulseRound& round() const { return round_; }
 
  private:

@@ -1,4 +1,4 @@
-// Parameters in the form that the control interrupt needs, with all products and reciprocals precomputed.
+// Parameters for the control interrupt, with precomputed products and reciprocals.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Local models: planes and a sphere that approximate the scene of a program near the probe. Local models are rendered
-// at the full servo rate (Adachi, Kumano, Ogino, "Intermediate representation for stiff virtual objects", VRAIS 1995).
+// Local models are planes and a sphere that approximate a program's scene near the probe. Local models are rendered at
+// the full servo rate (Adachi, Kumano, Ogino, "Intermediate representation for stiff virtual objects", VRAIS 1995).
 #pragma once
 
 #include <array>
@@ -42,20 +42,20 @@ struct Shapes {
   Sphere sphere{};
   std::array<Plane, protocol::shape_planes_maximum> planes{};
   std::array<Surface, maximum> surfaces{};
-  /// Time from the activation of the set to the expiry of each shape; 0 for an unused shape.
+  /// Time from the activation of the set to the expiry of each shape, or 0 for an unused shape.
   std::array<std::uint32_t, maximum> life_periods{};
 };
 
-/// Point of a touched shape to which friction binds the probe.
+/// Grip point of the friction on a touched shape.
 struct Grip {
   Vector3 point_m;
   bool slides = false;
 };
 
-/// Sum of a normal spring-damper force, which never pulls, and stick-slip friction (Salisbury et al., "Haptic
-/// rendering: programming touch interaction with virtual objects", I3D 1995). `depth_m` is the depth of the probe below
-/// the surface. If `is_new` is true, the probe was above the surface in the previous period, and the grip starts at the
-/// probe.
+/// Sum of normal force and friction. The normal force comes from a spring and a damper and never pulls. The friction is
+/// stick-slip friction (Salisbury et al., "Haptic rendering: programming touch interaction with virtual objects", I3D
+/// 1995). `depth_m` is the depth of the probe below the surface. If `is_new` is true, the probe was above the surface
+/// in the previous period, and the grip starts at the probe.
 Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float depth_m, const Vector3& probe_m,
                         const Vector3& velocity_m_per_s, Grip& grip, bool is_new);
 

@@ -1,5 +1,5 @@
-// Reduces the driving component of the force near the speed limit. The force can still brake the arm. Neither a program
-// nor a wall can therefore cause the fault over_speed, but a hand can.
+// Reduces the driving component of the force near the speed limit. The force can still brake the arm. Programs and
+// walls therefore cannot cause the fault over_speed, but a hand can.
 #pragma once
 
 namespace inkwell::control {
@@ -13,7 +13,7 @@ inline bool is_near(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
   return speed_squared_m2_per_s2 > limit.from_squared_m2_per_s2;
 }
 
-/// Part of the driving force component to remove, 0..1.
+/// Fraction of the driving force component to remove, 0..1.
 inline float driving_reduction(float speed_squared_m2_per_s2, const SpeedLimit& limit) {
   const float part = (speed_squared_m2_per_s2 - limit.from_squared_m2_per_s2) * limit.per_squared_m2_per_s2;
   if (!(part > 0.0f)) return 0.0f;

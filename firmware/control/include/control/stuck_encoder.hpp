@@ -12,13 +12,13 @@
 //
 // A healthy joint occasionally does not move when the force changes by 1.5 N. A hand that slides along a wall or
 // presses into a wall at an angle may balance the change of the wall force. Friction then blocks the joint. In one hour
-// of random use on the virtual board, no standstill of a healthy joint contained more than two changes of 1 N or more
-// than one change of 2 N. The fault is raised after three changes of 1.5 N: press, release and press again, or an
-// increase of 4.5 N.
+// of random use on the virtual board, each standstill of a healthy joint contained at most two changes of 1 N and at
+// most one change of 2 N. The fault is raised after three changes of 1.5 N. A press, a release and a second press count
+// as three changes. An increase of 4.5 N also counts as three changes.
 //
-// An arm that reversed its motion was observed to be stationary for 30 ms, while the force of a wall raised the current
-// by 0.5 A. Current changes therefore count only after the joint has been stationary for 0.1 s. The current is low-pass
-// filtered over about 10 ms, so a force that alternates too fast for the arm has no effect on the filtered current.
+// In one observed reversal, a healthy arm was stationary for 30 ms while the wall force raised the current by 0.5 A.
+// Current changes therefore count only after the joint has been stationary for 0.1 s. The current is low-pass filtered
+// over about 10 ms, so a force that alternates too fast for the arm has no effect on the filtered current.
 //
 // The inkwell is too rigid for this check, so the check is inactive while the stylus is in the inkwell.
 #pragma once
@@ -31,7 +31,7 @@
 namespace inkwell::control {
 
 struct StuckEncoder {
-  /// Force change, at the end of the longer link, that almost always turns every joint.
+  /// Force change at the end of the longer link. A change of this size almost always turns every joint.
   static constexpr float moving_force_N = 1.5f;
   static constexpr unsigned tolerated_changes = 2;
   static constexpr std::uint32_t tolerance_counts = 1;
@@ -49,8 +49,8 @@ struct StuckEncoder {
 };
 
 /// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current changes
-/// of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be stationary for another
-/// reason, and the standstill restarts.
+/// of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be blocked, and the
+/// standstill time restarts.
 inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
                      float moving_A) {
   encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);

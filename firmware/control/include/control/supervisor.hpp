@@ -17,8 +17,8 @@ struct Supervisor {
   bool operator==(const Supervisor&) const = default;
 };
 
-/// Fast state check, which is sufficient in most periods. Returns true if no fault is found and no transition is open.
-/// If the result is false, advance() must decide.
+/// Fast state check for most periods. Returns true if no fault is found and no transition is open. If the result is
+/// false, call advance().
 bool stays_unchanged(protocol::State state, const Situation& situation);
 
 /// Returns the state of the next period. This function itself determines `Event::cause`.

@@ -5,8 +5,8 @@
 
 namespace inkwell::control {
 
-/// Force that is added to the rendered force. The added force starts with the size of the jump and decreases linearly
-/// to zero (Mark et al., "Adding force feedback to graphics systems", SIGGRAPH 1996: recovery time).
+/// Addition to the rendered force. The added force is initially equal to the jump and decreases linearly to zero (Mark
+/// et al., "Adding force feedback to graphics systems", SIGGRAPH 1996: recovery time).
 struct Transition {
   Vector3 jump_N;
   float part = 0.0f;  ///< remaining part of the jump, 1 to 0

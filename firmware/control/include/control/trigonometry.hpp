@@ -17,7 +17,7 @@ float reciprocal(float value);
 /// 1 / sqrt(value) for a positive normal value; relative error at most 3e-7.
 float reciprocal_square_root(float value);
 
-/// False for infinities and NaN, even if the compiler may assume that neither occurs.
+/// Returns false for infinities and NaN, even if compiler options exclude these values.
 bool is_finite(float value);
 
 }  // namespace inkwell::control

@@ -5,12 +5,12 @@
 // edges instead of samples. An edge is detected within one control period. The error of an edge position is therefore
 // the joint motion of one period. The error of a sample would be one count.
 //
-// The window starts at the oldest stored edge whose straight line to the newest edge passes all intermediate edges
-// within a tolerance. A constant speed never exceeds the tolerance. The tolerance is half a count at speeds up to half
-// a count per period, and one count at higher speeds. A window stops growing if it contains a whole quadrature cycle
-// and is long enough for an error below 2 %. The phase errors of the encoder cancel over a whole cycle, and a longer
-// window would only add lag. Slow motion results in long windows with little noise. Acceleration results in short
-// windows with little lag.
+// A straight line connects the oldest edge and the newest edge of the window. All other edges of the window must be
+// within a tolerance of this line. A constant speed never exceeds the tolerance. The tolerance is half a count at
+// speeds up to half a count per period, and one count at higher speeds. A window stops growing if it contains a whole
+// quadrature cycle and is long enough for an error below 2 %. The phase errors of the encoder cancel over a whole
+// cycle, and a longer window would only add lag. Slow motion results in long windows with little noise. Acceleration
+// results in short windows with little lag.
 //
 // Between edges the estimate does not change, unless a long time without an edge proves a lower speed. After n periods
 // without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero and the window
@@ -33,8 +33,8 @@ struct EncoderEdge {
 /// State of the speed estimate of one joint.
 struct SpeedEstimate {
   static constexpr std::uint32_t capacity = 6;
-  /// Edges that are closer than this to the last stored edge are used but not stored. Six stored edges therefore cover
-  /// 3 ms even at a speed at which every period has an edge.
+  /// An edge is not stored if it is closer than this to the last stored edge. Six stored edges therefore cover 3 ms
+  /// even at a speed at which every period has an edge.
   static constexpr std::uint32_t spacing_periods = 11;
   /// The time of an edge has an uncertainty of one period, so the speed error of a window of this length is 1/64.
   static constexpr std::uint32_t enough_periods = 64;
