@@ -1,6 +1,6 @@
-// Force law that runs a C step function with structs, in the form that MATLAB Coder, Simulink and Octave users write.
-// This file passes the probe to the step function and adds rows for the parameters and outputs of the function. The
-// file generated_code/virtual_mass.c needs no changes.
+// This force law runs a C step function with structs. MATLAB Coder, Simulink and Octave users write step functions in
+// this form. This file passes the probe to the step function and adds rows for the parameters and outputs of the
+// function. The file generated_code/virtual_mass.c needs no changes.
 #pragma once
 
 #include <cmath>  // headers of the C code must be included here, outside the namespace

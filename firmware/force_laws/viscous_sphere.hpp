@@ -1,4 +1,4 @@
-// Viscous sphere in the workspace: inside it, a damping force opposes the motion of the probe.
+// Inside the viscous sphere, a damping force opposes the motion of the probe.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -31,8 +31,8 @@ struct viscous_sphere {
 
   struct State {};
 
-  /// F = -c v. In a surface layer of one fifth of the radius, c rises from zero, so that the force has no step at the
-  /// surface.
+  /// F = -c v. In a surface layer of one fifth of the radius, the damping rises from zero, so that the force has no
+  /// step at the surface.
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State&, Signals& signals) {
     const Vector3 from_centre_m = probe.position_m - Vector3{parameters.x_m, parameters.y_m, parameters.z_m};
     const float depth_m = parameters.radius_m - __builtin_sqrtf(dot(from_centre_m, from_centre_m));
