@@ -102,7 +102,7 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-/// Flags of the previous transfer that must be clear before the next transfer (RM0090, DMA stream configuration
+/// These flags of the previous transfer must be clear before the next transfer (RM0090, DMA stream configuration
 /// procedure).
 constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
@@ -122,7 +122,7 @@ INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destin
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-/// Number of periods without a complete sequence after which the sequence is restarted. A late control interrupt causes
+/// The sequence is restarted after this number of periods without a complete sequence. A late control interrupt causes
 /// one period without a complete sequence.
 constexpr std::uint32_t patience_periods = 4;
 

@@ -77,7 +77,7 @@ void start_together() {
 /// Writing 0 clears a flag, and writing 1 does not change the flag.
 void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
-/// Settling time of 4 us, in which an internal pull resistor charges 100 pF.
+/// Settling time of 4 us. An internal pull resistor charges 100 pF in this time.
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {

@@ -11,7 +11,7 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-/// Time limit of 0.1 s, in cycles of the internal oscillator, which runs while the crystal and the PLL start.
+/// Time limit of 0.1 s in cycles of the internal oscillator. This oscillator runs while the crystal and the PLL start.
 constexpr std::uint32_t start_cycles = internal_oscillator_Hz / 10;
 
 /// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
@@ -66,8 +66,7 @@ bool start_clocks() {
   RCC::CFGR::modify(RCC::CFGR::SW(from_pll));
   if (!wait_for(start_cycles, [] { return RCC::CFGR::SWS::read() == from_pll; })) return false;
 
-  // If the crystal stops, the last duty cycle would remain on the motors. The clock security system raises a fault
-  // instead.
+  // Without clock security, the last duty cycle would remain on the motors if the crystal stopped.
   RCC::CR::modify(RCC::CR::CSSON(1));
   return true;
 }

@@ -1,21 +1,18 @@
 // Layout of the 320 words of FIFO memory, and flushing of FIFOs (RM0090, "Peripheral FIFO architecture").
 //
-//   word   0 +----------------------------------+
-//            | receive             56           |  SETUP packets 13 (4 each for three, 1 for control), global
-//            |                                  |  NAK 1, two packets of 64 bytes with their status 2 x 17,
-//            |                                  |  transfer complete 2 x 4 (two OUT endpoints)
-//         56 +----------------------------------+
-//            | endpoint 0 IN       16           |  one packet of 64 bytes
-//         72 +----------------------------------+
-//            | endpoint 1 IN, HID  16           |  one report
-//         88 +----------------------------------+
-//            | endpoint 2 IN, scope 128         |  8 packets, 0.4 ms of the bus: the core counts the packets in a
-//            |                                  |  FIFO with three bits, so it would not count a ninth packet
-//        216 +----------------------------------+
-//            | endpoint 3 IN       16           |  controller: one report
-//        232 +----------------------------------+
-//            | not used             88          |
-//        320 +----------------------------------+
+//   Words   0 to  55   Receive FIFO.
+//   Words  56 to  71   Endpoint 0 IN, one packet of 64 bytes.
+//   Words  72 to  87   Endpoint 1 IN, HID, one report.
+//   Words  88 to 215   Endpoint 2 IN, scope, eight packets.
+//   Words 216 to 231   Endpoint 3 IN, controller, one report.
+//   Words 232 to 319   Unused.
+//
+// The receive FIFO has 13 words for SETUP packets (4 for each of three packets, 1 for control) and 1 word for global
+// NAK. Two packets of 64 bytes with their status need 2 x 17 words. The completed transfers of two OUT endpoints need
+// 2 x 4 words.
+//
+// The eight scope packets last 0.4 ms on the bus. The core counts the packets in a FIFO with three bits, so the core
+// would not count a ninth packet.
 #pragma once
 
 #include <cstdint>

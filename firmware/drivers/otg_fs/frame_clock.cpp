@@ -19,7 +19,7 @@ constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
 /// Ten times the allowed frequency difference between host and board (USB 2.0, section 7.1.11). The crystal of the
 /// board is more accurate.
 constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
-/// Time without a start of frame after which the bus counts as silent. This time is 3 ms, as for a USB suspend.
+/// The bus counts as silent after 3 ms without a start of frame, as for a USB suspend.
 constexpr std::uint32_t silence = 3 * nominal_length;
 
 }  // namespace

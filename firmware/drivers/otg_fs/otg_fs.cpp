@@ -52,8 +52,8 @@ void read_packet(std::span<std::byte> target, std::size_t size) {
   }
 }
 
-/// A transfer may complete between the read and the write of its control register. If EPENA was read as one and were
-/// written back, the write would start another transfer.
+/// A transfer may complete between the read and the write of the endpoint's control register. If EPENA were read as one
+/// and written back, the write would start another transfer.
 template <class Control, class... Fields>
 void change(unsigned endpoint, Fields... fields) {
   Control::modify(endpoint, typename Control::EPENA(0), fields...);
@@ -94,8 +94,8 @@ void OtgFs::follow_cable() {
 }
 
 // On a bus reset the core itself only deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old
-// packets may be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. begin_receive() supports this
-// state.
+// packets may be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. The function begin_receive()
+// supports this state.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
@@ -221,8 +221,9 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   }
 }
 
-// A SETUP packet makes this answer stale. Endpoint 0 is not changed until the end of the SETUP stage. If NAK is cleared
-// before the setup-done word is read, this word is lost. Any word in the receive FIFO may belong to a SETUP packet.
+// A SETUP packet makes the pending answer stale. Endpoint 0 is not changed until the end of the SETUP stage. If NAK is
+// cleared before the setup-done word is read, this word is lost. Any word in the receive FIFO may belong to a SETUP
+// packet.
 void OtgFs::answer_control() {
   const bool sends = control_send_waits_;
   if ((sends || control_receive_waits_ || control_stall_waits_) && arm_control() && sends) fill(0);
@@ -285,14 +286,14 @@ void OtgFs::begin_receive(unsigned endpoint) {
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     return;  // the packet is in the receive FIFO; receive() is called again after the packet has been read
   }
-  // If the endpoint was stalled or reopened, its size is still set.
+  // If the endpoint was stalled or reopened, its size register is still set.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// When this function is called, NAK is set on every OUT endpoint. Removing the words completes the transfers, and their
-// packets are lost.
+// When this function is called, NAK is set on every OUT endpoint. When the words are removed, the transfers complete
+// and their packets are lost.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());

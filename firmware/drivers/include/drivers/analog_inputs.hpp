@@ -1,8 +1,8 @@
-// Driver of all analog inputs. ADC1 has two of the following roles, so the inputs cannot have separate drivers:
+// Driver of all analog inputs. ADC1 has two roles, so the inputs cannot have separate drivers.
 //
-//   motor currents      ADC1, ADC2, ADC3 together, injected by the update of TIM1; ADC1 interrupts at their end
-//   gimbal, supply and  regular sequence of ADC1, started in every control period, stored by DMA2 stream 0
-//   internal reference
+// The update of TIM1 starts the injected conversions of the motor currents in ADC1, ADC2 and ADC3. ADC1 raises an
+// interrupt at the end of these conversions. The regular sequence of ADC1 converts gimbal, supply and internal
+// reference in every control period. DMA2 stream 0 stores the results of the sequence.
 //
 // The middle of the sampling window is at most 0.2 us after the update. In this time, the winding resistance changes a
 // current of 1 A in the smallest motor by 2 mA, one ADC step. The sampling instant therefore needs no correction.

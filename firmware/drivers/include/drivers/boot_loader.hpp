@@ -1,4 +1,4 @@
-// Boot loader in the chip's system memory (AN2606), which can write the flash through USB DFU and other interfaces.
+// The boot loader in the chip's system memory (AN2606) can write the flash through USB DFU and other interfaces.
 #pragma once
 
 namespace inkwell::drivers {
@@ -6,7 +6,7 @@ namespace inkwell::drivers {
 /// Resets the chip. Start-up then enters the boot loader, which runs until power-off or reset.
 [[noreturn]] void start_boot_loader();
 
-/// Whether a call of start_boot_loader() ended the previous run. Only the first call returns true.
+/// Returns true if a call of start_boot_loader() ended the previous run. Only the first call returns true.
 bool take_boot_loader_wish();
 
 /// Enters the boot loader. Call this function during start-up, while clocks and peripherals are in their reset state.

@@ -1,12 +1,15 @@
 // The three motor bridges. TIM1 drives legs A and TIM8 drives legs B, synchronized and center-aligned.
 //
-// Counter and events of both timers in one control period (three PWM periods):
+// Each leg is high while the counter is below its compare value. The diagram shows the counter of both timers in one
+// control period (three PWM periods).
 //
-//   top   /\    /\    /\     |  each leg is high while the counter is below its compare value
-//        /  \  /  \  /  \    |
-//   0   /    \/    \/    \/  |
+//   Top   /\    /\    /\
+//        /  \  /  \  /  \
+//   0   /    \/    \/    \/
 //       |                 |
-//       update            update: preloaded compare values of all six legs become active, ADCs sample
+//       update            update.
+//
+// At the update, the preloaded compare values of all six legs become active, and the ADCs sample.
 //
 // The update occurs at a counter reversal, in the middle of a zero vector, when the ripple current crosses its mean.
 #pragma once
@@ -69,8 +72,7 @@ class Bridges {
   /// interrupt, the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   /// Raises the heartbeat if the bridges are on. The bridges may then stay on for `bridge_hold_s`. Returns true if the
-  /// bridges should be on but were switched off, because the previous heartbeat was too long ago or did not reach the
-  /// bridges.
+  /// bridges should be on but were switched off. The cause is a late heartbeat or a broken heartbeat wire.
   [[nodiscard]] bool begin_period();
   /// Lowers the heartbeat, so that the next period can raise it.
   void end_period();

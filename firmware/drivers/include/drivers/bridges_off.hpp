@@ -1,4 +1,4 @@
-// Three stores that switch the motors off, for code that cannot rely on the stack or on other memory.
+// Three stores switch the motors off. These stores need neither the stack nor other memory.
 #pragma once
 
 #include <board/board.hpp>

@@ -1,20 +1,16 @@
 // Resources that belong to one driver: peripherals, pins, DMA streams and interrupt lines.
 //
-//   class Encoders {
-//    public:
-//     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), ...};
-//
-// A driver can access the registers of a peripheral and start its clock only if it claims this peripheral. A driver
-// must also claim the pins that it sets up and the interrupts that it enables. The application's PartsList does not
-// compile if two drivers claim the same resource.
+// A driver lists its resources in the array `claims`. A driver can access the registers of a peripheral and start the
+// peripheral clock only if the driver claims this peripheral. A driver must also claim the pins that it sets up and the
+// interrupts that it enables. The application's PartsList does not compile if two drivers claim the same resource.
 #pragma once
 
-// To add a driver:
-// 1. Write a class in firmware/drivers and list its peripherals, pins, DMA streams and interrupts in `claims`. Add
-//    the source to firmware/drivers/CMakeLists.txt.
-// 2. Access registers with RegistersOf<Driver, registers::TIM3>.
-// 3. Add the driver to Parts in firmware/application/parts.hpp.
-// 4. For a new peripheral, follow registers/peripherals.hpp.
+// The following steps add a driver.
+// (1) Write a class in firmware/drivers and list its peripherals, pins, DMA streams and interrupts in `claims`. Add
+//     the source to firmware/drivers/CMakeLists.txt.
+// (2) Access registers with RegistersOf<Driver, registers::TIM3>.
+// (3) Add the driver to Parts in firmware/application/parts.hpp.
+// (4) For a new peripheral, follow registers/peripherals.hpp.
 
 #include <array>
 #include <cstdint>
@@ -102,10 +98,10 @@ struct Claimed : Underlying<Peripheral> {
 
 }  // namespace detail
 
-/// Registers of a peripheral that the driver claims.
+/// Registers of a claimed peripheral.
 template <class Driver, class Peripheral>
 using RegistersOf = typename detail::Claimed<Driver, Peripheral, peripheral<Peripheral>()>::Registers;
-/// DMA controller registers of a stream that the driver claims.
+/// DMA controller registers of a claimed stream.
 template <class Driver, class Controller, std::uint32_t number>
 using RegistersOfStream = typename detail::Claimed<Driver, Controller, stream<Controller, number>()>::Registers;
 

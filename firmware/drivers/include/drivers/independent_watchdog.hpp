@@ -1,4 +1,4 @@
-// Independent watchdog (RM0090, chapter IWDG), which resets the chip if the firmware stops feeding the watchdog.
+// The independent watchdog (RM0090, chapter IWDG) resets the chip if the firmware stops feeding the watchdog.
 #pragma once
 
 #include <cstdint>

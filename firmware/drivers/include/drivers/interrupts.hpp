@@ -6,8 +6,8 @@
 
 namespace inkwell::drivers {
 
-/// Disables interrupts during the lifetime of this object. The lifetime may be a few microseconds, or a sleep that a
-/// pending interrupt ends.
+/// Disables interrupts during the lifetime of this object. The lifetime must not exceed a few microseconds, except for
+/// a sleep. A pending interrupt ends a sleep.
 class InterruptsHeld {
  public:
   InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }
@@ -21,7 +21,7 @@ class InterruptsHeld {
 /// 838869 of the Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
-/// Handler that runs after all interrupts have been served, before the program continues (PendSV: ARMv7-M, B1.5.6).
+/// This handler runs after all interrupts have been served and before the program continues (PendSV: ARMv7-M, B1.5.6).
 /// Every interrupt can preempt this handler.
 struct CallAfterInterrupts {
   static void start() {

@@ -36,7 +36,7 @@ struct Port<'C'> {
 template <board::Pin pin>
 using Registers = typename Port<pin.port>::Registers;
 
-/// Field of one pin in a register that has a field of `width` bits for each pin.
+/// Field of one pin in a register with `width` bits per pin.
 template <class Register, board::Pin pin, unsigned width>
 using PinField = registers::Field<Register, pin.number % (32 / width) * width, width>;
 

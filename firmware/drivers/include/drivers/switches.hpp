@@ -1,4 +1,4 @@
-// Buttons and inkwell switch, which are contacts to ground with pull-ups in the chip.
+// Buttons and inkwell switch are contacts to ground with pull-ups in the chip.
 #pragma once
 
 #include <drivers/pins.hpp>

@@ -9,7 +9,7 @@
 
 namespace inkwell::drivers {
 
-/// Part of OtgFs, which claims TIM2 and starts its clock.
+/// OtgFs claims TIM2 for this class and starts the TIM2 clock.
 class FrameClock {
  public:
   /// `frames` is the initial frame count.

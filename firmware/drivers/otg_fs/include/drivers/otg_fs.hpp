@@ -1,10 +1,5 @@
 // USB device port that uses the OTG_FS core in device mode (RM0090, chapter OTG_FS).
 //
-//   drivers::OtgFs port;
-//   usb::Device device{port, link, identity};
-//   port.start();
-//   for (;;) { device.poll(); ... }
-//
 // All work is done in poll(), and the driver uses no USB interrupt. The control interrupt wakes the main loop every 50
 // us, the duration of one packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 %
 // of the time.
