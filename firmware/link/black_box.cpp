@@ -30,7 +30,7 @@ std::uint32_t check_of(const BlackBoxNotes::Cause& cause) {
   return hash_words(hash_basis, &cause, offsetof(BlackBoxNotes::Cause, check));
 }
 
-/// Checksum of a row and its number. The number distinguishes a new row from a row of an earlier run.
+/// Checksum of row and row number. The number distinguishes a new row from a row of an earlier run.
 std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
   return hash_words(hash_basis ^ number, &row, sizeof row);
 }
@@ -40,7 +40,7 @@ bool is_intact(const BlackBoxPlace& place, std::uint32_t number) { return place.
 /// Number of the first row from the fault on. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
 
-/// Returns the number of the next row before the fault. After 24 days without a fault the number decreases by a
+/// Returns the number of the next row before the fault. After 24 days without a fault the row number decreases by a
 /// multiple of the ring size, so that each row keeps its slot. If a reset occurs within 100 ms after the decrease, the
 /// rows before the decrease are lost.
 std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
@@ -78,8 +78,8 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
   const bool is_kept = notes_.cause.check == check_of(notes_.cause);
   if (!is_kept && raised == Fault::none) return restart_recording();
 
-  // A reset may have interrupted any write. Only consecutive valid rows count: the newest rows before the fault, and
-  // the first rows from the fault on.
+  // A reset may have interrupted any write. Only consecutive valid rows are used, before the fault and from the fault
+  // on.
   while (rows_before_ < std::min<std::size_t>(ring_.size(), notes_.rows_written)) {
     const std::uint32_t number = notes_.rows_written - 1 - rows_before_;
     if (!is_intact(before(number), number)) break;

@@ -99,7 +99,7 @@ void FlashLog::choose_current() {
   current_ = second_is_newer || (first_is_useless && is_usable(1)) ? 1 : 0;
 }
 
-/// True if the sector has no records: it is erased, with or without a sector header.
+/// True if the sector contains no records. A sector header is permitted.
 bool FlashLog::is_usable(std::size_t number) const {
   const Sector& sector = sectors_[number];
   return !erase_is_open_[number] && sector.end <= (sector.is_begun ? sector_head_words : 0);

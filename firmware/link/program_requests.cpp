@@ -26,7 +26,7 @@ Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coord
 
 constexpr std::size_t longest_output_report = protocol::longest_report(protocol::ReportKind::output);
 
-/// Largest force whose square is still finite in the following computations.
+/// The square of this force is finite in the following computations.
 constexpr float longest_force_N = 1e6f;
 
 Vector3 shortened(const Vector3& force_N) {
@@ -136,7 +136,7 @@ bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of
     return false;
   }
   const std::uint32_t sequence = word_at(report, offsetof(protocol::ForceReport, sequence));
-  // Another program starts with another sequence number. A gap above this bound is therefore not counted as lost
+  // Each program starts with a different sequence number. A gap above this bound is therefore not counted as lost
   // reports.
   constexpr std::uint32_t longest_gap = 1000;
   if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)

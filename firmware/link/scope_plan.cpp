@@ -4,7 +4,7 @@ namespace inkwell::link {
 
 namespace {
 
-/// Columns of the signal table that recording needs. The texts of the table are not linked into the image.
+/// Signal table columns for recording. The texts of the table are not linked into the image.
 constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = []() {
   std::array<protocol::SignalWire, protocol::signal_count> rows{};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = protocol::signal_table[i].wire;

@@ -17,7 +17,7 @@ std::int16_t to_steps(float value, float steps_per_unit) {
 }
 
 /// Initial value of `previous_` in each frame. This value differs from every signal. The value is a signaling NaN,
-/// which no computation returns, and is not a sign-extended 16-bit integer.
+/// because no computation returns this value. The value is not a sign-extended 16-bit integer.
 constexpr std::uint32_t bits_of_no_value = 0x7F80'0001;
 
 template <class Value>
@@ -178,7 +178,7 @@ std::uint8_t ScopeRecorder::take_finished() {
 }
 
 std::uint8_t ScopeRecorder::drop_oldest() {
-  // A finished frame exists, because only one frame is being written and at most one is being sent.
+  // A finished frame exists, because only one frame is being written and at most one frame is being sent.
   const std::uint8_t frame = take_finished();
   protocol::ScopeFrameHeader header;
   std::memcpy(&header, frames_[frame].data(), sizeof header);

@@ -114,8 +114,7 @@ void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std:
   if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
 }
 
-// The flash then contains either an incomplete record, which is ignored, or a factory reset, which the next start
-// executes.
+// An incomplete record in flash is ignored. The next start executes a recorded factory reset.
 void StoredParameters::give_up() {
   wanted_ = Wanted::nothing;
   is_writing_ = is_resetting_ = false;

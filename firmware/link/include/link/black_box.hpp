@@ -1,5 +1,4 @@
-// The black box: all signals of the last 100 ms before a fault and of the first 100 ms after the fault, retained across
-// a reset.
+// The black box contains all signals from 100 ms before a fault to 100 ms after the fault. The signals survive a reset.
 #pragma once
 
 #include <array>
@@ -12,8 +11,8 @@
 
 namespace inkwell::link {
 
-/// Data that the black box retains across a reset. Start-up does not clear this memory, and its content is undefined
-/// after power-on. Every part therefore has a checksum, which must match before the part is used.
+/// Retained data of the black box. Start-up does not clear this memory, and its content is undefined after power-on.
+/// Every part therefore has a checksum, which must match before the part is used.
 struct BlackBoxNotes {
   struct Cause {
     std::uint32_t fault;  ///< protocol::Fault
@@ -25,8 +24,8 @@ struct BlackBoxNotes {
   };
   std::uint32_t tables_hash;  ///< hash of the tables that define the rows; with another hash all data is ignored
   Cause cause;                ///< a black box exists if the checksum of this member matches
-  /// Number of rows before the fault. Only the newest rows are in the ring. number_after() decreases the number before
-  /// the number wraps.
+  /// Number of rows before the fault. Only the newest rows are in the ring. The function number_after() decreases the
+  /// number before the number wraps.
   std::uint32_t rows_written;
   std::uint32_t rows_added;  ///< number of rows from the fault on
 };
@@ -58,8 +57,7 @@ class BlackBox {
         followed_(samples.recorded()) {}
 
   /// Reads the rows of the previous run. Call this function once, before the control interrupt starts. `raised` is the
-  /// fault that start-up will raise for the end of the previous run, or `none`. `crash` is the crash record of that
-  /// run.
+  /// start-up fault for the end of the previous run, or `none`. `crash` is the crash record of that run.
   void start(protocol::Fault raised, const protocol::CrashFacts& crash);
 
   /// Records the samples since the last call. Call this function in every pass of the main loop.

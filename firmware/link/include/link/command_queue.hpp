@@ -22,7 +22,7 @@ bool is_valid(const protocol::CommandReport& command);
 /// Returns the command in an output report if the report is complete and the command is valid.
 std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
 
-/// Queue from the main loop to the control interrupt, which removes one command per control period.
+/// Command queue from the main loop to the control interrupt. The interrupt removes one command per control period.
 class CommandQueue {
  public:
   static constexpr std::uint32_t capacity = 8;
@@ -40,7 +40,7 @@ class CommandQueue {
 
   /// Number of commands queued since start-up.
   std::uint32_t pushed() const { return pushed_.load(); }
-  /// True if the interrupt has removed the command after which pushed() returned this number.
+  /// True if the interrupt has removed at least this number of commands.
   bool was_taken(std::uint32_t pushed) const { return static_cast<std::int32_t>(taken_.load() - pushed) >= 0; }
 
   /// True if a command of this kind is in the queue.

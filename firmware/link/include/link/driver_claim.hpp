@@ -1,4 +1,4 @@
-// The claim of the driver, which is one of the connected programs.
+// The claim identifies the driver among the connected programs.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ class DriverClaim {
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
   /// True if the claim has expired. Call this function more often than the period counter wraps.
   bool has_expired(std::uint32_t now_periods) const;
-  /// Ends the claim. No program drives the arm afterwards.
+  /// Ends the claim. No program is the driver after this call.
   void end();
 
   protocol::DriverReport report(std::uint32_t now_periods) const;

@@ -8,9 +8,9 @@
 //
 // After start-up, words are programmed but no sector is erased. New records are written to the sector of the newest
 // record. When this sector is full, new records are written to the other sector if that sector is erased. Only start()
-// erases a sector: the sector that will be written next, if it is not empty. Before the erase, start() writes an erase
-// record to the other sector. An interrupted erase is therefore repeated and counted, even if the sector already reads
-// as erased.
+// erases a sector. If the next sector to write is not empty, start() erases this sector. Before the erase, start()
+// writes an erase record to the other sector. An interrupted erase is therefore repeated and counted, even if the
+// sector already reads as erased.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ namespace inkwell::link {
 class FlashMemory {
  public:
   virtual std::span<const std::uint32_t> sector(std::size_t number) const = 0;
-  /// Programs an erased word. Returns true if the word then has the value `value`.
+  /// Programs an erased word. Returns true if the programmed word reads as `value`.
   virtual bool program(std::size_t sector, std::size_t word, std::uint32_t value) = 0;
   virtual void erase(std::size_t sector) = 0;
 
@@ -69,7 +69,7 @@ class FlashLog {
   /// Number of records over the life of the board.
   std::uint32_t records_written() const { return last_number_; }
   const std::array<std::uint32_t, protocol::store_sectors>& erases() const { return erases_; }
-  /// Returns the number of records with a payload of this size that can be written without an erase.
+  /// Returns the remaining space as a number of records with a payload of this size.
   std::size_t room(std::size_t payload) const;
 
   /// Starts writing a record. The caller sets all members of `head` except magic, number and payload. Returns false if

@@ -1,4 +1,4 @@
-// A long-lived value of the main loop, with a checksum that detects flipped bits.
+// Long-lived values of the main loop have a checksum that detects flipped bits.
 #pragma once
 
 #include <bit>
@@ -9,8 +9,7 @@
 
 namespace inkwell::link {
 
-/// Returns a checksum. Values that differ in one bit have different checksums, and most other values also have
-/// different checksums.
+/// Returns a checksum. Values that differ in one bit have different checksums.
 template <class T>
 std::uint32_t sum_of(const T& value) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof value % sizeof(std::uint32_t) == 0);

@@ -1,4 +1,4 @@
-// A value that the main loop produces and the control interrupt uses.
+// Handover of a value from the main loop to the control interrupt.
 #pragma once
 
 #include <array>

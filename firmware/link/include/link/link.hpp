@@ -1,24 +1,10 @@
 // Data exchange between the main loop and the control interrupt.
 //
-// Each member has one producer and one consumer and never blocks the interrupt. The interrupt makes these calls in each
-// control period:
+// Each member has one producer and one consumer and never blocks the interrupt. The file
+// firmware/application/control_interrupt.cpp contains the interrupt's calls of the link.
 //
-//   if (link.parameters.apply_offered(periods)) controller.settings_changed()
-//   if (link.commands.take_sign_of_life()) controller.host_alive()
-//   if (command = link.commands.pop()) controller.carry_out(*command)
-//   if (link.commands.is_of_gone_host(*command)) controller.raise(usb_gone)
-//   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
-//   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
-//   if (link.update_requested) controller.leave_for_update()
-//   controller.raise(link.found_in_main_loop)
-//   controller.step(...)
-//   if (controller.state() is testing) link.self_test.exchange(controller)
-//   controller.write_signals(link.samples.next().signals)
-//   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
-//   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
-//
-// The link has about 13 KB, mostly samples, and is in the core-coupled memory. Only the main loop accesses scope frames
-// and black-box rows, so they are in other memory.
+// The link has about 13 KB, mostly samples, and is in the core-coupled memory. Scope frames and black-box rows are in
+// the main memory, because only the main loop accesses them.
 #pragma once
 
 #include <cstdint>

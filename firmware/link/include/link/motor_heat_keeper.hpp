@@ -10,8 +10,8 @@
 namespace inkwell::link {
 
 /// The object is in memory that start-up does not clear, so it has no constructor. The content of this memory is
-/// undefined after power-on. A restart may also interrupt a write at any word, so two slots are written alternately.
-/// One of the slots is always complete.
+/// undefined after power-on. A restart may interrupt a write at any word, so two slots are written alternately. One of
+/// the slots is always complete.
 class MotorHeatKeeper {
  public:
   /// Largest stored heat.

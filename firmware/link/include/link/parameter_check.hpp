@@ -18,8 +18,8 @@ std::uint16_t image_parameter_id(std::size_t index);
 std::optional<std::size_t> image_parameter_index(std::uint16_t id);
 protocol::ParameterSet image_defaults();
 
-/// Stored parameter values, which may come from another firmware version. A value that this firmware refuses is
-/// replaced by its default.
+/// Stored parameter values, possibly from another firmware version. A value that this firmware refuses is replaced by
+/// its default.
 class StoredSet {
  public:
   StoredSet() : set_(image_defaults()) {}

@@ -19,7 +19,7 @@ namespace inkwell::link {
 std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
                      protocol::ParametersReport& report);
 
-/// Stores the parameters and passes the settings, which are computed from the parameters, to the interrupt.
+/// Stores the parameters, computes the settings, and passes the settings to the interrupt.
 class ParameterStore {
  public:
   /// Sets the parameters to the defaults of the parameter table and of the force law.
@@ -34,15 +34,15 @@ class ParameterStore {
   /// only result(). `stored` is the parameter set for restore_stored, or null.
   ///
   /// Returns `busy` while the interrupt has not accepted the previous transaction. Also returns `busy` for every report
-  /// if a bit of a parameter set has flipped, which the background watch reports as a fault.
+  /// if a bit of a parameter set has flipped. The background watch reports the flipped bit as a fault.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
   /// Refuses a ParametersReport from a program that is not the driver.
   void refuse(std::span<const std::byte> report);
 
-  /// Restores the defaults without a transaction. The force must be off. If accept() would return `busy`, returns false
-  /// and has no effect.
+  /// Restores the defaults without a transaction. The force must be off. Returns false and has no effect if accept()
+  /// would return `busy`.
   [[nodiscard]] bool restore_defaults();
 
   /// Writes all parameters of the table, followed by the parameters of the force law. Returns the number of used bytes

@@ -16,7 +16,7 @@ struct BoardTime {
   std::uint32_t cycles;   ///< processor cycles since the start of that period
 };
 
-/// The main loop creates a report from the newest sample when the bus requests one.
+/// The main loop creates a report from the newest sample when the bus requests a report.
 class PoseRecorder {
  public:
   PoseRecorder(const SampleRing& samples, std::uint32_t cycles_per_period)
@@ -41,7 +41,7 @@ class PoseRecorder {
   /// Writes the newest pose, without sequence number and driver parity. Returns false before the first period.
   bool read(protocol::PoseReport& report) const;
 
-  /// Like read(), for a report that is sent. After this call, the maximum of the interrupt length is reset.
+  /// Like read(), but also resets the maximum of the interrupt length.
   bool read_for_report(protocol::PoseReport& report);
 
   /// Records that the report of read() was sent.

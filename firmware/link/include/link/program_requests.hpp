@@ -1,4 +1,4 @@
-// Forces and shapes that a program on the PC requests.
+// Force and shape requests of a program on the PC.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ std::uint32_t claim_of_shapes(std::span<const std::byte> report);
 /// Returns the ticket of a ShapesReport, or 0 if the report is too short or has another version.
 std::uint32_t ticket_of_shapes(std::span<const std::byte> report);
 
-/// A new request replaces the previous one.
+/// A new request replaces the previous request.
 class ProgramRequests {
  public:
   // ---- main loop ----

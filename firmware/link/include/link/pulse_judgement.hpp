@@ -14,22 +14,22 @@ struct PulseJudgement {
   /// at the freezing point. Switches and shunt add 4 %. The sensor error is 3 %, and the motion of the motor
   /// contributes 5 %.
   ///
-  /// A winding with half its turns, or a shunt amplifier with twice its gain, is below these limits at any temperature.
-  /// A shunt amplifier with half its gain is above these limits.
+  /// With half the winding turns, or with twice the amplifier gain, the measured resistance is below these limits at
+  /// any temperature. With half the amplifier gain, the measured resistance is above these limits.
   static constexpr float resistance_minimum_part = 0.78f, resistance_maximum_part = 1.7f;
   /// Largest reported resistance, relative to the expected resistance. This value is reported for a motor without
   /// current or with a current of the wrong sign.
   static constexpr float resistance_shown_part = 10.0f;
   /// Largest voltage loss of a bridge, relative to the loss from its dead time.
   static constexpr float dead_time_ratio = 1.8f;
-  /// Largest current in another motor's sensor, relative to the motor's own current. Two touching wires share the
-  /// current evenly.
+  /// Largest current in the sensor of an idle motor, relative to the current of the pulsed motor. Two touching wires
+  /// share the current evenly.
   static constexpr float foreign_part = 0.25f;
-  /// Mean back EMF above which a resistance outside its limits does not count as a failure, because the arm moves.
+  /// Above this mean back EMF the arm moves, so a resistance outside its limits does not count as a failure.
   static constexpr float moves_V = 0.15f;
-  /// Stricter limits for a resistance that is stored. The resistances for both current signs must agree within the
-  /// factor `kept_apart`, and the mean back EMF must be below `rests_V`. If no hand fixes the arm, the pulses
-  /// accelerate the motor, and its resistance appears to be 5 % higher.
+  /// Stricter limits for a stored resistance. The resistances for both current signs must agree within the factor
+  /// `kept_apart`, and the mean back EMF must be below `rests_V`. If no hand fixes the arm, the pulses accelerate the
+  /// motor, and the measured resistance is 5 % too high.
   static constexpr float kept_apart = 1.06f, rests_V = 0.08f;
 
   using Result = protocol::SelfTestResult;
@@ -40,8 +40,8 @@ struct PulseJudgement {
   std::array<Found, 3> motors;   ///< resistance in ohm, for the current sign with the larger error
   std::array<Found, 3> bridges;  ///< voltage loss of the bridge in V
   Found wires;                   ///< largest current in the sensor of another motor, in A
-  /// Voltage loss of a bridge that passes the test, relative to the supply voltage. The value is 0 if the measured loss
-  /// is negative.
+  /// Voltage loss of a bridge without a failure, relative to the supply voltage. The value is 0 if the measured loss is
+  /// negative.
   control::Triple bridge_loss_part;
   /// Mean resistance for both current signs, if the motor passes the test and is at rest. Otherwise the value is 0.
   control::Triple resistance_ohm;

@@ -1,4 +1,4 @@
-// Results of commands and shapes, for the programs that sent them.
+// Results of commands and shapes for their senders.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace inkwell::link {
 
-/// Stores the newest requests that have a ticket. Only the main loop uses this class.
+/// Stores the newest requests with a ticket. Only the main loop uses this class.
 class RequestResults {
  public:
   explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}

@@ -28,13 +28,13 @@ struct Sample {
   PeriodSummary summary;
 };
 
-/// The interrupt writes each sample directly into the ring, which saves a copy. The main loop creates pose reports,
-/// scope frames and black-box rows from the ring, at separate rates.
+/// The interrupt writes each sample directly into the ring, without a copy. The main loop creates pose reports, scope
+/// frames and black-box rows from the ring, at separate rates.
 class SampleRing {
  public:
   /// Number of samples, equivalent to 1.6 ms. The main loop is busy for less than 1 ms at a time.
   static constexpr std::uint32_t capacity = 32;
-  /// Two slots are never read, because the interrupt may write two samples while the main loop reads one.
+  /// Two slots are never read, because the interrupt may write two samples while the main loop reads one sample.
   static constexpr std::uint32_t readable = capacity - 2;
 
   /// `first` is the number of the first sample.

@@ -20,9 +20,9 @@ struct ScopeFrames {
   alignas(4) std::array<Frame, count> frames;
 };
 
-/// The main loop reads the sample ring and packs the selected signals into frames. If no frame is free, the recorder
-/// drops the oldest frame that is not being sent, and counts its samples. The recorder also counts the samples that the
-/// main loop read too late. The interrupt therefore never waits, and the newest data is retained.
+/// The main loop reads the sample ring and packs the selected signals into frames. If all frames are in use, the
+/// recorder drops the oldest finished frame and counts the dropped samples. The recorder also counts the samples that
+/// the main loop read too late. The interrupt therefore never waits, and the newest data is retained.
 class ScopeRecorder {
  public:
   /// Largest number of samples per pass. With more than one sample per pass, the recorder can catch up after a delay of
@@ -45,7 +45,8 @@ class ScopeRecorder {
   /// Frees the frame that oldest_frame() returned.
   void release();
 
-  /// Samples dropped since start-up, because the host did not read or the main loop was late.
+  /// Number of samples dropped since start-up. Samples are dropped if the host does not read or if the main loop is
+  /// late.
   std::uint32_t samples_dropped() const { return samples_dropped_; }
 
  private:

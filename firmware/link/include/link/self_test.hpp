@@ -1,4 +1,4 @@
-// The self-test, from the RAM test at start-up to the result. The main loop controls the self-test, and the control
+// Sequence of the self-test, from the RAM test to the result. The main loop controls the self-test, and the control
 // interrupt sends the pulses.
 #pragma once
 
@@ -25,7 +25,7 @@ class SelfTest {
   static constexpr std::uint32_t wire_readings = 8;
   /// An item has failed after this number of failures with the arm at rest.
   static constexpr std::uint32_t failures_to_believe = 2;
-  /// Limits for an arm that moves continuously: number of rounds, and waiting time before each round.
+  /// Largest number of rounds, and waiting time before each round, for a moving arm.
   static constexpr std::uint32_t rounds_maximum = 8;
   static constexpr std::uint32_t rest_patience_periods = control::periods_in(0.02f);
   /// Largest back EMF at the start of a round. At a higher speed the bridges would brake the arm perceptibly.
@@ -99,7 +99,7 @@ class SelfTest {
   control::Triple offset_A_{};                      ///< sensor offsets measured at start-up
   control::MeasuredMotors measured_{};  ///< results of the rounds; read by the interrupt after the order `pass`
 
-  /// Order for the interrupt, which includes the number of the self-test. The value is 0 after the interrupt has
+  /// Order for the interrupt. The order includes the number of the self-test. The value is 0 after the interrupt has
   /// executed the order.
   Shared<std::uint32_t> order_{0};
   Shared<std::uint32_t> begun_{0};     ///< number of the current or last self-test of the interrupt

@@ -5,7 +5,7 @@
 
 namespace inkwell::link {
 
-/// A word that one side writes and the other side reads, or that one side sets and the other side clears.
+/// A word has one writer and one reader, or one side sets the word and the other side clears the word.
 ///
 /// The chip has one core. The interrupt preempts the main loop, but the main loop cannot preempt the interrupt. The
 /// processor therefore maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are

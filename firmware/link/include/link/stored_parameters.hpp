@@ -27,8 +27,8 @@ class StoredParameters {
   /// Executes one step of the requested command. If a bit of the command's data has flipped, the command fails with
   /// flash_failed, and the background watch reports the damage.
   ///
-  /// A step may block the main loop for the time in which the flash programs one word. `periods` is the number of the
-  /// control period. This number is used to separate the words in time, so that poses are not delayed.
+  /// A step may block the main loop while the flash programs one word. `periods` is the number of the control period.
+  /// This number is used to separate the words in time, so that poses are not delayed.
   void follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods);
   /// True while a requested command is not finished.
   bool is_busy() const { return wanted_ != Wanted::nothing || is_writing_ || is_resetting_; }
