@@ -1,17 +1,7 @@
 // Registers and fields as types. Addresses are template arguments, so an access compiles to a load or a store.
 //
-// Headers in this folder have a fixed form. tools/check_registers.py compares the compiled result with the
-// manufacturer's description of the chip:
-//
-//   template <std::uint32_t base>
-//   struct Timer {
-//     struct CR1 : Register<base + 0x00> {
-//       using CEN = Field<CR1, 0, 1>;
-//     };
-//     struct CNT : Register<base + 0x24> {};
-//   };
-//
-// The row in peripherals.hpp is X(TIM1, Timer, 0x40010000).
+// Headers in this folder have a fixed form. The tool tools/check_registers.py compares the compiled headers with the
+// manufacturer's description of the chip. The header registers/watchdog.hpp is a short example.
 //
 // Register and field names are those of the reference manual.
 #pragma once
