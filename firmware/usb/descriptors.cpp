@@ -48,7 +48,8 @@ constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8
 
 // ---- HID report descriptor (HID 1.11, section 6.2.2) -----------------------------------------------
 
-// Every report is an array of bytes on a vendor usage page. protocol/reports.hpp defines the meaning of the bytes.
+// Every report is an array of bytes on a vendor usage page. The header protocol/reports.hpp defines the meaning of the
+// bytes.
 
 constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
 constexpr std::uint8_t data_variable_absolute = 0x02;
@@ -120,7 +121,8 @@ constexpr auto controller_report_descriptor = join(
 
 /// USB version 2.01 announces a binary object store.
 constexpr std::size_t usb_version = 0x0201;
-/// Position of bcdDevice in the device descriptor. device_descriptor() writes the firmware version to this position.
+/// Position of bcdDevice in the device descriptor. The function device_descriptor() writes the firmware version to this
+/// position.
 constexpr std::size_t device_version_at = 12;
 
 constexpr auto device =
@@ -182,13 +184,15 @@ constexpr auto configuration =
                identity::interface_count, configuration_value, 0, self_powered, bus_current_2mA),
          interfaces);
 
-// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the interfaces other than HID -------------
+// ---- Microsoft OS 2.0 descriptors -------------------------------------------------------------------
+
+// Windows binds WinUSB to all interfaces except the HID interfaces.
 
 constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
 
 constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
 
-/// Property by which programs find an interface. Each interface needs a different GUID.
+/// Programs find an interface by this property. Each interface needs a different GUID.
 template <std::size_t size>
 constexpr auto interface_guid(const char (&guid)[size]) {
   constexpr std::size_t value_size = 2 * (size - 1 + 2);

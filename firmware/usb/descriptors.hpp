@@ -38,8 +38,8 @@ inline constexpr std::uint8_t microsoft_request = 0x20;
 /// wIndex of that request.
 inline constexpr std::uint16_t microsoft_descriptor_index = 7;
 
-/// Writes the descriptor to `buffer`. bcdDevice is the firmware version, for example 0x0123 for 1.2.3. A minor or patch
-/// number above 9 becomes 9. Hosts cache the properties of a device per bcdDevice.
+/// Writes the descriptor to `buffer`. The field bcdDevice is the firmware version, for example 0x0123 for 1.2.3. A
+/// minor or patch number above 9 becomes 9. Hosts cache the properties of a device per bcdDevice.
 std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
                                              const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();

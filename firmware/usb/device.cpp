@@ -21,18 +21,17 @@ constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3; 
 /// control interrupt and before the next start of frame. Otherwise the host might poll while no report is loaded.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// Time in which the main loop detects and loads a new pose, while it also fills the scope FIFO. The final pose is
-/// sampled at most one control period, the longest interrupt and this time before the start of frame. A pose of the
-/// next period would be too late.
+/// Time in which the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
+/// shortly before the start of frame. The interval is at most the sum of a control period, the longest interrupt and
+/// this time. A pose of the next period would be too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// Additional lead of the spare pose, which the final pose replaces. If the main loop is delayed before the
-/// replacement, the host reads the spare pose. The longest delay is a transaction of all parameters: 0.3 ms including
-/// control interrupts.
+/// Additional lead of the spare pose over the final pose. If the main loop is too late for the final pose, the host
+/// reads the spare pose. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
-/// Number of consecutive unread reports (0.1 s) after which the host counts as not polling. Unread reports then do not
-/// count as dropped.
+/// After this number of consecutive unread reports (0.1 s), the host counts as not polling. In this case unread reports
+/// do not count as dropped.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
 
 constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
@@ -315,9 +314,9 @@ bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   // While there is a driver, only the driver's sign of life keeps the force on.
   if (command->command == protocol::Command::heartbeat && !note_heard(command->claim)) return true;
   if (!link_.commands.has_room()) return false;
-  // The selection must precede the queued command, so that the acknowledgment is not early.
+  // The signals are selected before the command is queued, so that the acknowledgment is not early.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
-  // The request must precede the queued command, so that the command is counted before its acknowledgment.
+  // The command is counted before it is queued, so that the count is not later than the acknowledgment.
   if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
     link_.stored.ask(command->command, may_store());
   const bool was_pushed = link_.commands.push(*command);

@@ -1,9 +1,5 @@
 // The board as a USB device. The board has a HID interface for poses, commands and parameters, and a vendor interface
-// for the scope. The board also has a controller interface and a firmware update interface. main() uses the device as
-// follows:
-//
-//   usb::Device device{port, link, identity};
-//   for (;;) { device.poll(); sleep until an interrupt; }
+// for the scope. The board also has a controller interface and a firmware update interface.
 #pragma once
 
 #include <array>
@@ -32,7 +28,7 @@ struct Identity {
 
 class Device final : private ControlRequests {
  public:
-  /// All three arguments must outlive the device. The device is inactive on the bus before the first poll().
+  /// The arguments must outlive the device. The device is inactive on the bus before the first poll().
   Device(Port& port, link::Link& link, const Identity& identity);
 
   /// Handles bus events and refills the endpoints. The main loop calls this function at least every 50 us. The duration
@@ -74,7 +70,8 @@ class Device final : private ControlRequests {
   /// Like is_permitted(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
   bool driver_parity() const { return (link_.driver.changes() & 1u) != 0; }
-  /// Lets force and shapes of a program fade after the claim of the program has ended, and switches the force off.
+  /// Call this function after the claim of a program has ended. Fades the force and the shapes of this program, and
+  /// switches the force off.
   void driver_gone();
   void let_force_fall();
   void handle(const Event& event);

@@ -30,7 +30,7 @@ struct Event {
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
 };
 
-/// A bus frame, which lasts 1 ms of the host's clock. Cycles are counts of the processor's cycle counter.
+/// Bus frame of 1 ms, timed by the host's clock. Cycles are counts of the processor's cycle counter.
 struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, from the start-of-frame packet
   std::uint32_t count = 0;          ///< bus frames since the port was started
@@ -42,7 +42,7 @@ struct BusFrame {
 /// Endpoint hardware. Endpoint addresses have bit 7 set for IN. Every call returns within microseconds.
 ///
 /// Endpoint 0 is open after a reset and always accepts SETUP. While a SETUP event is pending in next_event(), send(),
-/// receive() and stall() have no effect on endpoint 0, because they would answer an older request.
+/// receive() and stall() have no effect on endpoint 0. These calls would answer an older request.
 class Port {
  public:
   /// Writes the next event to `event`. Returns false if there is no event. Also continues the transfers in progress.
