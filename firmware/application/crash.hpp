@@ -13,7 +13,7 @@ constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
   return crash.exception == protocol::crystal_exception;
 }
 
-/// Whether the crash record describes a hang of the main loop. A hang record is invalid if the main loop resumed, or if
+/// True if the crash record describes a hang of the main loop. A hang record is invalid if the main loop resumed, or if
 /// the watchdog did not cause the reset.
 constexpr bool is_hang(const protocol::CrashFacts& crash) { return crash.exception == protocol::hang_exception; }
 

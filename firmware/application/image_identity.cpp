@@ -1,4 +1,4 @@
-// The linker script places the image identity at a fixed offset, which flashing tools read
+// The linker script places the image identity at a fixed offset. Flashing tools read the identity
 // (protocol/image_identity.hpp).
 #include <board/board.hpp>
 #include <protocol/image_identity.hpp>

@@ -39,7 +39,7 @@ void take_motor_heat(bool after_power_on) {
 
 // The motor heat is stored only when it changes. Storing the heat in every round would use a third of the main loop's
 // sleep time. If a control interrupt occurs during the copy, the housing heat of a motor may be one update newer than
-// its total heat.
+// the total heat of this motor.
 void keep_motor_heat() {
   static std::uint32_t kept_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();

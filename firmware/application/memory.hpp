@@ -7,7 +7,7 @@
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
 /// Places an object without a constructor in the part of the main memory that start-up does not clear. The object
-/// survives a reset; its contents are undefined after power-on.
+/// survives a reset. The contents are undefined after power-on.
 #define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
 
 extern "C" {

@@ -58,7 +58,7 @@ void MemoryCheck::begin_round() {
 void MemoryCheck::check_flash() {
   const bool is_copied = next_ < copied_end;
   const std::uint32_t* const end = next_ + std::min(words_per_step, (is_copied ? copied_end : image_check) - next_);
-  // The loop uses a local pointer: with the member as loop counter, GCC 12 writes the last word twice.
+  // The loop uses a local pointer, because GCC 12 writes the last word twice if the loop counter is a member.
   for (const std::uint32_t* word = next_; word != end; ++word) checksum.add(*word);
   next_ = is_copied && end == copied_end ? code_begin : end;  // the parameter store is between the copied code and the
                                                               // other code

@@ -29,7 +29,8 @@ using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::A
 template <class Driver>
 requires(Parts::has<Driver>) using Part = Driver;
 
-/// main() sets up these drivers, and then only the interrupts use them. The main loop also reads logic_supply.
+/// The function main() sets up these drivers. After the setup, only the interrupts use these drivers. The main loop
+/// also reads logic_supply.
 extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;

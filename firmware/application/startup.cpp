@@ -38,8 +38,8 @@ extern "C" [[noreturn, gnu::used]] void start() {
   using registers::FPU_CPACR;
   using registers::SCB;
   if (drivers::take_boot_loader_wish()) drivers::enter_boot_loader();
-  // The floating-point unit must be enabled before any floating-point instruction, including register saving on
-  // interrupt entry. Lazy saving is the processor's default (FPCCR) and remains enabled.
+  // The floating-point unit must be enabled before any floating-point instruction and before any interrupt. Lazy saving
+  // is the processor's default (FPCCR) and remains enabled.
   constexpr std::uint32_t full_access_to_both = 0b1111;
   FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
   asm volatile("dsb\n isb" ::: "memory");

@@ -1,5 +1,5 @@
-// Watchdog trial at each power-on. All other properties of the watchdog can be read; only a reset proves that the
-// watchdog expires.
+// Watchdog trial at each power-on. Only a reset proves that the watchdog expires. All other properties of the watchdog
+// can be read.
 #pragma once
 
 #include <drivers/system.hpp>
