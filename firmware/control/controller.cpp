@@ -127,8 +127,8 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
-/// Runs before the pose and the current errors of this period are computed, because a current change depends on the
-/// previous speed and the previous errors.
+/// This check precedes the computation of pose and current errors, because a current change depends on the previous
+/// speed and the previous errors.
 void Controller::check_for_jumps(const Triple& change_A, const Settings& settings) {
   // Currents change quickly during braking and directly after the bridges are switched off.
   if (!drive_.enabled) return;

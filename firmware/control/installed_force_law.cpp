@@ -66,7 +66,7 @@ constexpr auto signal_rows() {
     return std::array<ForceSignal<typename Law::Signals>, 0>{};
 }
 
-/// Whether each member of the struct is a float and has one row.
+/// True if each member of the struct is a float and has one row.
 template <class Values, class Rows>
 constexpr bool fit_rows(const Rows& rows) {
   if constexpr (std::is_empty_v<Values>) {

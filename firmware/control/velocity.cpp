@@ -60,7 +60,7 @@ void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
   if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
 }
 
-/// Limits the speed to one count in the time without an edge. Called in each period without an edge.
+/// Limits the speed to one count per time since the last edge. Called in each period without an edge.
 void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   if (silent_periods >= SpeedEstimate::rest_periods) {
     estimate.remembered = 0;

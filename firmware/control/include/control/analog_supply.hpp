@@ -44,9 +44,8 @@ struct AnalogSupply {
   std::uint32_t wrong_readings = 0;
 };
 
-/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. If this value is out of range, it
-/// was never written or was lost. In this case the typical value is used, and the tolerance is increased by the spread
-/// between chips.
+/// `calibrated_counts` is the manufacturer's measurement of VREFINT for this chip. A value out of range was never
+/// written or was lost. In this case the typical value is used, and the tolerance includes the spread between chips.
 constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
   constexpr auto tolerance_per_mille = static_cast<std::int32_t>(1000.0f * protocol::analog_supply_tolerance + 0.5f);
   constexpr std::int32_t spread_per_mille =

@@ -42,8 +42,8 @@ constexpr bool may_brake(protocol::Conditions found) {
 /// squared probe speed. `found` comes from the supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions found);
 
-/// Whether the motors are shorted in this period. `limit_A` is Limits::brake_A. A current that is not a number releases
-/// the motors.
+/// Returns true if the motors are shorted in this period. `limit_A` is Limits::brake_A. A current that is not a number
+/// releases the motors.
 bool shorts(const Brake& brake, const Triple& current_A, const Triple& limit_A);
 
 }  // namespace inkwell::control

@@ -4,7 +4,7 @@
 // While the bridges are off, the enable wire, the monostable output and all legs must be low. While the bridges are on,
 // the enable wire must be high. The control interrupt checks in each period that the monostable output is also high.
 // The legs switch while the bridges are on, so the leg levels are not checked. The check in control/motor_watch.hpp
-// ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so code outside it
+// ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so the main loop
 // always reads a low level.
 #pragma once
 
@@ -29,7 +29,7 @@ struct BridgeWire {
   std::uint32_t wrong_readings = 0;
 };
 
-/// Whether a wire was at a wrong level for too many consecutive readings.
+/// Returns true after too many consecutive readings of a wrong wire level.
 constexpr bool is_shorted(const BridgeWire& wire) { return wire.wrong_readings > BridgeWire::tolerated_readings; }
 
 constexpr void update_wire_check(BridgeWire& wire, const BridgePins& pins) {

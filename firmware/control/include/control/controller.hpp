@@ -32,8 +32,8 @@ class Controller {
   explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
       : board_(board), periods_(first_period) {}
 
-  /// Sets the heat of the motors. Call this function before the control interrupt is enabled; otherwise the motors
-  /// count as cold.
+  /// Sets the heat of the motors. Call this function before the control interrupt is enabled. Without this call the
+  /// motors count as cold.
   void start_warm(const Warmth& warmth) {
     heat_.heat = warmth.heat;
     heat_.housing = warmth.housing;
@@ -41,7 +41,7 @@ class Controller {
   }
 
   /// Runs one control period. `clock.lap()` returns the processor cycles since the previous lap as std::uint32_t. The
-  /// first lap of a period counts from the interrupt entry.
+  /// first lap of a period starts at the interrupt entry.
   template <class StageClock>
   Drive step(const Samples& samples, const Settings& settings, StageClock& clock) {
     condition_samples(samples, settings);

@@ -2,7 +2,7 @@
 //
 // The controller zero at R/L cancels the electrical pole of the motor. The integral gain is therefore R times the
 // desired bandwidth, and the proportional gain is L times this bandwidth. The integral uses the trapezoidal rule. At 50
-// us and L/R = 109 us, either rectangular rule would move the discrete zero away from the pole.
+// us and L/R = 109 us, a rectangular rule would move the discrete zero away from the pole.
 #pragma once
 
 #include <algorithm>

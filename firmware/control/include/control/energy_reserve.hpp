@@ -4,9 +4,9 @@
 // Walls, shapes and dampers return less energy than the hand puts into them. A program that pushes along the motion, a
 // wrong force law or an oscillating loop could deliver energy indefinitely. The observer integrates the force over the
 // measured motion of the probe to obtain the delivered energy. The method is from Hannaford and Ryu, "Time-domain
-// passivity control of haptic interfaces", 2002. The remaining energy is bounded on both sides. Even after a long press
-// into a wall, the force delivers at most the energy reserve to the hand. In addition, a small power may be delivered
-// continuously.
+// passivity control of haptic interfaces", 2002. The remaining energy has a lower bound and an upper bound. Even after
+// a long press into a wall, the force delivers at most the energy reserve to the hand. In addition, a small power may
+// be delivered continuously.
 #pragma once
 
 #include <control/vector.hpp>

@@ -17,7 +17,7 @@ struct Supervisor {
   bool operator==(const Supervisor&) const = default;
 };
 
-/// Fast state check for most periods. Returns true if no fault is found and no transition is open. If the result is
+/// Fast state check for most periods. Returns true if no fault is found and no transition is possible. If the result is
 /// false, call advance().
 bool stays_unchanged(protocol::State state, const Situation& situation);
 

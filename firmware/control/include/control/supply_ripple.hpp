@@ -2,12 +2,13 @@
 // failed rectifier diode.
 //
 // The frequency of an oscillation distinguishes a fault from normal operation. The amplitude does not distinguish a
-// fault. A step, a sag or a spike exceeds the bound at most twice: at its start and at its end. The slow mean then
-// follows the voltage. A hand that swings the arm reverses the motor power ten times per second. A program or a force
-// law can reverse a force more often, but with less energy per cycle. The largest force, 8 N, moves 45 g back and forth
-// at 40 Hz with at most 1.1 m/s and a kinetic energy of at most 27 mJ. This energy raises the voltage of a 2200 uF
-// capacitor at 18 V by 0.7 V; at 100 Hz the rise is 0.1 V. The losses of 41 W in the motor resistance lower the supply
-// voltage by 0.3 V. The sum of these changes is half of the bound. A test on the simulated board checks this sum.
+// fault. A step, a sag or a spike exceeds the bound at most twice, at the start and at the end. After a step, the slow
+// mean follows the voltage. A hand that swings the arm reverses the motor power ten times per second. A program or a
+// force law can reverse a force more often, but with less energy per cycle. The largest force, 8 N, moves 45 g back and
+// forth at 40 Hz with at most 1.1 m/s and a kinetic energy of at most 27 mJ. This energy raises the voltage of a 2200
+// uF capacitor at 18 V by 0.7 V. At 100 Hz the rise is 0.1 V. The losses of 41 W in the motor resistance lower the
+// supply voltage by 0.3 V. The sum of these changes is half of the bound. A test on the simulated board checks this
+// sum.
 //
 // The voltage divider and its capacitor form a low-pass filter with a time constant of 0.9 ms. The filter passes 98 %
 // of the amplitude at 35 Hz and 87 % at 100 Hz.

@@ -12,9 +12,9 @@
 // cycle, and a longer window would only add lag. Slow motion results in long windows with little noise. Acceleration
 // results in short windows with little lag.
 //
-// Between edges the estimate does not change, unless a long time without an edge proves a lower speed. After n periods
-// without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero and the window
-// restarts. The estimate for a motion of one count back and forth is therefore zero.
+// Between edges the estimate does not change, unless a long time without an edge indicates a lower speed. After n
+// periods without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero and the
+// window restarts. The estimate for a motion of one count back and forth is therefore zero.
 #pragma once
 
 #include <array>
