@@ -59,9 +59,9 @@ bool any_is_high() {
   return (DigitalInput<Bridges, first>::read_port() & pins) != 0;
 }
 
-/// Starts both counters together. TIM8 waits for the trigger output of TIM1, which is internal trigger 0 of TIM8
-/// (RM0090, "TIMx internal trigger connection"). The trigger arrives about two cycles late, so leg B of a bridge
-/// switches 12 ns later than leg A. The dead times of the bridges are several times longer.
+/// Starts both counters together. TIM8 waits for internal trigger 0, the trigger output of TIM1 (RM0090, "TIMx internal
+/// trigger connection"). The trigger arrives about two cycles late, so leg B of a bridge switches 12 ns later than leg
+/// A. The dead times of the bridges are several times longer.
 void start_together() {
   constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));

@@ -24,8 +24,8 @@ bool IndependentWatchdog::start() {
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);
   IWDG::RLR::write(IWDG::RLR::RL(reload));
-  // A register update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains, which is
-  // also safe.
+  // A register update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains. This
+  // timeout is also safe.
   const bool is_taken = wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; });
   feed();
   return is_taken && IWDG::RLR::read() == reload;

@@ -32,7 +32,7 @@ class AnalogInputs {
                                      pin(board::facts.gimbal[2]),
                                      pin(board::facts.supply)};
 
-  /// Call this function before TIM1 runs, because the converters miss a trigger that occurs before their clocks run.
+  /// Call this function before TIM1 runs, because the converters miss triggers before the converter clocks run.
   void start_clocks();
 
   /// Connects the pins and sets up the sequences.
@@ -49,8 +49,8 @@ class AnalogInputs {
   /// Currents at the last update. Acknowledges the interrupt.
   Currents take_currents();
 
-  /// Starts the conversion of gimbal, supply and reference, which takes 36 us. Call this function once per control
-  /// period. If conversions no longer complete, the function sets up converter and stream again.
+  /// Starts the conversion of gimbal, supply and reference. The conversion takes 36 us. Call this function once per
+  /// control period. If conversions no longer complete, the function sets up converter and stream again.
   void start_slow_conversions();
 
   /// Wiper voltages of the gimbal potentiometers relative to their supply, 0..1.
@@ -58,11 +58,11 @@ class AnalogInputs {
   float supply_V() const;
   /// Converter counts of the bridge supply, for code in which floats are too slow.
   std::uint16_t supply_counts() const { return slow_[4]; }
-  /// Converter counts of the internal reference; 0 before its first measurement.
+  /// Converter counts of the internal reference, or 0 before the first measurement.
   std::uint16_t reference_counts() const { return slow_[3]; }
-  /// The manufacturer's reading of the internal reference at a VDDA of 3.3 V; 65535 if this reading was erased.
+  /// The manufacturer's reading of the internal reference at a VDDA of 3.3 V, or 65535 if this reading was erased.
   static std::uint16_t calibrated_reference_counts();
-  /// Control periods without a new measurement of gimbal and supply; 0 or 1 in normal operation.
+  /// Number of control periods without a new measurement of gimbal and supply. The value is 0 or 1 in normal operation.
   std::uint32_t slow_age_periods() const { return slow_age_periods_; }
 
  private:

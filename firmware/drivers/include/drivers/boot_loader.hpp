@@ -3,7 +3,7 @@
 
 namespace inkwell::drivers {
 
-/// Resets the chip. Start-up then enters the boot loader, which runs until power-off or reset.
+/// Resets the chip. After the reset, the boot loader runs until power-off or another reset.
 [[noreturn]] void start_boot_loader();
 
 /// Returns true if a call of start_boot_loader() ended the previous run. Only the first call returns true.

@@ -51,11 +51,11 @@ class Bridges {
   /// Sets all six legs and the enable wire of the bridges low immediately.
   void disable();
 
-  /// Whether the fault wire is low, or has been low since the bridges were enabled.
+  /// Returns true if the fault wire is low, or has been low since the bridges were enabled.
   bool fault() const;
 
-  /// Whether the fault wire follows the internal pull resistors at the pin of TIM1 or TIM8. In this case the pin is
-  /// connected neither to the bridges nor to the external pull-up. Call this function while the bridges are off. The
+  /// Returns true if the fault wire follows the internal pull resistors at the pin of TIM1 or TIM8. In this case the
+  /// pin is not connected to the bridges or to the external pull-up. Call this function while the bridges are off. The
   /// function disables interrupts for 8 us, because an interrupt could interpret the low level as a fault.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
@@ -68,16 +68,17 @@ class Bridges {
   /// State that the control interrupt has set.
   bool are_on() const { return enabled_; }
 
-  /// Whether an update occurred after the last begin_period(). If this function returns true at the end of the control
-  /// interrupt, the interrupt took longer than its period.
+  /// Returns true if an update occurred after the last begin_period(). If this function returns true at the end of the
+  /// control interrupt, the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
-  /// Raises the heartbeat if the bridges are on. The bridges may then stay on for `bridge_hold_s`. Returns true if the
-  /// bridges should be on but were switched off. The cause is a late heartbeat or a broken heartbeat wire.
+  /// Raises the heartbeat if the bridges are on. Each heartbeat permits the bridges to stay on for `bridge_hold_s`.
+  /// Returns true if the bridges should be on but were switched off. The cause is a late heartbeat or a broken
+  /// heartbeat wire.
   [[nodiscard]] bool begin_period();
   /// Lowers the heartbeat, so that the next period can raise it.
   void end_period();
 
-  /// Waits for the next update, at most two control periods. Returns false if one of the timers does not run.
+  /// Waits at most two control periods for the next update. Returns false if one of the timers does not run.
   [[nodiscard]] bool wait_for_update();
 
  private:

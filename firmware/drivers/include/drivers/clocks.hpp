@@ -13,7 +13,7 @@ inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 /// not start within 0.1 s. In this case the processor clock remains at 16 MHz.
 [[nodiscard]] bool start_clocks();
 
-/// Whether the crystal oscillates. After start_clocks() has failed, the chip still tries to start the crystal.
+/// Returns true if the crystal oscillates. After start_clocks() has failed, the chip still tries to start the crystal.
 bool crystal_oscillates();
 
 }  // namespace inkwell::drivers

@@ -34,7 +34,7 @@ class CycleCounter {
   std::uint32_t last_ = 0;
 };
 
-/// Waits until a condition is true, for at most `limit_cycles`. Returns whether the condition became true.
+/// Waits at most `limit_cycles` until a condition is true. Returns whether the condition became true.
 template <class Condition>
 [[nodiscard]] bool wait_for(std::uint32_t limit_cycles, Condition condition) {
   const std::uint32_t from = CycleCounter::now();

@@ -17,14 +17,14 @@ class Encoders {
       peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), pin(board::facts.encoders[1].b),
       peripheral<registers::TIM4>(), pin(board::facts.encoders[2].a), pin(board::facts.encoders[2].b)};
 
-  /// Starts to count from 0. Every edge of both channels is counted, which results in four counts per encoder line.
+  /// Starts to count from 0. Every edge of both channels is counted, so each encoder line results in four counts.
   void start();
 
-  /// Timer counts, which wrap at 16 bits. TIM5 has 32 bits, but read() returns 16 bits for all timers.
+  /// Timer counts modulo 65536. TIM5 has 32 bits, but read() returns 16 bits for all timers.
   std::array<std::uint16_t, 3> read() const;
 
-  /// Whether wire A or B of `encoder`, 0..2, follows the internal pull resistors of its pin. In this case no encoder
-  /// drives the wire. The check takes 20 us.
+  /// Returns true if wire A or B of `encoder`, 0..2, follows the internal pull resistors of the pin. In this case no
+  /// encoder drives the wire. The check takes 20 us.
   bool wire_a_floats(std::size_t encoder) const;
   bool wire_b_floats(std::size_t encoder) const;
 };

@@ -17,9 +17,9 @@ class IndependentWatchdog {
   static constexpr float shortest_timeout_s =
       1e-3f * timeout_ms * static_cast<float>(oscillator_Hz) / static_cast<float>(fastest_oscillator_Hz);
 
-  /// Starts the watchdog, which then cannot be stopped. The nominal timeout is 20 ms. With the tolerance of the
+  /// Starts the watchdog. A running watchdog cannot be stopped. The nominal timeout is 20 ms. With the tolerance of the
   /// watchdog oscillator, the timeout is 14 to 38 ms. The watchdog pauses while a debugger halts the processor. Returns
-  /// false if the watchdog did not accept the timeout, because its oscillator does not run.
+  /// false if the watchdog did not accept the timeout. In this case the watchdog oscillator does not run.
   bool start();
 
   void feed();

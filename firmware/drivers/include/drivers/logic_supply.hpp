@@ -28,8 +28,8 @@ class LogicSupply {
     InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
-  /// Whether the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The reference voltages of
-  /// the sensors fall with the supply.
+  /// Returns true if the supply is below 2.9 V. This threshold is 0.1 V above the brown-out reset. The reference
+  /// voltages of the sensors fall with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
   /// Call this function in the interrupt. Returns false if the supply is no longer low, for example after an edge that

@@ -73,8 +73,8 @@ void connect_analog() {
   detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
 }
 
-/// Whether the level of a pin with a pull-up follows its internal pull resistors. In this case no circuit drives the
-/// pin. A pull resistor of about 40 kOhm charges the capacitance at the pin within `settle_cycles`.
+/// Returns true if the level of a pin with a pull-up follows the internal pull resistors. In this case no circuit
+/// drives the pin. A pull resistor of about 40 kOhm charges the capacitance at the pin within `settle_cycles`.
 template <class Driver, board::Pin number>
 bool follows_pulls(std::uint32_t settle_cycles) {
   require_claim<Driver, pin(number)>();
@@ -99,7 +99,7 @@ struct DigitalInput {
 
 template <class Driver, board::Pin pin>
 struct DigitalOutput {
-  /// The level is set first, so that the pin is low as soon as it is an output.
+  /// The level is set first, so that the new output is low from the start.
   static void start() {
     set_low();
     detail::configure<Driver, pin>(detail::Mode::output, Pull::none, Speed::low);

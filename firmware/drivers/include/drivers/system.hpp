@@ -13,8 +13,8 @@ namespace inkwell::drivers {
 struct ResetCause {
   std::uint32_t flags;
   bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
-  /// Whether the supply fell below its brown-out level and rose again. Power-on also sets this flag, so power-on is
-  /// excluded.
+  /// Returns true if the supply fell below the brown-out level and rose again. Power-on also sets this reset flag and
+  /// is excluded.
   bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
@@ -26,8 +26,8 @@ inline ResetCause take_reset_cause() {
   return cause;
 }
 
-/// Whether the boot pins selected the chip's boot loader, and the boot loader started the firmware. After a reset
-/// SYSCFG_MEMRMP contains the selection of the pins (RM0090).
+/// Returns true if the boot pins selected the chip's boot loader and the boot loader started the firmware. After a
+/// reset SYSCFG_MEMRMP contains the selection of the pins (RM0090).
 inline bool started_by_boot_loader() {
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
   static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"

@@ -31,8 +31,8 @@ class OtgFs final : public usb::Port {
   /// `frames` is the initial count of bus frames.
   constexpr explicit OtgFs(std::uint32_t frames = 0) : frame_clock_(frames) {}
 
-  /// Sets up pins, clock and core, which takes 26 ms. After start(), next_event() connects the D+ pull-up while the
-  /// cable supplies VBUS. The 48 MHz clock must already run (clocks.hpp). Returns false if the core does not answer.
+  /// Sets up pins, clock and core in 26 ms. After start(), next_event() connects the D+ pull-up while the cable
+  /// supplies VBUS. The 48 MHz clock must already run (clocks.hpp). Returns false if the core does not answer.
   [[nodiscard]] bool start();
 
   bool next_event(usb::Event& event) override;
