@@ -78,8 +78,7 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
   const bool is_kept = notes_.cause.check == check_of(notes_.cause);
   if (!is_kept && raised == Fault::none) return restart_recording();
 
-  // A reset may have interrupted any write. Only consecutive valid rows are used, before the fault and from the fault
-  // on.
+  // A reset may have interrupted any write. Only consecutive valid rows around the fault are used.
   while (rows_before_ < std::min<std::size_t>(ring_.size(), notes_.rows_written)) {
     const std::uint32_t number = notes_.rows_written - 1 - rows_before_;
     if (!is_intact(before(number), number)) break;

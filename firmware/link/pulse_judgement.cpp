@@ -55,7 +55,7 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
     return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
   // Voltage loss extrapolated to zero current. A back EMF raises the current of one sign and lowers the current of the
-  // other sign, so its effect cancels out.
+  // other sign, so the effect of the back EMF cancels out.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
   const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&

@@ -96,8 +96,8 @@ void ScopeRecorder::pack_oldest() {
     finish_frame();
 }
 
-// Both write functions process the plan run by run. The loop over floats, which needs most of the recording time, then
-// has no branch for the encoding.
+// Both write functions process the plan run by run. The loop over floats needs most of the recording time. This loop
+// therefore has no branch for the encoding.
 
 void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;

@@ -12,7 +12,7 @@
 namespace inkwell::link {
 
 /// Retained data of the black box. Start-up does not clear this memory, and its content is undefined after power-on.
-/// Every part therefore has a checksum, which must match before the part is used.
+/// Cause and rows therefore have checksums. Data with a wrong checksum is ignored.
 struct BlackBoxNotes {
   struct Cause {
     std::uint32_t fault;  ///< protocol::Fault
@@ -44,7 +44,7 @@ struct BlackBoxMemory {
 
 /// Only the main loop uses the black box, because the control interrupt has no spare time. The main loop reads the
 /// sample ring, records one sample in twenty, and detects the fault and its period. Rows can be missing if the main
-/// loop is late. The period numbers of the rows then show the gap.
+/// loop is late. The period numbers of the rows show missing rows.
 class BlackBox {
  public:
   /// The constructor does not read `memory`.

@@ -1,10 +1,10 @@
 // Log of records in two flash sectors. The newest complete record is valid. A power loss during any write or erase
 // leaves either the previous record or the new record valid.
 //
-// A sector begins with five words: magic, sequence number, its erase count, the erase count of the other sector, and
-// the CRC of these words. The records follow this sector header. A record consists of a header of seven words
-// (RecordHead), a payload, and the CRC of header and payload. The CRC is written last. A record with a wrong CRC is
-// skipped, and its space is lost until the sector is erased.
+// A sector begins with five words: magic, sequence number, erase count of this sector, erase count of the other sector,
+// and CRC. The records follow this sector header. A record consists of a header of seven words (RecordHead), a payload,
+// and the CRC of header and payload. The CRC is written last. A record with a wrong CRC is skipped, and its space is
+// lost until the sector is erased.
 //
 // After start-up, words are programmed but no sector is erased. New records are written to the sector of the newest
 // record. When this sector is full, new records are written to the other sector if that sector is erased. Only start()

@@ -56,7 +56,7 @@ class SampleRing {
   /// Returns the newest sample, or null before the first sample. The interrupt overwrites a sample after 1.6 ms.
   const Sample* newest() const {
     const std::uint32_t recorded = recorded_.load();
-    // The flag is not reset, because the sample number returns to `first_` when it wraps.
+    // The flag `has_samples_` is not reset, because a wrapped sample number may be equal to `first_`.
     has_samples_ = has_samples_ || recorded != first_;
     return has_samples_ ? &samples_[(recorded - 1) % capacity] : nullptr;
   }

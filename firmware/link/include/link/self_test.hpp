@@ -33,8 +33,8 @@ class SelfTest {
   /// Invalid range at each end of a potentiometer track, relative to the track length. A healthy wiper never enters
   /// this range.
   static constexpr float gimbal_rail_part = 0.01f;
-  /// The current sensors are read after 1.2 ms, which is twelve time constants of a motor. After this time the current
-  /// of an earlier pulse has decayed.
+  /// The current sensors are read after 1.2 ms, twelve time constants of a motor. After this time the current of an
+  /// earlier pulse has decayed.
   static constexpr std::uint32_t off_periods = control::periods_in(0.0012f), offset_readings = 16;
 
   explicit SelfTest(const SampleRing& samples) : samples_(samples) {}
