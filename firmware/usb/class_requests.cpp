@@ -32,7 +32,7 @@ constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, ve
 
 constexpr std::uint16_t controller_value = static_cast<std::uint16_t>(protocol::ReportKind::input) << 8;  // no id
 
-/// Returns the report that wValue of GET_REPORT or SET_REPORT names, or null.
+/// Returns the report for wValue of GET_REPORT or SET_REPORT, or null.
 const protocol::ReportInfo* report_in(const SetupPacket& setup) {
   return protocol::find_report(static_cast<protocol::ReportKind>(setup.value_high()),
                                static_cast<ReportId>(setup.value_low()));
