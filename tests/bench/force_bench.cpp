@@ -18,7 +18,7 @@ using control::Vector3;
 constexpr control::Box box{{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
 constexpr control::Wall wall{800.0f, 2.0f};
 
-/// A probe that enters and leaves walls, edges and corners, so that each branch alternates.
+/// Moves a probe into and out of walls, edges and corners, so that each branch alternates.
 struct Path {
   struct Moment {
     Vector3 position_m, velocity_m_per_s;

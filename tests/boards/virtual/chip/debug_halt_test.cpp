@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t stop_rtc = 1 << 10, stop_can_1 = 1 << 25, nothing = 0;
 constexpr double halt_s = 0.02;
 
-/// Progress of the peripherals during the halt, as measured by the firmware afterwards.
+/// Progress of the peripherals during the halt.
 struct Moved {
   std::uint32_t systick_counts, rtc_cycles, wake_ups, frames;
 };

@@ -77,7 +77,7 @@ TEST_SUITE("virtual board: chip") {
         CHECK(cause == ResetCause::power_on);
         if (++resets == 1) test.chip.request_stop();
       };
-      // The power is cut after an erase, three words, another erase and 99 words of the sequence.
+      // Operations before the power cut: an erase, three words, another erase, 99 words.
       test.chip.cut_power_at_flash_operation(5 + 100);
       test.run_for(0.6);
       REQUIRE(resets == 1);

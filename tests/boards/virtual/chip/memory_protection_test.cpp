@@ -29,8 +29,8 @@ TEST_SUITE("virtual chip: memory protection") {
       ChipUnderTest test("protection", mode);
       const Stop stop = test.chip.run_until(ticks(0.01));
       REQUIRE(test.result(0) == finished);
-      // The areas are a read-only page, a region above this page with a disabled third eighth, and 32 bytes in another
-      // page.
+      // The test uses three areas: a read-only page, a region above this page whose third subregion is disabled, and 32
+      // bytes in another page.
       check_results(test, 1,
                     {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});
       // A 32-bit instruction extends into 32 non-executable bytes, and another instruction starts in these bytes.

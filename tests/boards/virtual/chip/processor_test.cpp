@@ -169,7 +169,7 @@ TEST_SUITE("virtual chip: processor") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional", mode);
-      // With steps of 22 cycles, most stops occur without an interrupt.
+      // Most steps of 22 cycles stop outside an interrupt.
       for (int step = 0; step < 60'000 && test.result(0) != finished; ++step) test.run_for(1.375e-6);
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (1 + 256 + 4096));
@@ -188,7 +188,7 @@ TEST_SUITE("virtual chip: processor") {
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (3 + 256));
       CHECK(test.result(2) > 1000);
-      // A few interrupts occur before and after the counting.
+      // A few interrupts occur before the start or after the end of the counting.
       const auto entries = test.chip.counters().exceptions[15].count;
       CHECK(entries - test.result(2) <= 4);
       CHECK(test.log.empty());

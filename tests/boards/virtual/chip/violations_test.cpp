@@ -52,7 +52,7 @@ constexpr Case cases[] = {
     {35, Rule::reference_hurried},
 };
 
-/// The firmware with one violation, and the USB core with a host that resets the bus when a device connects.
+/// A test firmware with one violation, and the USB core. The host resets the bus when a device connects.
 struct Planted {
   explicit Planted(unsigned fault, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
     test.breaks_rules = fault != 0;

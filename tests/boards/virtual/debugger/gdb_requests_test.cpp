@@ -9,7 +9,8 @@ using namespace inkwell::virtual_board::gdb;
 
 namespace {
 
-/// Returns the answer to a packet that needs no chip. For other packets, returns a text that is never sent to GDB.
+/// Returns the answer to a packet that needs no chip. If the answer needs the chip, the function returns a text that is
+/// never sent to GDB.
 std::string answer_to(std::string_view packet) {
   const Request request = request_of(packet);
   const auto* const answered = std::get_if<Answered>(&request);

@@ -13,7 +13,7 @@ using namespace inkwell::virtual_board::test;
 
 namespace {
 
-/// Returns the lines that a firmware has written to the file after `time_s`.
+/// Runs the chip for `time_s` and returns the lines of the waveform file.
 std::vector<std::string> lines_of(ChipUnderTest& test, double time_s, std::vector<PinName> pins) {
   const inkwell::tests::TemporaryDirectory directory;
   const auto path = directory / "waveform.vcd";

@@ -191,7 +191,7 @@ class Program:
                                   f"{self.one_of(['vldmia', 'vstmia'])} {base}{back}, {{s{first}-s{first + self.random.randrange(1, 12)}}}",
                                   f"{self.one_of(['ldr', 'str'])} {chosen[0]}, [{base}, #{4 * self.random.randrange(-9, 9)}]!",
                                   f"{self.one_of(['ldrb', 'strh'])} {chosen[0]}, [{base}], #{self.random.randrange(-99, 99)}"]))
-        # Addresses do not depend on the image position, but their use as data would make the state less random.
+        # The base register contains an address. The EOR makes this register random.
         return lines + [f"eor {base}, {base}, {chosen[0]}"]
 
     def indexed(self):

@@ -1,4 +1,4 @@
-// Injects each fault of the table by name into a chip with its arm, and checks its effect and its removal.
+// Injects each fault of the table by name and checks the effect and the removal of the fault.
 #include <injection/injector.hpp>
 
 #include <cmath>
@@ -349,7 +349,7 @@ TEST_CASE("supplies") {
   rig.run(0.0005);
   CHECK(rig.instructions_in(0.0005) > 0);
 
-  // A change of the amount of an active fault does not interrupt the fault: a low supply remains low.
+  // A new amount does not interrupt an active fault: the supply remains low.
   const auto brown_outs = [&] { return rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)]; };
   const auto before = brown_outs();
   for (const char* fault : {"logic_sag=2", "logic_sag=1.9"}) {

@@ -27,7 +27,7 @@ double energy_J(const ArmMotion& arm) {
          arm.dynamics().potential_energy_J(arm.joints_rad());
 }
 
-/// Moves the stops so far away that the arm never reaches them.
+/// Moves the stops beyond the reach of the arm.
 arms::Description unbounded(arms::Description arm) {
   using protocol::Parameter;
   for (auto p : {Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad, Parameter::elbow_minimum_rad})

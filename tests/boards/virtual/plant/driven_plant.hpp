@@ -18,7 +18,7 @@ using namespace inkwell::virtual_board;
 inline constexpr Ticks servo_period = ticks_per_s / board::servo_rate_Hz;
 inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 
-/// Input levels of the chip, with a quadrature decoder like the decoder of the timers.
+/// Input levels of the chip, and a quadrature decoder as in the timers.
 class DecodedInputs final : public InputPins {
  public:
   explicit DecodedInputs(const board::Facts& board) : facts(board) {}

@@ -42,7 +42,7 @@ TEST_CASE("the plant's meter tells the force and the work of motors on a hand th
   CHECK(reading.peak_force_N >= 0.99 * t.hand_force_N.norm());
   CHECK(reading.travel_m >= 0.99 * stretched_m);
   CHECK(reading.lag_m == doctest::Approx(reading.travel_m).scale(0).epsilon(0.02));
-  // The energy is at least the energy that is stored in the spring of the hand.
+  // The energy is at least the energy in the spring of the hand.
   CHECK(reading.energy_J > 0.9 * 0.5 * 2000.0 * stretched_m * stretched_m);
 }
 

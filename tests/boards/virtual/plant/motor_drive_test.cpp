@@ -111,7 +111,7 @@ TEST_CASE("the supply gives the power that the motor takes") {
   auto motor = drive();
   Ticks now = 0;
   const double mean_A = switch_bridge(motor, 0.5, 1000, now).mean_A;
-  // Runs one more period with single edges; the charges of this period have not been read. At duty cycle 0.5 the supply
+  // Runs one more period with single edges, and then reads the charges of this period. At duty cycle 0.5 the supply
   // drives the motor half of the time.
   const Ticks period = virtual_board::ticks_per_s / board::pwm_Hz;
   motor.set_leg(0, Leg::high, now + period / 8);

@@ -77,7 +77,7 @@ TEST_CASE("encoders count through fast motion without a lost edge") {
   CHECK(std::abs(encoder_after[0] - encoder_before[0]) > 500);
   for (unsigned i = 0; i < 3; ++i) CHECK(driven.inputs.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
   CHECK(driven.inputs.jumps == 0);
-  // Two edges within one step of the arm have separate times; otherwise the chip's filters would suppress them.
+  // Two edges within one step of the arm have separate times, so that the chip's filters accept these edges.
   const double counts_per_s = 40.0 *
                               static_cast<double>(arm.parameters[protocol::Parameter::gear_ratio_1] *
                                                   arm.parameters[protocol::Parameter::encoder_1_counts_per_turn]) /

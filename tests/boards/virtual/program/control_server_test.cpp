@@ -130,7 +130,7 @@ TEST_SUITE("virtual board: control socket") {
     ::setrlimit(RLIMIT_NOFILE, &lowest);
     const bool is_connected =
         ::connect(next.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    // A server that waits while it owns the lock would allow only one call per 20 ms.
+    // If the server waited with a locked mutex, only one call per 20 ms would be possible.
     const auto deadline = std::chrono::steady_clock::now() + 60s;
     int calls = 0;
     for (; calls < 20'000 && std::chrono::steady_clock::now() < deadline; ++calls)

@@ -105,7 +105,8 @@ TEST_CASE("a divide costs by the bits of its quotient, between 2 and 12 cycles")
 }
 
 TEST_CASE("a block tells which lines of flash it runs through, and when") {
-  // Nine 16-bit instructions start at 0x...E: one is in the first line, eight are in the second line.
+  // Nine 16-bit instructions start at 0x...E. The first instruction is in the first line, the next eight instructions
+  // are in the second line.
   const auto block = price_of({add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0}, start + 14);
   REQUIRE(block.requests.size() == 2);
   CHECK(block.requests[0].address == start);

@@ -40,7 +40,7 @@ TEST_CASE("spikes of 100 ns on an encoder's wire leave the pose alone, longer on
     CAPTURE(wire.number);
     CHECK(angles_under_spikes(wire, 100e-9, 207e-9).size() == 1);
     CHECK(angles_under_spikes(wire, 330e-9, 700e-9).size() == 1);
-    // The wire shows a false count half of the time. Each spike is counted up and down.
+    // Half of the time, the encoder count is wrong by one. Each spike is counted up and down.
     CHECK(angles_under_spikes(wire, 1e-6, 2.03e-6).size() == 2);
   }
 }

@@ -25,7 +25,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
-    // When the driver replaces a waiting pose, it reads the register twice. The second read belongs to a modification.
+    // When the driver replaces a waiting pose, it reads the register twice. The second read is part of a modification.
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
@@ -48,7 +48,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
 }
 
 TEST_CASE("a pose that the host takes while a newer one of the same frame replaces it does not come twice") {
-  // Without requests of the host, the driver replaces a report twice per frame: with the spare report and with the
+  // Without requests of the host, the driver replaces a report twice per frame: first by the spare report, then by the
   // newest report.
   for (const int replacement : {1, 2}) {
     CAPTURE(replacement);
@@ -97,7 +97,7 @@ Setup descriptor_request(std::uint8_t type) {
   return {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{type}, {}, {}, std::byte{64}, {}};
 }
 
-/// The firmware, and a host that sends a SETUP, a token and, at a chosen time, a second SETUP.
+/// The firmware and a host. The host sends a SETUP, a token and, at a chosen time, a second SETUP.
 struct Race {
   Race() : bus(flashed_image()) { bus.connect(); }
 
@@ -117,7 +117,7 @@ struct Race {
       CHECK((bus.core.read(control_out, 4) & naksts) != 0);
     });
   }
-  /// Returns the second byte of the device's final answer, the descriptor type; 0 without an answer.
+  /// Returns the descriptor type in the device's final answer; 0 without an answer.
   std::uint8_t answer() {
     for (int i = 0; i < 300; ++i) {
       bus.run_for(10e-6);

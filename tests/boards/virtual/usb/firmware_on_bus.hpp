@@ -74,8 +74,8 @@ class Cable : public virtual_board::BusDevice {
   virtual_board::BusDevice& device_;
 };
 
-/// The core's registers on the chip's bus. This object reports each read before the firmware receives the value, and
-/// each write.
+/// The core's registers on the chip's bus. This object reports each write, and each read before the firmware receives
+/// the value.
 class WatchedRegisters final : public virtual_board::Peripheral {
  public:
   explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}

@@ -55,8 +55,8 @@ void run_into_control_interrupt(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != control_interrupt) bus.run_for(1e-6);
 }
 
-/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps, which would change
-/// the type of the fault.
+/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps. A fault would then
+/// have another type.
 void run_into_main_loop(FirmwareOnBus& bus) {
   run_into_control_interrupt(bus);
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);
@@ -110,7 +110,7 @@ bool is_bl(std::uint16_t last, std::uint16_t before) {
 }
 bool is_call(std::uint16_t last, std::uint16_t before) { return is_blx(last) || is_bl(last, before); }
 
-/// Reads a null pointer with this link register and these words as the whole stack. Returns the crash record with the
+/// Reads a null pointer while the link register and the stack have these values. Returns the crash record with the
 /// callers.
 protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<const std::uint32_t> words) {
   FirmwareOnBus bus(flashed_image());

@@ -22,7 +22,7 @@ Bytes command(std::uint8_t code, std::uint32_t address) {
           std::byte(address >> 24)};
 }
 
-/// A host that updates the firmware with single requests, so that each state is observed.
+/// Updates the firmware with single requests, so that each state is observed.
 struct Loader {
   explicit Loader(FirmwareOnBus& the_bus) : bus(the_bus) {}
 

@@ -8,8 +8,8 @@
 namespace inkwell::virtual_usb_test {
 
 struct ForceTiming {
-  /// Histogram of report intervals, as deviations from one millisecond of host time. The middle bin is zero deviation;
-  /// the outer bins are up to 1, 3, 10, 30 us and more, in both directions.
+  /// Histogram of report intervals, as deviations from one millisecond of host time. The middle bin counts zero
+  /// deviations. On each side, the other bins count deviations up to 1, 3, 10 and 30 us, and larger deviations.
   static constexpr std::array<double, 4> deviation_bounds_us{1, 3, 10, 30};
   std::array<std::uint64_t, 2 * deviation_bounds_us.size() + 1> deviations{};
 
@@ -23,7 +23,8 @@ struct ForceTiming {
                                              ///< force
 };
 
-/// For `time_s` of board time, runs a program that immediately answers each pose with a force computed from this pose.
+/// Runs a program for `time_s` of board time. The program immediately answers each pose with a force that is computed
+/// from this pose.
 ForceTiming measure_forces(const std::filesystem::path& image, double host_clock_ppm, double time_s);
 
 }  // namespace inkwell::virtual_usb_test

@@ -129,7 +129,8 @@ class HostileHost {
     return status && status->empty();
   }
 
-  /// Sends reports and a SET_ADDRESS request, which the firmware finds in the receive FIFO together with the reset.
+  /// Sends reports and a SET_ADDRESS request. The firmware finds these packets in the receive FIFO together with the
+  /// reset.
   void leave_packets_behind() {
     constexpr unsigned elsewhere = 77;
     for (const bool data1 : {false, true}) bus_.cable.out(address_, 1, data1, Packet(64));

@@ -32,7 +32,7 @@ struct Host {
     };
   }
 
-  /// Configures the device like a host, which discards its previous requests.
+  /// Configures the device and discards all pending requests, like a host.
   void configure() {
     REQUIRE(bus.control(0x00, set_configuration, 1, 0, 0).status == 0);
     first_toggles.clear();
@@ -57,8 +57,8 @@ struct Host {
 TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
   Host host;
   std::uint8_t token = 0;
-  // The number of packets before a configuration differs between rounds. Therefore both values of the data toggle
-  // precede a configuration.
+  // The number of packets before a configuration differs between rounds. Therefore both values of the data toggle occur
+  // before a configuration.
   for (int round = 0; round < 4; ++round) {
     CAPTURE(round);
     host.configure();

@@ -168,8 +168,7 @@ namespace {
 constexpr int tears = 4;
 constexpr std::size_t store_offset = 0x8000, sector_bytes = 0x4000;
 
-/// The flash of a chip as the memory of the firmware's log. This class prepares store contents that would take the
-/// board hours.
+/// Log memory in the flash of a chip. The board would need hours to create these store contents.
 class StoreSectors final : public link::FlashMemory {
  public:
   explicit StoreSectors(Chip& chip) : words_(reinterpret_cast<std::uint32_t*>(chip.flash().data() + store_offset)) {}
@@ -270,8 +269,8 @@ const Contents before_an_erase[] = {
      default_stiffness},
 };
 
-/// A board whose parameters are read directly from its memory after start-up. A request by the host would take a
-/// quarter of a second of board time.
+/// A board and its parameters after start-up, read directly from memory. A request by the host would take a quarter of
+/// a second of board time.
 struct WatchedStarts {
   explicit WatchedStarts(const Contents& contents) {
     contents.make(board.bus.chip);

@@ -1,5 +1,5 @@
-// The flashed firmware during a slow supply loss, with the brown-out level of the board's page and with the brown-out
-// level of a new chip.
+// The flashed firmware during a slow supply loss, for two brown-out levels: the documented level and the level of a new
+// chip.
 #include <doctest/doctest.h>
 
 #include <omni_driver/facts.hpp>
