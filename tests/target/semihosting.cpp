@@ -17,7 +17,7 @@ std::uint32_t call(Operation operation, const void* parameters) {
   return r0;
 }
 
-/// The standard output of the simulator has the name ":tt", opened for writing (mode 4).
+/// Returns the handle of the simulator's standard output: name ":tt", mode 4 for writing.
 std::uint32_t standard_output() {
   static const struct {
     const char* name;

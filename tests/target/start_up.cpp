@@ -28,7 +28,7 @@ int run_tests();
 // Identifies the image for destructors of static objects. There is only one image.
 void* __dso_handle = nullptr;
 
-// Called by __libc_init_array. Empty, because all constructors are in the init array.
+// __libc_init_array calls these functions. The functions are empty, because all constructors are in the init array.
 void _init() {}
 void _fini() {}
 

@@ -10,7 +10,7 @@ using inkwell::control::BridgeWire;
 using inkwell::control::is_shorted;
 using inkwell::control::update_wire_check;
 
-/// Returns the number of checks of constant pins until detection; 0 means never.
+/// Returns the number of checks until detection, or 0 if the short circuit is never detected.
 int readings_until_shorted(const BridgePins& pins) {
   BridgeWire wire;
   for (int reading = 1; reading < 1'000; ++reading) {

@@ -67,7 +67,7 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK(filter.closed == 5);
   show(0, 3);
   CHECK(filter.closed == 5);
-  // The filter also follows a switch that reverts in the period in which its change is accepted.
+  // A switch may change back in the period in which the filter accepts the first change.
   for (std::uint32_t later = 0; later < 6; ++later) {
     CAPTURE(later);
     SwitchFilter other;

@@ -18,7 +18,7 @@ using control::Triple;
 using protocol::Fault;
 using protocol::Parameter;
 
-/// An arm held in the inkwell and pressed into three walls, with bridges and shunts at its motors.
+/// An arm that is pressed into three walls, and motors with bridges and shunts.
 struct HeldArm {
   protocol::ParameterSet parameters = tests::pressed_into_three_walls({0.002f, 0.001f, 0.002f}, 2000.0f);
   control::Settings settings = control::prepare(parameters);
@@ -162,7 +162,7 @@ TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and 
 TEST_CASE("a brake goes on whatever currents come and go, and so does a force that is asked for while a pulse runs") {
   HeldArm arm;
   arm.press(0, 1.0f);
-  // Above the speed limit the arm is braked, with a different current in each reading.
+  // Above the speed limit the arm is braked. The current differs between successive readings.
   int braked = 0;
   for (int i = 0; i < 200; ++i) {
     arm.samples.encoder_counts[1] += 8;

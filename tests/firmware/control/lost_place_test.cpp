@@ -1,5 +1,5 @@
-// Detection of wrong encoder counts. Wrong counts void the reference, whichever fault is reported. The reference is
-// restored only after the inkwell switch has opened and closed again.
+// Detection of wrong encoder counts. Wrong counts void the reference, independent of the reported fault. The reference
+// is restored only after the inkwell switch has opened and closed again.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using protocol::State;
 constexpr auto inkwell_closed = static_cast<std::uint8_t>(protocol::Switch::inkwell);
 constexpr std::uint32_t rest_periods = InkwellReference::still_periods + SwitchFilter::settle_periods + 10;
 
-/// Settings without contact and with a voltage limit below the detection of a missing motor.
+/// Settings without wall forces. The low voltage limit prevents the detection of a missing motor.
 Settings free_space(protocol::ParameterSet set = tests::omni_parameters()) {
   set = tests::without_motors(set);
   set[protocol::Parameter::wall_stiffness_N_per_m] = set[protocol::Parameter::wall_damping_Ns_per_m] = 0.0f;

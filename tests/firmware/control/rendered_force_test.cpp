@@ -135,7 +135,7 @@ TEST_CASE("a program that takes the walls' place, and gives it back, is felt wit
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);
-  // The program stops sending. After its force has expired, the walls act again.
+  // The program stops sending. After the program's force has expired, only the wall force remains.
   CHECK(arm.largest_step_N(100) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   CHECK(arm.controller.force_sources() == bit(ForceSource::walls));

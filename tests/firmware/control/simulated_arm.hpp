@@ -41,7 +41,7 @@ inline protocol::CommandReport command(protocol::Command which) {
   return report;
 }
 
-/// For tests without motor currents: the voltage limit is below the detection of a missing motor.
+/// For tests without motor currents. The low voltage limit prevents the detection of a missing motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
   set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::tolerance_V;
   return set;
@@ -81,7 +81,7 @@ inline void move_to(control::Controller& controller, control::Samples& samples,
   }
 }
 
-/// After the offset measurement and a passed self-test: state `unreferenced`.
+/// Controller in state `unreferenced`, after the offset measurement and a passed self-test.
 inline control::Controller started_controller(const control::Settings& settings,
                                               const control::MeasuredMotors& measured = {},
                                               std::uint32_t first_period = 0) {
@@ -92,7 +92,7 @@ inline control::Controller started_controller(const control::Settings& settings,
   return controller;
 }
 
-/// Referenced at counts of zero, with the stylus out of the inkwell: state `ready`.
+/// Controller in state `ready`: referenced at counts of zero, with the stylus out of the inkwell.
 inline control::Controller ready_controller(const control::Settings& settings,
                                             const control::MeasuredMotors& measured = {},
                                             std::uint32_t first_period = 0) {

@@ -1,5 +1,4 @@
-// The state transitions of the controller: reported states while the force rises and is limited, and the motors when
-// the force is switched off.
+// The controller's state transitions while the force rises, reaches its limit and is switched off.
 #include <doctest/doctest.h>
 
 #include <cmath>

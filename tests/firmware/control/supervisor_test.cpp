@@ -183,7 +183,7 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
     CHECK(advance(found, {good | events(Event::enable), 0}) == found);
     CHECK(advance(found, {clear, 0}) == in(State::ready));
     CHECK(advance(found, {clear, condition(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
-    // The cause of another fault does not prevent clearing. The new fault is raised afterwards.
+    // The condition of a second fault does not prevent clearing the first fault. The second fault is raised afterwards.
     const Fault other = row.fault == Fault::supply_low ? Fault::supply_high : Fault::supply_low;
     CHECK(advance(found, {clear, condition(other)}) == in(State::ready));
   }

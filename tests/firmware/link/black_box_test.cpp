@@ -332,7 +332,7 @@ TEST_CASE("memory after power-up is never taken for a black box") {
     if (i % 3 != 2) {
       fill(board.memory);
     } else {
-      // Fills the memory after the hash of the tables, as if random memory contained a matching hash.
+      // Random memory may follow a matching hash of the tables.
       fill(board.memory.notes.cause);
       fill(board.memory.ring);
       fill(board.memory.line);

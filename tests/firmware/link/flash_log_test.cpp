@@ -99,7 +99,7 @@ FlashLog started(FlashMemory& flash) {
   return log;
 }
 
-/// Stores sets from `first` on until `left` records still fit.
+/// Stores sets, numbered from `first` on, until there is space for only `left` records.
 std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
   FlashLog log = started(flash);
   while (log.room(payload_words) > left) REQUIRE(store(log, first++));

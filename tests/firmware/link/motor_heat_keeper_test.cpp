@@ -116,7 +116,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
     keeper.store(warmer);
     check_is(keeper.start(false), warmer);
   }
-  // The write of another heat is interrupted at each of its words.
+  // Storing a different heat is interrupted after each word.
   Memory other = memory_with(warm, warmer);
   for (std::size_t end = 1; end < check; ++end) {
     Memory cut = other;

@@ -1,4 +1,4 @@
-// Evaluation of the self-test pulses: healthy motors at any temperature and in a moving hand, and defects.
+// Evaluation of the self-test pulses of healthy and defective motors.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Stored parameters: stored on command, loaded at start-up, also if another firmware wrote them.
+// Parameters are stored on command and loaded at start-up, even if another firmware stored them.
 #include <doctest/doctest.h>
 
 #include <bit>

@@ -193,7 +193,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
   const float value = report.entries[row].value;
   CHECK(value == 321.0f);
 
-  // A refusal is not a stall. The transaction report shows the refusal.
+  // The device accepts the transfer and refuses the transaction. The transaction report shows the refusal.
   const test::Transaction bad{{9999, 0, 1.0f}};
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, 20), bad.bytes()) == done_result);
   result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
@@ -363,7 +363,7 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
       CHECK(position_m == static_cast<float>(period));
     }
   }
-  // A refusal is not a stall. The selected rows do not change, and the report shows the result.
+  // The device accepts the transfer and refuses the request. The selected rows do not change, and the report shows the result.
   const protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
   CHECK(bench.set_report(3, request) == done_result);
   const auto refused = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);

@@ -21,7 +21,7 @@ namespace {
 
 void check_alive(DeviceBench& bench) { CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18); }
 
-/// A SET_REPORT of all parameters has 13 packets and is the longest transfer that endpoint 0 uses completely.
+/// A SET_REPORT of all parameters: 13 packets.
 constexpr usb::SetupPacket set_parameters = {0x21, 9, 0x0311, 0, sizeof(protocol::ParametersReport)};
 
 std::uint32_t transactions(DeviceBench& bench) {
