@@ -61,7 +61,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK_FALSE(names.contains("none starting 4"));
   CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
-  // The default amount of the fault table, and another amount.
+  // Some faults are tested with the default amount of the fault table and with another amount.
   for (const char* amount : {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag",
                              "analog_sag=3.5", "main_loop_stalled", "main_loop_stalled=0.012"})
     CHECK(names.contains(std::string(amount) + " rest 1"));

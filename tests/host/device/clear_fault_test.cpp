@@ -42,7 +42,7 @@ class CountingTransport final : public device::Transport {
 
 constexpr std::uint32_t ms_periods = protocol::servo_rate_Hz / 1000;
 
-/// Number of poses that were awaited, 1 ms apart, while the board shows `shown(ms)`.
+/// Returns the time in milliseconds that clear_fault() waits while the board shows the state `shown(ms)`.
 template <class Shown>
 unsigned cleared_after_ms(std::int64_t begin_periods, State first, Shown shown) {
   unsigned written = 0, ms = 0;

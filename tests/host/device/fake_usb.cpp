@@ -109,7 +109,7 @@ Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind)
   return report;
 }
 
-/// Calls the board that carries out a device's requests, and returns the result that hidapi would return.
+/// Calls a board function and returns the result in the form of hidapi.
 template <class Call>
 int carry_out(Call call) {
   try {

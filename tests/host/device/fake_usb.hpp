@@ -60,7 +60,7 @@ struct FakeUsbDevice {
 /// Sets the answers that a session needs when it opens an arm.
 void answer_as_inkwell(FakeUsbDevice& arm);
 
-/// Name of the environment variable that chooses the operating system of a FakeUsb: "windows", or Linux if unset.
+/// Environment variable for the operating system of a FakeUsb: "windows" for Windows, unset for Linux.
 inline constexpr char fake_usb_system[] = "INKWELL_FAKE_USB_SYSTEM";
 
 /// The fake USB of one test. The devices exist until the end of the test. The Windows variant pads written reports to
@@ -71,7 +71,8 @@ class FakeUsb {
   FakeUsb();
   ~FakeUsb();
 
-  /// Adds an arm with this interface and endpoint for the scope; the HID interface has the other interface number.
+  /// Adds an arm whose scope has this interface and endpoint. The HID interface has the remaining interface number, 0
+  /// or 1.
   FakeUsbDevice& add_arm(std::string serial_number, std::uint8_t scope_interface = 1,
                          std::uint8_t scope_endpoint = 0x82);
 

@@ -73,19 +73,19 @@ class FakeUsbipServer {
   std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
   /// Changes the content of a feature report that is sent to the client.
   std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
-  /// Number of transactions at which the server closes the connection instead of accepting the transaction.
+  /// Number of transactions that the server answers by closing the connection.
   std::atomic<int> transactions_to_break_at = 0;
   /// Called before the server closes the connection at a transaction.
   std::function<void()> on_break = [] {};
-  /// The scope belongs to another program: scope transfers fail immediately with this status.
+  /// If true, the scope belongs to another program, so scope transfers fail immediately.
   std::atomic<bool> scope_is_taken = false;
-  /// Control requests are received but not answered, as if board time did not advance.
+  /// If true, control requests are received but not answered, as if board time did not advance.
   std::atomic<bool> holds_requests = false;
-  /// Output reports are received; only answer_output() answers them.
+  /// If true, output reports are received, and only answer_output() answers them.
   std::atomic<bool> holds_outputs = false;
   /// Status in the answer to an output report: 0 or a negative errno.
   std::atomic<std::int32_t> output_status = 0;
-  /// Accepts connections and sends no answer.
+  /// If true, the server accepts connections and sends no answer.
   bool silent = false;
 
   /// Answers the oldest pending transfer of this IN endpoint (1 pose, 2 scope), or the next transfer if none is
@@ -102,7 +102,7 @@ class FakeUsbipServer {
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
-  /// The shape reports, with the lengths at which they were received.
+  /// The shape reports in their received lengths.
   std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
   /// Number of transfers that the client has canceled.

@@ -1,4 +1,4 @@
-// Opening an arm from an address. The started board is a script that names servers of this test.
+// Opening an arm from an address. A script replaces the virtual board and prints the ports of the test's servers.
 #include <doctest/doctest.h>
 
 #include <atomic>

@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A systemd-inhibit that logs the process id and the arguments, and then runs the given command.
+/// A fake systemd-inhibit. The fake logs its process id and arguments, and runs the given command.
 class FakeInhibit {
  public:
   explicit FakeInhibit(const std::string& is = "exec \"$@\"") : path_before_(std::getenv("PATH")) {

@@ -1,4 +1,4 @@
-// Time limits of a USB/IP connection that would make the device tests slow.
+// Time limits of a USB/IP connection.
 #include <doctest/doctest.h>
 
 #include <sys/socket.h>

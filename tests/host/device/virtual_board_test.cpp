@@ -30,7 +30,7 @@ class Script {
   }
   std::filesystem::path program() const { return folder_ / "board"; }
   device::VirtualBoardOptions options() const { return {.program = program(), .elf = program()}; }
-  /// Content of the file with this name that the script wrote; empty if the file does not exist.
+  /// Content of the file that the script wrote; empty if the file does not exist.
   std::string file(const char* name) const {
     std::string line;
     std::getline(std::ifstream(folder_ / name), line);

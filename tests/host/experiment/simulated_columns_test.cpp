@@ -18,7 +18,7 @@ Recording recorded(std::uint32_t first_period, std::size_t samples) {
   return recording;
 }
 
-/// A trace as a virtual board sends it: each quantity is the period plus a thousandth of its column number.
+/// A trace in the format of a virtual board. Each quantity is the period plus a thousandth of its column number.
 device::Trace trace_of(std::uint64_t first_period, std::size_t rows) {
   device::Trace trace;
   trace.columns = {"period", "board_time_s"};

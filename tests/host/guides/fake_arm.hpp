@@ -1,5 +1,4 @@
-// A device for guides without USB: three windings with current loops, joints and switches that the test moves, and a
-// log of all requests.
+// A fake device for guides. The device simulates windings, current loops, joints and switches, and logs all requests.
 #pragma once
 
 #include <array>

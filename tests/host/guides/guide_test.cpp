@@ -70,7 +70,7 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   CHECK(details["motors"][0]["circuit_resistance_ohm"].get<double>() == doctest::Approx(3.0).epsilon(0.01));
   CHECK(details["motors"][0]["inductance_H"].get<double>() == doctest::Approx(0.4e-3).scale(0).epsilon(0.02));
 
-  // The guide tried the values and restored the previous values, with one transaction each.
+  // The guide applied the values in one transaction and restored the previous values in a second transaction.
   REQUIRE(arm.transactions.size() == 2);
   CHECK(arm.parameters() == protocol::default_parameters());
   REQUIRE(guide.findings().proposals.size() == 3);

@@ -1,4 +1,4 @@
-// HDF5 recordings of a program that was killed at any write to its file.
+// A program is killed at each write to its HDF5 recording.
 #include <doctest/doctest.h>
 
 #include <hdf5.h>

@@ -1,4 +1,4 @@
-// Recordings: the written data can be read again, also after a crash, with a full disk, or from a damaged file.
+// Recordings: written data remains readable after a crash or on a full disk, and damaged files cause an error.
 #include <doctest/doctest.h>
 
 #include <algorithm>

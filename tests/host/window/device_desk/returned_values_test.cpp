@@ -1,4 +1,4 @@
-// After a reconnection: the values that changed, the duration of the notice, and the changes that restore them.
+// Notice about values that changed during a reconnection, and restoration of these values.
 #include <doctest/doctest.h>
 
 #include <device_desk/returned_values.hpp>
@@ -12,7 +12,7 @@ namespace {
 constexpr Parameter stiffness = Parameter::wall_stiffness_N_per_m;
 constexpr Parameter damping = Parameter::wall_damping_Ns_per_m;
 
-/// A device that had the values `held_before` before a reconnection and has the default values afterward.
+/// View of a device with the values `held_before` before a reconnection and the default values after it.
 window::DeviceView returned(std::initializer_list<device::ParameterChange> held_before) {
   window::DeviceView view;
   view.status.connection = device::Connection::connected;

@@ -1,4 +1,4 @@
-// Labels that are too long are shortened with an ellipsis, and windows open in the size of their text.
+// Labels that are too long are shortened with an ellipsis, and the window size depends on the text.
 #include <doctest/doctest.h>
 
 #include <frame/ellipsis.hpp>
