@@ -259,7 +259,7 @@ TEST_CASE("parameters that were saved are not overwritten unless that is asked f
   const TemporaryDirectory directory;
   const auto file = directory.file("calibration.toml");
   write_file(file, "a calibration");
-  // The check precedes the connection: no device is at this port.
+  // The command checks the file before it connects.
   check_refused(run_program("inkwell", {"--usbip", "1", "parameters", "save", file}),
                 {"calibration.toml already exists", "--overwrite"});
   CHECK(read_file(file) == "a calibration");

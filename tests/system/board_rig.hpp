@@ -63,7 +63,7 @@ class BoardRig {
 /// Returns the largest true current of the three motors.
 double largest_current_A(device::ControlClient& control);
 
-/// The center of the default arm's box, within its reach.
+/// The center of the default arm's box.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
 /// Returns the point at this distance from free_point_m.
 constexpr device::Vector3 offset_from_free_point(double x_m, double y_m, double z_m) {

@@ -200,7 +200,7 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
     const Result result = result_of(known.name);
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < known.periods * control_period_s);
-    // Depending on the time of the fault, a current jump is detected first.
+    // Depending on the time of the fault, a current jump may be detected first.
     CHECK((result.detected_as == "motor_implausible" || result.detected_as == "current_jump"));
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
     CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);

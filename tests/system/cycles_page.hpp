@@ -5,8 +5,8 @@
 
 namespace inkwell::tests {
 
-/// Fails the test unless the figure of this row, in the column of the firmware's compiler, is within 5 % of `measured`.
-/// The test ignores a compiler without a column.
+/// Fails the test unless the page's figure is within 5 % of `measured`. `row` selects the row, and the firmware's
+/// compiler selects the column. The test ignores a compiler without a column.
 void check_figure_on_cycles_page(std::string_view row, double measured);
 
 }  // namespace inkwell::tests

@@ -89,7 +89,7 @@ Spread spread(const std::vector<double>& values, std::size_t begin, std::size_t 
   return {*smallest, *largest};
 }
 
-/// Returns the start of the half second in which the hand force is most constant while the probe is deep in a wall.
+/// Returns the start of the half second with the most constant hand force while the probe is deep in a wall.
 std::size_t steadiest_hold(const Columns& recording, const std::string& axis, std::size_t length) {
   const auto& depth_m = recording["penetration_" + axis + "_m"];
   const auto& hand_N = recording["hand_force_" + axis + "_N"];

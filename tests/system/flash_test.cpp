@@ -105,7 +105,7 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   for (const char* step : {"starting the boot loader", "erasing", "writing", "reading back", "starting the firmware"})
     CHECK(says(result, step));
 
-  // Without a name, the program's image is written. The program finds the board although the protocol versions of
+  // Without a board name, the program's image is written. The program finds the board although the protocol versions of
   // program and board differ.
   result = board.flash({});
   CHECK(result.exit_code == 1);
@@ -271,7 +271,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // A fake openocd with an erased flash. The fake reports a verified image, with the marker from the arguments.
+  // A fake openocd with an erased flash. The fake reports a verified image and prints the marker from the arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";

@@ -57,7 +57,8 @@ std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{s
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
-  // Locations that are neither read nor executed in this state, so that each error is detected before it has an effect.
+  // The firmware neither reads nor executes these locations in this state. Each error is therefore detected before it
+  // has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
                                   firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};

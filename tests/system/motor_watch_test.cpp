@@ -1,5 +1,5 @@
-// Consistency of voltage, current and speed of healthy motors in all uses of the arm, and the margin to a fault.
-// campaign_test.cpp tests the detection of mismatches.
+// Voltage, current and speed of healthy motors are consistent in all uses of the arm. The test also measures the margin
+// to a fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -93,13 +93,12 @@ class WatchedRig : public BoardRig {
 
   /// Largest sum, relative to the fault threshold MotorWatch::tolerance_sum_V.
   float nearest_V = 0.0f;
-  /// Single check: the voltage that resistance and speed do not explain, and the excess of this voltage over the
-  /// tolerance.
+  /// Largest voltage that resistance and speed do not explain, and its largest excess over the tolerance.
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
-  /// Largest current change per control period, and the share that current loop and speed do not explain. The fault
-  /// threshold is CurrentJump::tolerance_A.
+  /// Largest current change per control period, and the largest change that current loop and speed do not explain. The
+  /// fault threshold is CurrentJump::tolerance_A.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A board with all ports, whose firmware echoes the received UART bytes.
+/// A board with all ports. The firmware echoes received UART bytes.
 class BoardWithPorts {
  public:
   explicit BoardWithPorts(const std::string& port) : program_(words(port)) {

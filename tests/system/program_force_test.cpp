@@ -19,7 +19,7 @@ using protocol::Parameter;
 constexpr float force_limit_N = 3.3f;
 constexpr std::uint32_t periods_per_ms = protocol::servo_rate_Hz / 1000;
 
-/// A board whose arm is held by a hand in free space, with the force on.
+/// A board with the force on. A hand holds the arm in free space.
 struct ProgramRig : BoardRig {
   ProgramRig() {
     set({{Parameter::force_ramp_s, 0.0f}, {Parameter::force_limit_N, force_limit_N}});
@@ -84,7 +84,7 @@ TEST_CASE("a program's force is felt, shown as its own, and gone within its expi
   const auto is_gone = [](const auto& pose) { return pose.force_N[0] == 0.0f; };
   const auto gone = std::find_if(silence.begin(), silence.end(), is_gone);
   REQUIRE(gone != silence.end());
-  // The bound includes one bus frame and one control period each for the force and for the pose.
+  // The bound includes two bus frames and two control periods.
   CHECK(gone->time_periods - last_heard <= (50 + 10 + 2) * periods_per_ms + 2);
   CHECK(gone->time_periods - last_heard >= 50 * periods_per_ms);
   CHECK(std::all_of(gone, silence.end(), is_gone));
@@ -234,7 +234,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   rig.run(0.8);
   CHECK(rig.pose().force_N[2] == doctest::Approx(1.0).epsilon(0.1));
   CHECK(protocol::is_felt(rig.pose().force_sources, whose));
-  // The upward move lasts long. The downward move lasts until the hand has followed the floor.
+  // The upward move is observed for 0.3 s. The downward move is observed until the hand has followed the floor.
   struct Move {
     double by_m;
     int milliseconds;

@@ -1,5 +1,4 @@
-// Companion and firmware with different protocol versions: each refuses the other, states the reason, and moves
-// nothing.
+// The companion and the firmware refuse a different protocol version and report the reason, and the arm does not move.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The same seed and the same calls give the same run in both modes, independent of the speed of the computer.
+// The same seed and the same calls produce the same run in both modes, independent of the computer's speed.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -338,7 +338,7 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
   CHECK(json.at("items").at(5).at("figure").is_null());
 
-  // Clearing repeats the self-test and returns after the self-test.
+  // `fault clear` repeats the self-test and waits for its result.
   const auto clear = [&] { return run_program("inkwell", {"fault", "clear", "--usbip", port}); };
   const auto again = clear();
   CHECK(again.exit_code == 1);

@@ -17,19 +17,19 @@ void look_for(WindowRig& rig, const std::string& text) {
   rig.wait_until("it says " + text, [&](const Sight& now) { return now.says(text); });
 }
 
-/// Text that is typed before the field has the keyboard focus is lost.
+/// A text field loses text that is typed before the field has the keyboard focus.
 void wait_for_keyboard(WindowRig& rig, const std::string& field) {
   rig.wait_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
-/// The control that receives the keys; empty if no control does.
+/// The control that receives the keys; empty without such a control.
 std::string focused_control(const Sight& sight) {
   for (const auto& each : sight.all.at("items").items())
     if (each.value().at("active")) return each.key();
   return sight.with_keyboard();
 }
 
-/// ImGui 1.90 also stops at the buttons before the field.
+/// With ImGui 1.90, Tab also selects the buttons before the field.
 void go_by_tab(WindowRig& rig, const std::string& field) {
   constexpr int most_stops = 5;
   for (int stop = 0; stop < most_stops && !rig.look().is_active(field); ++stop) {

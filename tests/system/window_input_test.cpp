@@ -20,7 +20,7 @@ const std::string stiffness_handle = "tuning/wall_stiffness_N_per_m handle";
 constexpr double points_of_whole_range = 1000;  // drag distance of a handle over the whole range
 constexpr std::uint32_t periods_per_usb_frame = protocol::servo_rate_Hz / 1000;
 
-/// The current control period of the board, read from the trace, which has one row per period.
+/// Reads the current control period of the board from the trace, which has one row per period.
 class BoardClock {
  public:
   explicit BoardClock(device::ControlClient& control) : control_(control) { control_.trace_start(); }
@@ -78,8 +78,8 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.press_mouse();
     rig.move_to({handle.x + 20, handle.y});
     rig.wait_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-    // Board time is paused while the event is generated and handled, at a different phase of the USB frame in each
-    // attempt. Only the transaction is measured, so that a busy computer does not change the result.
+    // Board time is paused while the event is generated and handled. Each attempt uses another phase of the USB frame.
+    // Only the transaction is measured, so that a busy computer does not change the result.
     rig.control.run(2e-4 * (attempt + 1));
     const auto moved_at = clock.newest_period();
     rig.control.stand_by();

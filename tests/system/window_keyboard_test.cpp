@@ -35,7 +35,7 @@ void go_to_part(WindowRig& rig, const std::string& part) {
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
-/// Presses the key until the item has the keyboard focus. Returns the items that had the focus before.
+/// Presses the key until the item has the keyboard focus. Returns all items that had the focus, including this item.
 std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::string& item, int steps_maximum) {
   std::set<std::string> on_the_way;
   for (int step = 0; step < steps_maximum; ++step) {

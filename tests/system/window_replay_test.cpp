@@ -42,7 +42,7 @@ Sight lay_over(WindowRig& rig, const std::string& file) {
   return rig.wait_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
 }
 
-/// Returns a picture of the window with no item under the mouse.
+/// Moves the mouse away from all items and returns a picture of the window.
 Image picture_of(WindowRig& rig) {
   rig.move_to({700, 60});
   rig.look();

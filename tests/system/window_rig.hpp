@@ -60,7 +60,7 @@ class WindowRig {
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
                      const std::string& screen = usual_screen);
 
-  /// Uses a board of this name with another image, build/board/`image`; does not wait.
+  /// Uses the board with this name and the image build/board/`image`; does not wait.
   static WindowRig with_image(const std::string& image, const std::string& board_name) {
     return WindowRig(OtherImage(), image, board_name);
   }
