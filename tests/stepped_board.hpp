@@ -1,4 +1,4 @@
-// A virtual board whose time advances only on request: the same calls produce the same run on any machine.
+// A virtual board whose time advances only on request. The same calls produce the same run on any machine.
 #pragma once
 
 #include <device/control_client.hpp>

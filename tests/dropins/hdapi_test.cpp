@@ -248,7 +248,7 @@ TEST_CASE("a thread's current device is not taken away by another thread's frame
   while (state.frames < 10) CHECK(hdGetCurrentDevice() == state.left);
   std::jthread([&] { CHECK(hdGetCurrentDevice() == state.left); }).join();  // none current in this thread
 
-  // A callback that another thread waits for uses the current device of the waiting thread.
+  // A synchronous callback uses the current device of its calling thread.
   std::array<HHD, 2> seen{};
   CHECK(until([&] {
     seen[0] = hdGetCurrentDevice();

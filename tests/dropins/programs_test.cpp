@@ -1,4 +1,4 @@
-// Programs in separate processes that behave like CHAI3D or HDAPI programs, started by `inkwell run` or in parallel.
+// Starts separate programs that behave like CHAI3D or HDAPI programs, in parallel or with `inkwell run`.
 #include <doctest/doctest.h>
 
 #include <signal.h>

@@ -59,7 +59,7 @@ const Registered usb_descriptors{
 
 const Registered force_law{"force_law",
                            [](Input input) {
-                             // A joined force law is never freed, so only the first force laws are joined.
+                             // The memory of a joined force law is never freed, so only a limited number is joined.
                              static std::size_t joined = 0;
                              constexpr std::size_t joined_maximum = 100'000;
                              refuse_or_take<device::Error>([&] {

@@ -91,7 +91,7 @@ const Registered window_settings{
     [](Input input) { window::parse_settings(window::format_settings(window::parse_settings(text_of(input)))); },
     [] { return std::vector<Bytes>{bytes_of(window::format_settings({}))}; }};
 
-/// An ELF file with any content that a user may choose.
+/// An ELF file with any content.
 const Registered firmware_image{"firmware_image",
                                 [](Input input) {
                                   refuse_or_take<firmware_update::NoImage>([&] {

@@ -1,4 +1,5 @@
-// Flash content of the parameter store that an earlier firmware, an interrupted write or a worn chip may have left.
+// Any flash content of the parameter store, such as the result of an earlier firmware, an interrupted write or a worn
+// chip.
 #include <cstring>
 #include <stdexcept>
 

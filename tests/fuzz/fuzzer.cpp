@@ -1,8 +1,7 @@
-// Connects one target to libFuzzer, which contains main():
-//
-//     inkwell-fuzz TARGET [libFuzzer's options] [FOLDER...]   fuzzes; inputs that reach new code are saved in FOLDER
-//     inkwell-fuzz --list                                     prints the targets
-//     inkwell-fuzz --seeds TARGET FOLDER                      writes the target's seeds as raw input
+// Connects one target to libFuzzer, which contains main().
+// `inkwell-fuzz TARGET [libFuzzer's options] [FOLDER...]` fuzzes and saves inputs that reach new code in FOLDER.
+// `inkwell-fuzz --list` prints the targets.
+// `inkwell-fuzz --seeds TARGET FOLDER` writes the target's seeds as raw input.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 // To add a target:
-// 1. Write a function that accepts any bytes and catches only the documented error of the parser. Register it with
-//    `Registered` in a file of this folder.
+// 1. Write a function that accepts any bytes and catches only the documented error of the parser.
+//    Register the function with `Registered` in a file of this folder.
 // 2. Add a row to docs/fuzzing.md.
 // 3. Store each input that broke the parser in seeds/TARGET, as raw bytes or as hexadecimal digits with the suffix
 //    .hex.

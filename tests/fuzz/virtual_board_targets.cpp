@@ -93,7 +93,7 @@ const Registered control_requests{
       });
     }};
 
-/// The start image of a board. The memories still contain the previous images.
+/// A firmware image that a board loads. The memories still contain the previous images.
 const Registered board_image{"board_image",
                              [](Input input) {
                                static Memory memory;
@@ -177,7 +177,7 @@ std::string found_in(std::string_view bytes, std::size_t piece) {
   return seen;
 }
 
-/// Messages that arrive in pieces of one byte.
+/// Joins messages into an input that is processed in pieces of one byte.
 template <class... Messages>
 Bytes one_by_one(const Messages&... messages) {
   Bytes bytes = tests::joined(messages...);
@@ -296,8 +296,8 @@ std::vector<Bytes> gdb_examples() {
   return all;
 }
 
-/// With a first byte of 0, the input is one packet without its frame. Otherwise the input is a byte stream in pieces of
-/// this length.
+/// If the first byte is 0, the input is one packet without its frame. Otherwise the input is a byte stream, and the
+/// first byte is the length of the pieces.
 const Registered gdb_requests{
     "gdb_requests",
     [](Input input) {

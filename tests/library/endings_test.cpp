@@ -117,7 +117,7 @@ struct Watched : Board {
       require(set_patience);
     }
   }
-  /// Checks the effect of the command, and that no other state of the program remains.
+  /// Checks the effect of the command. No other state of the program may remain.
   void check(const std::string& command) {
     CHECK(newest().state == INKWELL_READY);
     driver.reset();

@@ -1,4 +1,4 @@
-// The paths of forces to the device and of poses to the program, without a queue that adds delay.
+// Forces to the device and poses to the program use no queue that adds delay.
 #include <doctest/doctest.h>
 
 #include <memory>

@@ -127,7 +127,7 @@ TEST_CASE("a slow servo misses no pose of a virtual board; a slow loop misses no
   inkwell_pose pose, before;
   for (int i = 0; i < 40; ++i) {
     REQUIRE(inkwell_wait_for_pose(arm.arm, 10.0, &pose) == INKWELL_OK);
-    // From its second force on, a program counts as a loop that the virtual board waits for.
+    // After a program's second force, the virtual board waits for each force of this program.
     if (i > 1 && !board) CHECK(pose.sequence == before.sequence + 1);
     before = pose;
     std::this_thread::sleep_for(slow);

@@ -1,4 +1,4 @@
-// Values of a program's pose that the reader adds to the report.
+// Values that the reader adds to a pose.
 #include <doctest/doctest.h>
 
 #include <cmath>

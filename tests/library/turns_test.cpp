@@ -1,4 +1,4 @@
-// Lock step: the start of a turn of virtual boards, and the conditions for this start.
+// Lock step: conditions for the start of a turn of virtual boards.
 #include <doctest/doctest.h>
 
 #include <atomic>

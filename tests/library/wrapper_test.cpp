@@ -30,7 +30,7 @@ struct Calls {
   std::atomic<bool> is_gone = false;
 };
 
-/// A servo whose destruction lasts several poses of `clock`, so that a late call of the library would occur.
+/// A servo whose destruction lasts several poses of `clock`, so that a late library call would be detected.
 Arm::Servo counting_servo(const std::shared_ptr<Calls>& calls, const Arm& clock) {
   struct Captured {
     std::shared_ptr<Calls> calls;

@@ -8,8 +8,8 @@
 
 namespace inkwell::tests {
 
-/// Calls `carry_out` with each line of the standard input until the input ends. `carry_out` prints the answer; its
-/// exception becomes the answer "error ...".
+/// Calls `carry_out` with each line of the standard input until the input ends. `carry_out` prints the answer. If
+/// `carry_out` throws an exception, the answer is "error ...".
 template <class CarryOut>
 void answer_commands(CarryOut carry_out) {
   for (std::string line; std::getline(std::cin, line);) {

@@ -38,7 +38,7 @@ const window::DeviceView& connected_view() {
   return view;
 }
 
-/// Throws the shown reason if this window does not have the force on.
+/// Throws the displayed reason if this window has not switched the force on.
 void require_force(const window::DeviceView& view) {
   const auto& driver = view.status.driver;
   if (driver && !driver->is_this_device) fail(view, device::driver_text(*driver));

@@ -1,5 +1,5 @@
-// A program that is linked against libHD.so. The program pulls to the right in each tick until a line is read, or exits
-// in the middle of a frame. The program prints `drives` when the force is on.
+// A program that is linked against libHD.so. The program pulls to the right in each tick until it reads a line. With
+// `ends-in-a-frame`, the program exits in the middle of a frame. The program prints `drives` when the force is on.
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>

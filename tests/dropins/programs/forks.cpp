@@ -79,7 +79,7 @@ void use_phantom_in_child() {
   check(hdPhantomOpen(0) == -1, "a child has taken the arm");
 }
 
-/// The exit code; 99 if a signal, such as the alarm after a deadlock, ended the child.
+/// Returns the exit code, or 99 if a signal ended the child.
 int wait_for(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);

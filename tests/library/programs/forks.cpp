@@ -14,7 +14,7 @@
 
 namespace {
 
-/// A global object whose destructor closes the arm in each process, as in programs of users.
+/// Closes the arm in each process when global objects are destroyed.
 struct LateArm {
   inkwell_arm* arm = nullptr;
   ~LateArm() { inkwell_close(arm); }
@@ -93,7 +93,7 @@ void open_another() {
   }
 }
 
-/// The exit code; 99 if a signal, such as the alarm after a deadlock, ended the child.
+/// Returns the exit code, or 99 if a signal ended the child.
 int wait_for(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);

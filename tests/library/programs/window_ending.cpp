@@ -1,5 +1,5 @@
 // Counterpart of ending.cpp for the window without a display. The window executes the requested command before it
-// closes. window_ending COMMAND exit|wait
+// closes. Usage: window_ending COMMAND exit|wait
 #include <unistd.h>
 
 #include <chrono>
