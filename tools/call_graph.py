@@ -96,7 +96,7 @@ BRANCH = re.compile(r"(?:bl?|b[a-z]{2})(?:\.[nw])?\t[0-9a-f]+ <([^>+]+)(\+0x[0-9
 INDIRECT = re.compile(r"(?:blx|bx)\t(r\d+|ip|fp|sl|sb)|mov\tpc, (\w+)")
 LOAD = re.compile(r"ldr(?:\.w)?\t(\w+), \[(\w+)(?:, #(\d+))?\]")
 WORD = re.compile(r"\.word\t0x([0-9a-f]{8})")
-# Veneer that the linker inserts for a call beyond the range of the instruction: a function that loads its target.
+# A veneer is a function that the linker inserts for a call beyond the range of the instruction.
 VENEER = re.compile(r"__.+_veneer")
 DIVIDE = re.compile(r"(?:v?sqrt|vdiv|vsqrt|[su]div)\b")
 

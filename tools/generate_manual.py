@@ -105,7 +105,7 @@ def main() -> int:
         old.unlink()
     for program in programs:
         for command in [program, *program.commands]:
-            # No time stamp, so that equal help texts give equal files.
+            # The file has no time stamp, so equal help texts produce equal files.
             content = gzip.compress(page(command, version).encode(), 9, mtime=0)
             (folder / f"{'-'.join(command.words)}.1.gz").write_bytes(content)
     return 0

@@ -119,7 +119,7 @@ class DebugInformation:
         raise Unreadable(f"{name} in the peripheral at 0x{base:08X} is neither a Register nor a RegisterArray")
 
     def field(self, alias, register: str) -> Field:
-        # No object has a field type, so the debug information contains only its full name.
+        # No object has a field type, so the debug information contains only the type's full name.
         form = re.fullmatch(r"Field<.*::(\w+), (\d+)U?, (\d+)U?>", self.name(self.type_of(alias)))
         if not form:
             raise Unreadable(f"{register}.{self.name(alias)} is not a Field")

@@ -15,7 +15,7 @@ import sys
 
 from call_graph import Image, Unreadable, read_image
 
-# Stacked by the processor on exception entry: 26 words including the floating-point registers, and one for alignment.
+# On exception entry the processor stacks 26 words, including the floating-point registers, and one alignment word.
 EXCEPTION_FRAME_BYTES = 27 * 4
 
 # These functions set the stack pointer on purpose: the interrupted stack may be invalid, or the boot loader has a

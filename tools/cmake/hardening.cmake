@@ -11,7 +11,7 @@ set(INKWELL_CONFIG_FLAGS "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${INKWELL_CONFIG}
 if(INKWELL_CONFIG_FLAGS MATCHES "-O([1-3sgz]|fast)" AND NOT INKWELL_CONFIG_FLAGS MATCHES "-fsanitize")
   list(APPEND INKWELL_HARDENED_COMPILE -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
 endif()
-# For a target that is compiled without optimization.
+# Option for targets that are compiled without optimization.
 set(INKWELL_NOT_OPTIMIZED "SHELL:-O0 -U_FORTIFY_SOURCE")
 
 add_compile_options(${INKWELL_HARDENED_COMPILE})
