@@ -1,4 +1,5 @@
-// Firmware drivers on the virtual chip, with disturbances that are not possible with the complete firmware.
+// Tests of firmware drivers on the virtual chip. The disturbances of these tests are not possible with the complete
+// firmware.
 #include <doctest/doctest.h>
 
 #include "chip_fixture.hpp"

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t passes = 0, refused = 0x82, refused_instruction = 0x01, unaligned = 1u << 24,
                         no_answer = 0x8200, as_hard_fault = 1u << 30;
 
-/// The comments of the test firmware contain the same indices.
+/// The comments of the test firmware contain the indices of these results.
 void check_results(const ChipUnderTest& test, unsigned first, const std::vector<std::uint32_t>& expected) {
   for (unsigned i = 0; i < expected.size(); ++i) {
     const unsigned number = first + i;

@@ -38,7 +38,7 @@ std::string digits(std::uint32_t value) {
   return hexadecimal(std::span(reinterpret_cast<const std::uint8_t*>(&value), 4));
 }
 
-/// Address at which the firmware lock_up reads an unmapped address: the first instruction of read_too_far.
+/// Returns the address of the first instruction of read_too_far, which reads an unmapped address.
 std::uint32_t place_of_fault() {
   ChipUnderTest test("lock_up");
   test.run_for(0.01);

@@ -1,4 +1,4 @@
-// A plant with simulated timers: PWM edges, and a decoder for its encoders.
+// A plant with simulated timers. The timers generate PWM edges and decode the encoders.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,7 @@ using namespace inkwell::test;
 
 namespace {
 
-/// An arm without friction and weight that rotates about its waist axis, with decoded encoder edges.
+/// An arm without friction and weight that rotates about its waist axis. The encoder edges are decoded.
 struct Swinging {
   Swinging() : arm(weightless()), driven(arm) {
     driven.plant.place({-0.9, 0.8, 0.4}, {20.0, 0.0, 0.0});
@@ -213,7 +213,7 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
   slow.plant.set_leg_delay(1, 0, 1e-6);
   slow.plant.set_leg_delay(1, 1, 1e-6);
   slow.run(0.003, {0.0, 0.4, 0.0});
-  // The diodes conduct during the delay, as in a dead time: once per period in each leg.
+  // The diodes conduct during the delay once per period in each leg, as in a dead time.
   const double lost_V = 2.0 * 1e-6 * board::pwm_Hz * static_cast<double>(board::supply_nominal_V);
   CHECK(healthy_A - current_A(slow, 1) ==
         doctest::Approx(lost_V / test::circuit_ohm(test::omni())).scale(0).epsilon(0.4));

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server with a thread that answers and counts its requests.
+/// A server, and a thread that answers and counts requests.
 class AnsweringServer {
  public:
   explicit AnsweringServer(const local::SocketAddress& where = {}) : server_(where) {

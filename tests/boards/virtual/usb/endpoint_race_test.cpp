@@ -73,7 +73,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     protocol::PoseReport first;
     std::memcpy(&first, packet.data(), sizeof first);
     bus.registers.on_read = {};
-    // The port model does not see a packet that this test reads directly, so this test also requests the next packet.
+    // The port model does not detect packets that this test reads directly, so this test also requests the next packet.
     std::optional<protocol::PoseReport> next;
     bus.cable.on_start_of_frame = [&](std::uint16_t) {
       if (next || bus.core.in(own_address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;
@@ -173,8 +173,8 @@ TEST_CASE("a SETUP that comes while the one before is answered gets its own answ
 TEST_CASE("while a SETUP has been read and its end has not, nothing is made ready") {
   Race race;
   race.begin(descriptor_request(device_descriptor));
-  // The second SETUP arrives while the driver answers the first one. The driver reads the second SETUP before it sends
-  // the answer to the first.
+  // The second SETUP arrives while the driver answers the first SETUP. The driver reads the second SETUP before it
+  // answers the first SETUP.
   constexpr std::uint32_t setup_done = 4;
   race.bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
     if (!race.came && offset == receive_pop && (value >> 17 & 0xF) == setup_done) race.interfere();

@@ -23,7 +23,7 @@ using virtual_board::Ticks;
 using virtual_board::ticks;
 using virtual_board::Urb;
 
-/// A constant circuit: supply and sensors have the values of a board at rest, unless a test changes them.
+/// Supply and sensors have the values of a board at rest, unless a test changes these values.
 class RestingCircuit final : public virtual_board::Circuit {
  public:
   void output_changed(char, unsigned, virtual_board::PinLevel, Ticks) override {}

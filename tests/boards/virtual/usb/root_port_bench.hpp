@@ -1,4 +1,4 @@
-// A root port, the OTG_FS core with a driver, and a host that records every result.
+// A root port, the OTG_FS core, a driver and a host. The host records every result.
 #pragma once
 
 #include <doctest/doctest.h>

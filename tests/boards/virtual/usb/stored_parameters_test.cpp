@@ -164,7 +164,7 @@ TEST_CASE("nothing is stored while the board tests itself") {
 
 namespace {
 
-/// Number of variants of an interrupted erase or word.
+/// Number of simulated results per interrupted operation.
 constexpr int tears = 4;
 constexpr std::size_t store_offset = 0x8000, sector_bytes = 0x4000;
 
@@ -364,7 +364,7 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 }  // namespace
 
 // The result of the power cut is created directly in flash, because no other state survives a power cut. A later test
-// cuts the power of the chip itself, which costs one self-test per cut.
+// cuts the power of the chip itself. Each power cut of that test costs one self-test.
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);
