@@ -3,7 +3,7 @@
 #define DOCTEST_CONFIG_NO_MULTITHREADING
 #include <doctest/doctest.h>
 
-/// Called by the start-up code, because an ISO C++ program must not call main().
+/// The start-up code calls this function, because an ISO C++ program must not call main().
 extern "C" int run_tests() {
   doctest::Context context;
   context.setOption("no-colors", true);

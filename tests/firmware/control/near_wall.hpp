@@ -1,4 +1,4 @@
-// An arm whose inkwell is close to a wall, and a host that sends signs of life.
+// An arm with its inkwell near a wall, and a host that sends signs of life.
 #pragma once
 
 #include <firmware/control/arms.hpp>

@@ -68,7 +68,7 @@ inline std::array<std::int32_t, 3> counts_at(const control::Triple& joint_rad, c
   return counts;
 }
 
-/// Moves to these counts in steps of at most `step_counts` per `step_periods`, with signs of life of the host.
+/// Moves to these counts in steps of at most `step_counts` per `step_periods`. The host sends signs of life.
 inline void move_to(control::Controller& controller, control::Samples& samples,
                     const std::array<std::int32_t, 3>& there_counts, const control::Settings& settings,
                     std::int32_t step_counts = 15, std::uint32_t step_periods = 1) {

@@ -78,7 +78,7 @@ struct Board {
     REQUIRE(report.row_count <= protocol::black_box_report_rows);
     return {report.rows, report.rows + report.row_count};
   }
-  /// Returns the periods of all rows, read like a host, and checks all values.
+  /// Reads all rows like a host and checks all values. Returns the periods of the rows.
   std::vector<std::uint32_t> periods() {
     std::vector<std::uint32_t> found;
     int wrong = 0;

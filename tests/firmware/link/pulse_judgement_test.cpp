@@ -37,7 +37,7 @@ struct Bench {
   }
 };
 
-/// Returns the result with a changed second motor. All other motors must pass.
+/// Returns the result with a changed second motor. The first and the third motor must pass.
 PulseJudgement with_second(Change change) {
   Bench bench;
   change(bench.simulated.motors[1]);
