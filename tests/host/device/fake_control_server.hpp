@@ -16,7 +16,7 @@ namespace inkwell::tests {
 
 class FakeControlServer {
  public:
-  /// Text of the answer to a request, with its line end.
+  /// Answer to a request, including the line end.
   using Answer = std::function<std::string(const nlohmann::json&)>;
 
   explicit FakeControlServer(Answer answer) : answer_(std::move(answer)) {}

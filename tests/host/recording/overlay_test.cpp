@@ -14,7 +14,7 @@ using protocol::Signal;
 
 namespace {
 
-/// One signal, whose value is the number of periods since the first sample.
+/// The value of the only signal is the number of periods since the first sample.
 Recording ramp(const std::string& name, std::uint32_t first_period, std::size_t count) {
   Recording recording = Recording::without_samples({.signals = {Signal::force_N}});
   recording.name = name;
