@@ -11,7 +11,7 @@ namespace inkwell::tests {
 
 inline constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 
-/// After a restart of the board: waits for the USB device and opens it again.
+/// Waits for the USB device after a restart of the board, and opens the device again.
 void reconnect(BoardRig& rig);
 
 bool any_leg_high(device::ControlClient& control);
