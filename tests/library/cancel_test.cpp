@@ -1,4 +1,4 @@
-// Threads of a program that are canceled while they wait in the library.
+// Cancellation of threads that wait in the library.
 #include <doctest/doctest.h>
 
 #include <atomic>

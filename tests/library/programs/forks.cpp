@@ -1,6 +1,6 @@
 // Forks while the library's threads run: many times in the main thread, then in the servo. A child calls every function
-// on its parent's arm, closes it, opens another arm, and exits with all destructors. Prints each deviation, then the
-// state of the parent.
+// on its parent's arm, closes this arm, opens another arm, and exits with all destructors. Prints each deviation, then
+// the state of the parent.
 #include <sys/wait.h>
 #include <unistd.h>
 
