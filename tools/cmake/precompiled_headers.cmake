@@ -1,6 +1,6 @@
-# Third-party headers with a long parsing time, precompiled once for many targets. With ccache, set its sloppiness to
-# "pch_defines,time_macros". CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether each file includes the headers that it
-# uses; the clang preset sets it.
+# Third-party headers with a long parsing time, precompiled once for many targets. With ccache, set the sloppiness of
+# ccache to "pch_defines,time_macros". The clang preset sets CMAKE_DISABLE_PRECOMPILE_HEADERS=ON to show whether each
+# file includes the headers that it uses.
 
 # Applies the precompiled headers of `name` to all compiled targets of a directory and its subdirectories. A target must
 # link to `library` and have no precompiled headers yet. Without fmt's definitions the compiler refuses headers that
