@@ -147,8 +147,8 @@ TEST_SUITE("virtual chip: encoder inputs") {
       Ticks sampling;  ///< in timer clocks
       unsigned samples;
     };
-    // Filter codes 1 to 3 sample with the timer clock. The other codes sample with tDTS, which CKD prolongs (RM0090,
-    // TIMx_CCMR1).
+    // Filter codes 1 to 3 sample with the timer clock. Filter codes above 3 sample with tDTS, which CKD prolongs
+    // (RM0090, TIMx_CCMR1).
     for (const Row row : {Row{0, 0, 1, 1}, {0, 2, 4, 1},   {1, 0, 1, 2},   {2, 0, 1, 4},   {3, 0, 1, 8},
                           {3, 2, 1, 8},    {4, 0, 2, 6},   {5, 0, 2, 8},   {6, 0, 4, 6},   {7, 0, 4, 8},
                           {7, 1, 8, 8},    {8, 0, 8, 6},   {9, 0, 8, 8},   {10, 0, 16, 5}, {11, 0, 16, 6},

@@ -134,7 +134,7 @@ TEST_CASE("parameters that were stored hold after the power was off; others do n
   CHECK(report.out_of_range == 0);
   CHECK(report.stores_left == stores_left);
 
-  // Storing equal values needs no space; storing a changed value does.
+  // Storing equal values needs no space, but storing a changed value needs space.
   CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
   CHECK(board.report().records_written == 1);
   board.set_stiffness(600.0f);
@@ -364,7 +364,7 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 }  // namespace
 
 // The result of the power cut is created directly in flash, because no other state survives a power cut. A later test
-// cuts the power of the chip itself. Each power cut of that test costs one self-test.
+// cuts the power of the chip itself. Each power cut of the later test costs one self-test.
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);

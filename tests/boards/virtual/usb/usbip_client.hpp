@@ -17,7 +17,7 @@
 
 namespace inkwell::virtual_usb_test {
 
-/// The board's thread advances board time as fast as possible unless it is paused.
+/// The board's thread advances board time as fast as possible, unless the board is paused.
 class LiveBoard {
  public:
   explicit LiveBoard(const local::SocketAddress& where = {});  ///< any free port
