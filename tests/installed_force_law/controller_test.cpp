@@ -1,4 +1,4 @@
-// A force law in the controller: when it acts, when it restarts, and the effect of a force that is not a number.
+// A force law in the controller: activation, restart, and a force that is not a number.
 #include <doctest/doctest.h>
 
 #include <limits>

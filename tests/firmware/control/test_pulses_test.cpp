@@ -1,4 +1,4 @@
-// Test pulses of one motor, and the conditions that stop them.
+// Test pulses of one motor, and their stop conditions.
 #include <doctest/doctest.h>
 
 #include <algorithm>

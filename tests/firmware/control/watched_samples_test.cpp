@@ -1,4 +1,4 @@
-// Faulty samples and the faults that they raise.
+// Faults that are raised by faulty samples.
 #include <doctest/doctest.h>
 
 #include <cmath>

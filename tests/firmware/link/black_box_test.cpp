@@ -39,7 +39,7 @@ protocol::RequestResult result_of(const protocol::BlackBoxRowsReport& report) {
   return static_cast<protocol::RequestResult>(report.result);
 }
 
-/// A board whose memory survives its restarts. Each run has a new sample ring, from fresh_link().
+/// A board with memory that survives restarts. Each run has a new sample ring, from fresh_link().
 struct Board {
   link::BlackBoxMemory<rows_before, rows_from_fault> memory{};
   link::SampleRing* samples = nullptr;
