@@ -47,8 +47,8 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   // Wires have the names of the board facts. Wires to the host and to the debug probe are not included.
   CHECK(names.contains("wire_open:encoders[1].a wall 2"));
   CHECK(names.contains("wire_high:bridge_enable rest 1"));
-  // Of three components of one kind, the second is tested at each instant. The other two components are tested at one
-  // random instant per situation.
+  // Of three components of one kind, the second component is tested at each instant. The other two components are
+  // tested at one random instant per situation.
   for (const char* others : {"wire_open:encoders[0].a wall 3", "wire_open:encoders[2].a starting 2",
                              "motor_hot:1 rest 3", "leg_high:3B limited 2", "encoder_slip:3=400 motion 2"})
     CHECK(names.contains(others));

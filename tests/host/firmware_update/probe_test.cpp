@@ -96,7 +96,7 @@ class FakeOpenocd {
     fs::permissions(program, fs::perms::owner_all);
     path_before_ = std::getenv("PATH");
     setenv("PATH", (bin.string() + ":" + path_before_).c_str(), 1);
-    // openocd would search for its scripts here first if it ran in the user's folder.
+    // In the user's folder, openocd would search for scripts here first.
     folder_before_ = fs::current_path();
     fs::create_directories(directory_ / "here/interface");
     std::ofstream(directory_ / "here/interface/stlink.cfg") << "shutdown\n";

@@ -18,8 +18,8 @@ struct Motor {
   double resistance_ohm, inductance_H, dead_time_V = 0.43, back_emf_V_at_end = 0;
 };
 
-/// Exact response of a motor in steps of 1/100 control period, sampled and rounded as on the board, with 2 mA noise
-/// and 2 mA resolution.
+/// Exact response of a motor in steps of 1/100 control period. The samples have 2 mA noise and 2 mA resolution, as on
+/// the board.
 VoltagePulse pulse_of(const Motor& motor, double voltage_V, std::mt19937& random, double delay_s = period_s) {
   std::normal_distribution<double> noise(0, 0.002);
   constexpr int before = 20, on = 200, after = 40, fine = 100;

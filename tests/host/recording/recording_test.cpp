@@ -335,7 +335,7 @@ TEST_CASE("a recording survives the death of its program") {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
-      // Writes until it is killed.
+      // Writes samples until the process is killed.
       Recorder recorder(file, about());
       for (std::uint32_t period = 0;; period += 100) {
         recorder.push(samples(period, 100));

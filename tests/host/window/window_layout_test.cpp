@@ -1,4 +1,4 @@
-// Panes do not overlap in any window size, and they share the height proportionally.
+// Panes never overlap and share the window height proportionally.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The parts of a window that must be redrawn: changed parts and all parts above or below them.
+// Parts of a window that must be redrawn: changed parts, and parts above or below changed parts.
 #include <doctest/doctest.h>
 
 #include <vector>
