@@ -1,4 +1,4 @@
-// Invalid user input: each error message states the problem and the remedy, and the exit code is not 0.
+// Each error message for invalid user input states the problem and the remedy, and the exit code is not 0.
 #include <doctest/doctest.h>
 
 #include <algorithm>

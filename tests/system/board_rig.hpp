@@ -35,12 +35,12 @@ class BoardRig {
   /// Sends a program's force for the newest pose and advances one millisecond. The board refuses a force for an old
   /// pose.
   void push(const device::ForceRequest& force);
-  /// Waits for the device for at most one second of board time, and opens it.
+  /// Waits at most one second of board time for the device, and opens the device.
   void connect();
   /// Runs until the newest pose satisfies the condition; fails the test after `limit_s` of board time.
   void run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s = 3.0);
 
-  /// Takes the stylus out of the inkwell with the hand and moves it to a point of the workspace.
+  /// With the hand, moves the stylus out of the inkwell and to a point of the workspace.
   void take_to(device::Vector3 target_m, double duration_s = 0.6);
   /// Waits for the reference, then switches the force on.
   void make_active();

@@ -1,4 +1,4 @@
-// Terminal commands that observe the arm, with a board that runs in real time.
+// Terminal commands that observe the arm of a board in real time.
 #include <doctest/doctest.h>
 
 #include <signal.h>

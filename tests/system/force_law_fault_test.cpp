@@ -1,4 +1,4 @@
-// A force law that divides by zero: the force is switched off, the fault states the cause, and the law restarts.
+// If a force law divides by zero, the force is switched off, the fault states the cause, and the law restarts.
 #include <doctest/doctest.h>
 
 #include <algorithm>

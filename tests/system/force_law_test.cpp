@@ -26,7 +26,7 @@ using protocol::Fault;
 using protocol::Parameter;
 using protocol::State;
 
-/// Returns the force of the law on the PC, with the parameters of the device.
+/// Computes the force of the law on the PC with the parameters of the device.
 control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const control::Vector3& position_m,
                                 float& distance_m) {
   magnet::Parameters parameters{};

@@ -1,4 +1,4 @@
-// The guides on the command line: the flashed firmware on the virtual board, with the simulated hand as the user.
+// The guides on the command line, with the flashed firmware and with the simulated hand as the user.
 #include <doctest/doctest.h>
 
 #include <chrono>

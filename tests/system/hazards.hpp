@@ -19,7 +19,7 @@ bool any_leg_high(device::ControlClient& control);
 bool any_leg_high_within(device::ControlClient& control, double time_s);
 bool bridges_enabled(device::ControlClient& control);
 
-/// The hand presses the sphere into a wall: all three bridges switch, and at least one motor has current.
+/// The hand presses the sphere into a wall, so that all three bridges switch and at least one motor has current.
 void press_into_wall(BoardRig& rig);
 
 /// Counts since power-on, without the expiry in the watchdog test (firmware/application/watchdog_trial.hpp).

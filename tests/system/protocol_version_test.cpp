@@ -115,7 +115,7 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   CHECK(transaction_report.refusal == protocol::Refusal::wrong_version);
   CHECK(std::string(info(transaction_report.refusal).remedy).find("companion") != std::string::npos);
 
-  // A command with this version is not executed: its token is not returned, and the force remains off.
+  // A command with this version is not executed, its token is not returned, and the force remains off.
   protocol::CommandReport enable{};
   enable.command = protocol::Command::enable_force;
   enable.version = static_cast<std::uint8_t>(next_version);

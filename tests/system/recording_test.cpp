@@ -52,7 +52,7 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
   CHECK(recording.information.serial_number.size() == 24);
   CHECK(recording.information.parameters == protocol::default_parameters());
   CHECK(recording.information.signals == recording::standard_signals());
-  // The stylus rests in the inkwell: the joints are stationary, and the measured currents are noise.
+  // The stylus rests in the inkwell, so the joints are stationary and the measured currents are noise.
   const auto& joint_rad = recording.column(Signal::joint_2_rad);
   CHECK(joint_rad.back() ==
         doctest::Approx(recording.information.parameters[protocol::Parameter::inkwell_joint_2_rad]).epsilon(0.02));

@@ -82,7 +82,7 @@ TEST_CASE(
   const double reported_cycles = largest / 255.0 * board::servo_cycles;
   CHECK(reported_cycles <= report.servo_cycles_longest);
   CHECK(reported_cycles > 0.9 * report.servo_cycles_longest);
-  // The main loop benefits from flash prefetch and cache; the interrupts run without them.
+  // The interrupts run without flash prefetch and cache, which accelerate only the main loop.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
   // The alignment of the main loop's functions to cache lines changes the result by a few percent.

@@ -1,5 +1,4 @@
-// The stored parameters from a terminal: `inkwell parameters store` and related commands, with a board that is switched
-// off and on.
+// Commands for the stored parameters, such as `inkwell parameters store`, with a board that is restarted.
 #include <doctest/doctest.h>
 
 #include <string>

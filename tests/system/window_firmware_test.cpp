@@ -1,4 +1,4 @@
-// The window offers its firmware to a board with another version, writes it, and continues with the board.
+// The window offers its firmware to a board with another version, writes the firmware, and continues with the board.
 #include <doctest/doctest.h>
 
 #include "window_rig.hpp"

@@ -24,7 +24,7 @@ const float stiffness_at_start = protocol::info(Parameter::wall_stiffness_N_per_
 const auto force_is_on = [](const Sight& now) { return now.state() == "active"; };
 const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; };
 
-/// Makes a change and waits until it is active in the device.
+/// Makes a change and waits until the change is active in the device.
 void change_and_wait(WindowRig& rig, const std::function<void()>& change) {
   const auto before = rig.look().applied_at_periods();
   change();

@@ -1,4 +1,4 @@
-// Pictures of the real window with software OpenGL under Xvfb, checked by color and compared with the true state of the
+// Checks the colors in pictures of the window (software OpenGL, Xvfb). Compares the pictures with the true state of the
 // board.
 #include <doctest/doctest.h>
 
