@@ -123,7 +123,7 @@ const Registered memory_layout{"memory_layout",
                                      bytes_of("@Option Bytes  /0x1FFFC000/01*016 e")};
                                }};
 
-/// A formula that a user types; an accepted formula can be evaluated.
+/// A formula of a user. If the formula is accepted, it can be evaluated.
 const Registered typed_formula{"formula",
                                [](Input input) {
                                  window::Formula formula{.name = "typed", .text = text_of(input), .unit = "1"};

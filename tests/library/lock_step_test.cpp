@@ -1,4 +1,4 @@
-// A program and its virtual board in lock step: no pose is missed, no force is late, and the same seed repeats the run.
+// In lock step, no pose is missed, no force is late, and the same seed repeats the run.
 #include <doctest/doctest.h>
 
 #include <algorithm>
