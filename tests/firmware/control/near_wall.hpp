@@ -1,4 +1,4 @@
-// An arm with its inkwell near a wall, and a host that sends signs of life.
+// An arm and a host that sends signs of life. The inkwell is near a wall.
 #pragma once
 
 #include <firmware/control/arms.hpp>

@@ -151,7 +151,7 @@ TEST_CASE("half its turns, half or double the gain of its sensor, an open motor:
 
 TEST_CASE("a motor that goes well in one direction only is told") {
   Bench bench;
-  // A back EMF that cancels the current of one direction has the effect of a half bridge that does not conduct.
+  // If a back EMF cancels the current of one direction, the effect is the same as a half bridge that does not conduct.
   bench.simulated.motors[0].back_emf_V = 2.0f;
   CHECK(bench.judgement().motors[0].result == SelfTestResult::failed);
   bench.simulated.motors[0].back_emf_V = -2.0f;

@@ -1,4 +1,4 @@
-// A device on a fake port, with a host that performs control transfers.
+// A device on a fake port. The host performs control transfers.
 #pragma once
 
 #include <cstring>

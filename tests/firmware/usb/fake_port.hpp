@@ -1,4 +1,4 @@
-// A software port with a host that sends and receives single valid or invalid packets.
+// A software port and a host. The host sends and receives single packets, valid or invalid.
 #pragma once
 
 #include <doctest/doctest.h>
