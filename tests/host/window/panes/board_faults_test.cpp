@@ -1,5 +1,5 @@
-// The thread that injects faults into a virtual board, tested with a control socket. The test sets the answers of the
-// socket.
+// Tests the thread that injects faults into a virtual board. A control socket replaces the board. The test sets the
+// answers of the socket.
 #include <panes/board_faults.hpp>
 
 #include <doctest/doctest.h>
