@@ -54,7 +54,7 @@ std::vector<Interface> interfaces() {
   return all;
 }
 
-/// A board with the stylus outside the inkwell, and a second arm object that observes the board.
+/// A board with the stylus outside the inkwell. A second arm object observes the board.
 struct Watched : Board {
   VirtualArm watcher{address};
   std::optional<VirtualArm> driver;  ///< the arm whose force is stopped

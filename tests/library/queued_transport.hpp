@@ -1,4 +1,4 @@
-// A device for tests: the test decides which reports arrive and when the device accepts a report.
+// A device for tests. The test decides which reports arrive and when the device accepts a report.
 #pragma once
 
 #include <algorithm>
