@@ -86,7 +86,7 @@ def commands_pattern(root: Command) -> str:
     return "|".join(shlex.quote(" ".join(command.words[1:])) for command in root.all()[1:]) or "''"
 
 
-BASH = """# bash completion of {name}. Made of what it says to --help.
+BASH = """# bash completion of {name}. Generated from its --help output.
 _{function}() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} command= next word choices= options= files=
   for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
@@ -112,7 +112,7 @@ def bash(program: str, root: Command) -> str:
 
 
 ZSH = """#compdef {name}
-# zsh completion of {name}. Made of what it says to --help.
+# zsh completion of {name}. Generated from its --help output.
 local command= next word choices= options= files=
 for word in "${{(@)words[2,CURRENT - 1]}}"; do
   next="${{command:+$command }}$word"
@@ -135,7 +135,7 @@ def zsh(program: str, root: Command) -> str:
 def fish(program: str, root: Command) -> str:
     """Returns one condition per command, from the preceding words, and one line per possible next word."""
     name = root.words[0]
-    out = [f"# fish completion of {name}. Made of what it says to --help.", f"complete -c {name} -f"]
+    out = [f"# fish completion of {name}. Generated from its --help output.", f"complete -c {name} -f"]
     for command, follow, options, values in tables(program, root):
         below = [each.words[-1] for each in command.commands]
         condition = " && ".join([f"__fish_seen_subcommand_from {word}" for word in command.words[1:]]

@@ -20,7 +20,7 @@ echo 'Reading package lists...'
 status=$(printf '%s\n' "$@" | sed -n 's/^APT::Status-Fd=//p')
 echo 'dlstatus:1:42.0:Retrieving file 1 of 2' >&"$status"
 echo 'pmstatus:libnowhere:85.7:Unpacking libnowhere' >&"$status"
-# As apt does: scripts of packages do not have the descriptor of the status lines.
+# Like apt, this hides the status descriptor from package scripts.
 eval "exec $status>&-"
 echo 'Setting up libnowhere' || { echo 'postinst: echo: I/O error' >&2; exit 100; }
 {install}
