@@ -184,7 +184,11 @@ void WindowRig::enter(const std::string& field, const std::string& text) {
   type(text);
 }
 
-void WindowRig::type(const std::string& text) { play({"type", "--delay", "30", "--", text}); }
+void WindowRig::type(const std::string& text) {
+  play({"type", "--delay", "30", "--", text});
+  // ImGui 1.90 accepts one character per frame.
+  for (std::size_t frame = 0; frame < text.size(); ++frame) look();
+}
 
 void WindowRig::set_keyboard_layout(const std::string& layout) {
   const auto result = run_program("/usr/bin/env", {display_name_, "setxkbmap", layout});
