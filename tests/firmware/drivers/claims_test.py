@@ -82,7 +82,7 @@ class Claims(unittest.TestCase):
                              ("interrupt(Interrupt::analog_converters)", "AnalogInputs")):
             with self.subTest(claim):
                 self.assert_refused(self.compile(f"{FREE_PIN}, {claim}"), TAKEN,
-                                    f"Apart<inkwell::drivers::{owner}, Newcomer>")
+                                    f"Disjoint<inkwell::drivers::{owner}, Newcomer>")
 
     def test_what_is_not_claimed_cannot_be_used(self):
         for start in ("RegistersOf<Newcomer, registers::TIM3>::CNT::read();",
