@@ -83,7 +83,7 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
   CHECK(json_in(directory.file("alone.json")).at("sittings").at(0) == json.at("sittings").at(1));
   const auto beyond = alone("3");
   CHECK(beyond.exit_code == 2);
-  CHECK(beyond.err.find("A soak of --seconds 3 has 2 sittings.") != std::string::npos);
+  CHECK(beyond.err.find("A soak of --seconds 3 has only 2 sittings.") != std::string::npos);
 }
 
 TEST_CASE("a soak takes no time and no length that is no number") {
