@@ -145,7 +145,7 @@ TEST_CASE("an image that does not belong on the board is refused, and the old fi
     const auto result =
         board.flash({write_elf(directory, made_segments(protocol::image_identity("other_board", 99, 0, 0)))});
     CHECK(result.exit_code == 1);
-    CHECK(says(result, "is for the board other_board, and this one is omni_driver"));
+    CHECK(says(result, "is for the board other_board, but this board is omni_driver"));
     CHECK(says(result, "--yes"));
     CHECK_FALSE(says(result, "starting the boot loader"));
   }
