@@ -68,7 +68,7 @@ TEST_CASE("earlier faults are counted by their outcome, and each lost one has a 
   CHECK(section.find(row(mute, "unknown: no reply")) != std::string::npos);
   for (const Result* each : {&tripped, &quiet, &restarted, &failed})
     CHECK(section.find("`" + each->fault + "`") == std::string::npos);
-  CHECK(page.find("| `bridge_fault` | bridge_fault after clearing | were off |") != std::string::npos);
+  CHECK(page.find("| `bridge_fault` | bridge_fault after clearing | already off |") != std::string::npos);
   CHECK(section_of(page_of({seen("none", "rest", 1)}), "Second fault").find("No case was run in which") !=
         std::string::npos);
 }
@@ -128,10 +128,10 @@ TEST_CASE("monitored faults that no case reported are listed with a reason, when
   const std::string some = section_of(page_of(results), "Faults that no case reported");
   for (const char* name : {"watchdog", "heartbeat_missed", "host_silent", "bridge_wire", "encoder_wire"})
     CHECK(some.find("`" + std::string(name) + "`") == std::string::npos);
-  CHECK(some.find("| `over_speed` | None is known. |") != std::string::npos);
-  CHECK(some.find("| `force_law` | The law of this image gives a number for all") != std::string::npos);
-  CHECK(some.find("| `not_finite` | What converters") != std::string::npos);
-  CHECK(some.find("| `motor_hot` | A motor gets less") != std::string::npos);
+  CHECK(some.find("| `over_speed` | No reason is known. |") != std::string::npos);
+  CHECK(some.find("| `force_law` | The force law of this image returns a finite number") != std::string::npos);
+  CHECK(some.find("| `not_finite` | Converters") != std::string::npos);
+  CHECK(some.find("| `motor_hot` | The current of a motor is reduced") != std::string::npos);
   results.back().error = "The board did not start.";
   CHECK(section_of(page_of(results), "Faults that no case reported").find("`encoder_wire`") != std::string::npos);
   for (const protocol::Condition& row : protocol::condition_table) report_in(&Result::detected_as, row.fault);

@@ -89,7 +89,7 @@ TEST_CASE("the error for an unusable socket path states the reason") {
 TEST_CASE("one arm is meant, or the sentence says which there are") {
   FakeUsb usb;
   CHECK(contains(refusal({}), "No arm was found on USB"));
-  CHECK(contains(refusal(parse_address("0033")), "0033 is plugged in. None is"));
+  CHECK(contains(refusal(parse_address("0033")), "0033 is plugged in. Plug it in"));
   usb.add_arm("0011");
   CHECK(device::find_arm({}).serial_number == "0011");
   CHECK(device::address_of(device::find_arm({})) == "0011");
@@ -100,7 +100,7 @@ TEST_CASE("one arm is meant, or the sentence says which there are") {
     CHECK(contains(refusal(parse_address("0033")), number));
   }
   CHECK(device::find_arm(parse_address("0022")).serial_number == "0022");
-  CHECK(contains(refusal(parse_address("0033")), "No arm with the serial number 0033 is plugged in. Those are:"));
+  CHECK(contains(refusal(parse_address("0033")), "No arm with the serial number 0033 is plugged in. The connected arms are:"));
   CHECK(device::find_arms(parse_address("virtual")).empty());
 }
 

@@ -20,7 +20,7 @@ TEST_CASE("the supply's faults name the limits at which the firmware switches of
   CHECK(device::fault_text(Fault::supply_low).cause == "The supply of the bridges is below 12 V.");
   CHECK(device::fault_text(Fault::supply_low).remedy == "Check the 18 V supply and its fuse, then clear the fault.");
   CHECK(device::fault_text(Fault::supply_high).cause == "The supply of the bridges is above 24 V.");
-  CHECK(device::fault_text(Fault::current_sensor).remedy.find("its 1.65 V reference") != std::string::npos);
+  CHECK(device::fault_text(Fault::current_sensor).remedy.find("the 1.65 V reference") != std::string::npos);
 }
 
 TEST_CASE("the faults of ripple and of the reference name what is borne") {

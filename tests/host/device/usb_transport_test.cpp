@@ -164,7 +164,7 @@ TEST_CASE("an arm that this user may not open is told with the udev line") {
     const auto transport = device::open_transport(arm.endpoint());
     const auto message = message_of<device::NoPermission>([&] { transport->claim_scope(); });
     CHECK(
-        message.ends_with("/etc/udev/rules.d/60-inkwell.rules first: SUBSYSTEM==\"usb|hidraw\", "
+        message.ends_with("/etc/udev/rules.d/60-inkwell.rules: SUBSYSTEM==\"usb|hidraw\", "
                           "SUBSYSTEMS==\"usb\", ATTRS{idVendor}==\"1209\", ATTRS{idProduct}==\"0001\", "
                           "TAG+=\"uaccess\""));
   }
