@@ -46,7 +46,7 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& elf) : reader_(std::ma
   const int file = open(elf.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0)
     throw device::Error(fmt::format("Cannot read {}: {}. Check its name.", elf.string(), std::strerror(errno)));
-  // The module owns the file and closes it with the session.
+  // The module owns the file, and closing the session closes the file.
   dwfl_report_begin(reader_->session.get());
   reader_->module = dwfl_report_offline(reader_->session.get(), elf.c_str(), elf.c_str(), file);
   if (reader_->module == nullptr) close(file);

@@ -9,7 +9,7 @@
 
 namespace inkwell::crash {
 
-/// A sentence with the kind of fault and, if the processor reports it, the affected address.
+/// One sentence: the kind of fault and, if known, the affected address.
 std::string cause(const protocol::CrashFacts& crash);
 
 /// Address of the crash and return addresses of its callers, innermost first; empty if the stack could not be read. All

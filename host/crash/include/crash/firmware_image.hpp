@@ -16,7 +16,7 @@ class FirmwareImage {
   ~FirmwareImage();
   FirmwareImage(FirmwareImage&&) noexcept;
 
-  /// Checksum that the build has stored in the image; std::nullopt without one.
+  /// Checksum from the build; std::nullopt if the image has no checksum.
   std::optional<std::uint32_t> check() const;
 
   /// Function, file and line of an instruction, as far as the ELF file contains them; empty if there is no function.
