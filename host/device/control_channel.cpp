@@ -26,7 +26,7 @@ constexpr char in_use[] =
     "Another program is updating this board's firmware. Wait until the update is finished, or close that program.";
 constexpr char refused[] = "The board refused a firmware update request.";
 
-/// Common part of USB and USB/IP: converts requests to setup packets.
+/// Converts requests to setup packets, for USB and for USB/IP.
 class Channel : public ControlChannel {
  public:
   explicit Channel(std::uint8_t interface_number) : interface_(interface_number) {}

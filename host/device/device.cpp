@@ -44,8 +44,8 @@ constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2
 /// A claim that is not renewed expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
-/// Claims of the Device objects of this process. If a program has opened an arm twice, they show which object drives
-/// the arm. Objects on different virtual boards with the same seed have the same claim.
+/// Claims of the Device objects of this process. The claims show which object drives the arm if a program has opened an
+/// arm twice. Objects on different virtual boards with the same seed have the same claim.
 class OwnClaims {
  public:
   void add(std::uint32_t digest, int object) {
@@ -88,7 +88,7 @@ int next_object() {
   return ++opened;
 }
 
-/// Numbers that distinguish the requests of this object from others.
+/// Numbers that distinguish the requests of this object from the requests of other objects.
 struct OwnNumbers {
   std::uint32_t claim, ticket;
   std::uint16_t transaction_ticket;
@@ -181,8 +181,8 @@ struct Device::Implementation {
     if (length < sizeof report) throw too_short(what, length, sizeof report);
   }
 
-  /// Reads the rows from `first_row` on. Requires feature_mutex. Another program may select other rows between the two
-  /// requests.
+  /// Reads the rows from `first_row` on. Requires feature_mutex. Another program may select other rows between the
+  /// request and the read.
   protocol::BlackBoxRowsReport rows_from(std::size_t first_row) {
     constexpr int tries = 100;
     const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
@@ -198,7 +198,7 @@ struct Device::Implementation {
     throw InUse("Another program reads the black box continuously. Close that program and try again.");
   }
 
-  /// Assigns the command its token and sends it. `before` runs once the token is known.
+  /// Assigns the command its token and sends it. `before` runs between the assignment and the transmission.
   template <class Before>
   std::uint8_t send(protocol::CommandReport& command, Before before) {
     const std::lock_guard lock(output_mutex);
@@ -332,7 +332,7 @@ struct Device::Implementation {
   /// Checks the claim when the driver parity of a pose differs. The parity may have changed since the pose was sent.
   void check_claim(const protocol::PoseReport& pose) {
     if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
-    // In lock step the mutex owner may wait for the next pose, which the caller has to read.
+    // In lock step the owner of the mutex may wait for the next pose, so this function must not wait for the mutex.
     const std::unique_lock lock(feature_mutex, std::try_to_lock);
     if (!lock) return;  // the next pose also shows the parity
     const auto report = driver_report(lock);
@@ -355,7 +355,8 @@ struct Device::Implementation {
   /// Requires output_mutex.
   std::uint32_t next_ticket() { return ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1; }
 
-  /// None if the board has not received the request yet, or if newer results have replaced its result.
+  /// None if the report contains no result of this request: the board has not received the request, or newer results
+  /// have replaced the result.
   static std::optional<protocol::RequestResult> result_in(const protocol::RequestResultsReport& report,
                                                           std::uint32_t of_ticket) {
     const auto* entry = std::ranges::find(report.entries, of_ticket, &protocol::RequestResultEntry::ticket);
@@ -403,8 +404,7 @@ struct Device::Implementation {
       transport()->set_feature(
           std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
     }
-    // The board has received the shapes. If newer results have replaced the result of the shapes, the shapes are sent
-    // again.
+    // If newer results have replaced the result of the shapes, the shapes are sent again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
   }
 
@@ -434,7 +434,7 @@ struct Device::Implementation {
     return set;
   }
 
-  /// A transaction that sets every parameter and therefore has no entries.
+  /// Sends a transaction without entries, because the operation sets every parameter.
   AcceptedTransaction transact(protocol::ParameterOperation operation) {
     protocol::ParametersReport report{};
     report.report_id = ReportId::parameters;
@@ -496,7 +496,7 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     "arm or recording, or use a separate program for each force law.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
-  // Without a bus frame no program has read samples since the board started.
+  // If the board reports no bus frame, no program has read samples since the start of the board.
   if (const auto frame = device->frame())
     device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(frame->time_periods));
   return device;

@@ -35,7 +35,8 @@ class RowReader {
     std::ranges::copy(protocol::plain_text({begin, length}), begin);
     return {begin, length};
   }
-  /// The firmware build allows only these characters. The name is a key in files and a column name in plot scripts.
+  /// The firmware build allows only letters, digits and underscores. The name is a key in files and a column name in
+  /// plot scripts.
   std::string_view name() {
     const auto name = text();
     const auto is_allowed = [](char c) {
@@ -74,7 +75,7 @@ const process::HeldAtFork joined_at_fork(joined_mutex);
 std::list<Joined> joined;                                        // the last entry is in the tables
 std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // users of the law that is in the tables
 
-/// Puts the rows of a law into the tables, or removes the added rows.
+/// Adds the rows of a law to the tables; null removes the added rows.
 void show(const Joined* law) {
   protocol::added_rows<protocol::ParameterInfo>.store(law ? &law->parameters : nullptr, std::memory_order_release);
   protocol::added_rows<protocol::SignalInfo>.store(law ? &law->signals : nullptr, std::memory_order_release);

@@ -14,7 +14,7 @@ struct ParameterRequests {
 
   /// A later value of a parameter replaces the earlier value.
   void add(const std::vector<ParameterChange>& later);
-  /// Inserts unsent requests before these newer requests.
+  /// Inserts unsent requests before the requests of this object.
   void put_before(ParameterRequests unsent);
   /// The parameter values of the device after these requests.
   protocol::ParameterSet applied_to(const protocol::ParameterSet& held) const;

@@ -6,7 +6,7 @@
 namespace inkwell::device {
 namespace {
 
-/// Valid across the wrap of the period counter.
+/// Also correct when the period counter wraps.
 bool is_before(std::uint32_t period, std::uint32_t other) { return period - other > 0x8000'0000u; }
 
 using protocol::SignalWire;
@@ -107,8 +107,8 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
       header.sample_count == 0 || signals_.empty())
     return refuse();
 
-  // Periods must not decrease, so either this frame or the previous frame is wrong. This frame is refused, and the next
-  // frame is compared with this frame.
+  // If the period decreases, either this frame or the previous frame is wrong. The decoder refuses this frame and
+  // compares the next frame with this frame.
   const bool runs_backwards = next_period_ && is_before(header.first_period, *next_period_);
   if (runs_backwards) {
     next_period_ = header.first_period + header.sample_count;

@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-/// Refresh interval, because another program may change the parameters. The interval is in board time: while board time
-/// is stopped, no requests may queue up ahead of a change by the user.
+/// The parameters are read again after this interval, because another program may change the parameters. The interval
+/// is in board time, because requests must not queue up ahead of a change by the user while board time is stopped.
 constexpr std::int64_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
@@ -98,7 +98,8 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
                                    information.serial_number, information.firmware_version),
                        std::nullopt));
   requests.select = !signals.empty();
-  // Commands for the lost device must not reach another device; parameter changes may.
+  // Commands for the lost device must not reach another device, so the commands are discarded. Parameter changes stay
+  // queued.
   requests.commands.clear();
   requests.take_over = false;
   requests.store.reset();
@@ -265,7 +266,8 @@ void Session::Implementation::send_requests(Device& device) {
     restore_defaults = false;
     if (!changes.empty()) transact(device, [&device, &wanted = changes] { return device.set_parameters(wanted); });
   } catch (const Stalled&) {
-    // The board would refuse a repeated request again. Later requests were not sent yet.
+    // The board would refuse the same request again, so the request is discarded. Requests that were not sent yet stay
+    // queued.
     if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
     put_back(std::move(taken.parameters));
     throw;

@@ -50,7 +50,7 @@ struct Session::Implementation {
   void carry_out(Device& device, const QueuedCommand& queued);
   void take_over(Device& device);
   void show_problem(const InUse& error);
-  /// Fades the force out when a session that drives the arm closes. Otherwise the board would raise a fault.
+  /// Fades the force out when a session that drives the arm closes, so that the board does not raise a fault.
   void let_force_fall(Device& device);
   /// Releases the arm after this session has not needed it for some time.
   void release_idle(Device& device, const Pose& pose);
@@ -89,7 +89,7 @@ struct Session::Implementation {
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
   void set_connection(Connection connection, const std::string& message, const std::string& board_name = {});
   void forget_device();
-  /// Requires the mutex. Without a device the request is dropped, because it might reach another device later.
+  /// Requires the mutex. Without a device the request is dropped, because the request might reach another device later.
   void queue_store_task(StoreTask task);
 
   // ---- scope thread

@@ -26,8 +26,8 @@ constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--wha
 
 class SpawnAttributes {
  public:
-  /// The child runs in a separate session: Ctrl-C does not stop it, and it cannot ask for a password on the terminal.
-  /// The child does not inherit the program's signal handling.
+  /// The child runs in a separate session, so that Ctrl-C does not stop the child and the child cannot ask for a
+  /// password on the terminal. The child does not inherit the program's signal handling.
   SpawnAttributes() {
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;

@@ -1,4 +1,4 @@
-// Prevents computer sleep while the force is on: a suspended computer sends no sign of life, and the board would raise
+// Prevents computer sleep while the force is on. A suspended computer sends no sign of life, and the board would raise
 // a fault.
 #pragma once
 

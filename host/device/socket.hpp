@@ -19,10 +19,10 @@ class Socket {
   /// Throws Error if no server answers.
   explicit Socket(const SocketAddress& server);
 
-  /// Limits the wait for received bytes; exceeding it throws Error. The default is no limit.
+  /// Limits the wait for received bytes. Exceeding the limit throws Error. The default is no limit.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
 
-  /// These functions throw Disconnected when the peer has closed the connection.
+  /// send(), receive() and receive_some() throw Disconnected when the peer has closed the connection.
   void send(std::span<const std::byte> bytes);
   void receive(std::span<std::byte> bytes);  ///< fills `bytes`
   std::size_t receive_some(std::span<std::byte> bytes);

@@ -1,4 +1,5 @@
-// Raises the priority of the threads that send the sign of life, because they must run in time on a busy computer.
+// Raises the priority of the threads that send the sign of life, because these threads must run in time on a busy
+// computer.
 #pragma once
 
 #include <sys/resource.h>

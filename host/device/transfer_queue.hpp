@@ -24,7 +24,7 @@ class TransferQueue {
     changed_.notify_one();
   }
 
-  /// Queued transfers can still be read. After the queued transfers `pop` throws Disconnected with `reason`.
+  /// Queued transfers can still be read. After the last queued transfer, `pop` throws Disconnected with `reason`.
   void close(std::string reason) {
     const std::lock_guard lock(mutex_);
     if (!closed_) closed_ = std::move(reason);

@@ -35,8 +35,8 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
     std::array<unsigned char, 128> serial{};
     const int length =
         libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-    // The serial numbers from hidapi are also converted to plain text, so that they can be compared with these serial
-    // numbers.
+    // Serial numbers from hidapi are also converted to plain text, so that both kinds of serial numbers can be
+    // compared.
     const std::string found = protocol::plain_text(
         {reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0))});
     if (!take(found, handle)) libusb_close(handle);

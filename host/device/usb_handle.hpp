@@ -16,14 +16,14 @@ namespace inkwell::device {
 /// Context and handle. The destructor releases all claimed interfaces.
 class UsbHandle {
  public:
-  /// Throws NoPermission, InUse, Disconnected if no such device is connected, or Error.
+  /// Throws NoPermission, InUse, or Error. Throws Disconnected if no such device is connected.
   UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const std::string& serial_number);
   ~UsbHandle();
   UsbHandle(const UsbHandle&) = delete;
   UsbHandle& operator=(const UsbHandle&) = delete;
 
-  /// Throws InUse with the sentence `in_use` if another program has claimed the interface, NoPermission without a
-  /// driver, or Disconnected.
+  /// Throws InUse with the sentence `in_use` if another program has claimed the interface, NoPermission if no driver is
+  /// installed, or Disconnected.
   void claim(int interface_number, const char* in_use);
   libusb_context* context() const { return context_; }
   libusb_device_handle* get() const { return handle_; }

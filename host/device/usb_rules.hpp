@@ -27,7 +27,7 @@ inline constexpr const UsbRules& usb_rules = linux_usb_rules;
 [[noreturn]] void throw_hidapi_refusal(const std::string& path, const std::string& detail,
                                        const UsbRules& rules = usb_rules);
 
-/// The sentence, followed by the library's error text if there is one.
+/// The sentence, followed by the error text of the library, if any.
 std::string with_detail(const std::string& sentence, const std::string& detail);
 
 }  // namespace inkwell::device

@@ -235,8 +235,8 @@ class UsbTransport : public Transport {
     throw Disconnected(with_detail(unplugged, result.detail));
   }
 
-  /// hidapi does not distinguish a refusal from an unplugged device. A connected device that refuses one request
-  /// answers another request. An unplugged device soon disappears from the system's list.
+  /// hidapi does not distinguish a refusal from an unplugged device. A connected device can refuse one request and
+  /// still answer another request. An unplugged device soon disappears from the system's list.
   bool is_present() {
     constexpr int attempts = 10;
     std::array<std::byte, feature_report_maximum> buffer;

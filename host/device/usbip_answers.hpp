@@ -1,4 +1,4 @@
-// Parses the answers of a USB/IP server, independent of their source.
+// Parses the answers of a USB/IP server. The caller supplies the bytes.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace inkwell::device {
 
-/// Fills the span with the next bytes from the server. Throws Error if they do not arrive.
+/// Fills the span with the next bytes from the server. Throws Error if the bytes do not arrive.
 using ReceiveBytes = std::function<void(std::span<std::byte>)>;
 
 template <class Message>
@@ -59,7 +59,7 @@ class OpenTransfers {
  public:
   void add(std::uint32_t sequence, UsbipTransfer transfer) { transfers_.emplace(sequence, std::move(transfer)); }
   bool contains(std::uint32_t sequence) const { return transfers_.contains(sequence); }
-  /// The server may already have sent its answer, so the transfer stays open until the unlink is answered.
+  /// The server may already have answered the transfer, so the transfer stays open until the unlink is answered.
   void unlink(std::uint32_t unlink_sequence, std::uint32_t sequence) { unlinks_.emplace(unlink_sequence, sequence); }
 
   /// The number of data bytes that follow an answer. Throws Disconnected if the answer belongs to no open transfer.

@@ -182,8 +182,8 @@ void UsbipConnection::receive(std::span<std::byte> bytes) {
 
 void UsbipConnection::receive_answer() {
   const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
-  // The transfer stays open until its answer is complete, so that the waiting call fails if the connection fails
-  // before.
+  // The transfer stays open until its answer is complete. If the connection fails earlier, the waiting call therefore
+  // fails.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);

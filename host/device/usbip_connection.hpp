@@ -47,7 +47,7 @@ class UsbipConnection {
   std::uint32_t submit_in(std::uint8_t endpoint, std::uint32_t length, OnCompletion on_completion);
   std::uint32_t submit_out(std::uint8_t endpoint, std::span<const std::byte> data, OnCompletion on_completion);
 
-  /// Control transfers are synchronous. Control transfers throw Stalled, Disconnected, or Error on time-out.
+  /// Control transfers are synchronous. Control transfers throw Stalled, Disconnected, or (after a time-out) Error.
   std::vector<std::byte> control_in(const Setup& setup);
   void control_out(const Setup& setup, std::span<const std::byte> data);
 

@@ -25,8 +25,8 @@ constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // one second; then the oldest are dropped, which the sequence shows
 constexpr std::size_t writes_under_way = 16;
 constexpr std::size_t writes_in_lock_step = 1024;
-// Limits for a device that accepts no command: this number of reports (one second of board time), or this wall time
-// without reports.
+// A device accepts no commands if a command is pending for this number of reports (one second of board time), or for
+// this wall time without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
 constexpr char takes_no_commands[] = "The device accepts no commands, although it sends poses. Reset the board.";
@@ -255,7 +255,7 @@ class UsbipTransport : public Transport {
     if (bulk_owed_++ == 0 && !bulk_under_way_.empty()) retry([this] { connection_.unlink(bulk_under_way_.back()); });
   }
 
-  /// Submitting from the receiving thread fails when the connection has failed. `lose` is then called anyway.
+  /// Submitting from the receiving thread fails when the connection has failed. `lose` reports this failure.
   template <class Retried>
   void retry(Retried retried) {
     try {

@@ -24,22 +24,22 @@ class NoDevice : public Error {
   using Error::Error;
 };
 
-/// More than one arm is connected and the address names none. `what()` lists their serial numbers.
+/// More than one arm is connected, and the address does not select one. `what()` lists their serial numbers.
 class SeveralArms : public NoDevice {
  public:
   using NoDevice::NoDevice;
 };
 
-/// An address is one of
+/// Forms of an address:
 ///
-///     (nothing)        the only arm on USB
-///     NUMBER           the arm on USB that has this serial number
-///     usbip:HOST:PORT  the arm of a USB/IP server, such as a virtual board that already runs
-///     usbip:unix:PATH  the same through a Unix socket
-///     virtual          a virtual board that is started for this address
-///     virtual:FILE     the same, with the arm description FILE
-///     virtual?seed=7&arm=FILE&elf=FILE
-///                      the same, with any of: seed of the noise, arm description, firmware
+///     (nothing)          The only arm on USB.
+///     `NUMBER`           The arm on USB with this serial number.
+///     `usbip:HOST:PORT`  The arm of a USB/IP server, such as a running virtual board.
+///     `usbip:unix:PATH`  The arm of a USB/IP server at a Unix socket.
+///     `virtual`          A new virtual board.
+///     `virtual:FILE`     A new virtual board with the arm description FILE.
+///     `virtual?seed=7&arm=FILE&elf=FILE`
+///                        A new virtual board with this noise seed, arm description and firmware, in any combination.
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
@@ -56,15 +56,14 @@ Address parse_address(std::string_view text);
 SocketAddress parse_socket(std::string_view text);
 /// The address of the arm at a USB/IP server. Throws BadAddress.
 Address parse_server(std::string_view text);
-/// The address of an endpoint. Call this function after the device was opened, because the serial number is unknown
-/// before.
+/// The address of an endpoint. Open the device before this call, because the serial number is unknown until then.
 std::string address_of(const Endpoint& endpoint);
 
 /// The arms that match the address; empty for a virtual board that is not started yet. Throws Error if a server does
 /// not answer.
 std::vector<Endpoint> find_arms(const Address& address);
-/// The only arm that matches the address. If a server answers, waits two seconds for its arm. Throws NoDevice, or
-/// SeveralArms if several arms match.
+/// The only arm that matches the address. If a server answers, waits up to two seconds until the server lists the arm.
+/// Throws NoDevice, or SeveralArms if several arms match.
 Endpoint find_arm(const Address& address);
 
 }  // namespace inkwell::device

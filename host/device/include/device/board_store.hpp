@@ -1,4 +1,4 @@
-// The stored parameters of the board, and the commands that change them.
+// The stored parameters of the board, and commands to change these parameters.
 #pragma once
 
 #include <vector>

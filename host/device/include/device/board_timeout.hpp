@@ -11,7 +11,7 @@
 namespace inkwell::device {
 
 /// The limit counts board time, so that the speed of a virtual board and the load of the computer do not matter. Wall
-/// time counts only while board time does not pass: then the board is silent, paused or disconnected.
+/// time counts only while the board is silent, paused or disconnected.
 class BoardTimeout {
  public:
   using Clock = std::chrono::steady_clock;

@@ -12,7 +12,7 @@ class BusClock {
   /// `cycles_per_period`: processor cycles per control period, from the InformationReport.
   explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
 
-  /// Call this with a bus frame regularly, for instance once per second.
+  /// Call this regularly with the newest bus frame, for instance once per second.
   void note(const BusFrame& frame);
 
   /// Time of a control period in seconds of bus frames, counted from the start of the bus. None before the first frame.

@@ -1,4 +1,5 @@
-// Runs third-party programs such as gnuplot and openocd and waits for them. No shell reads their arguments.
+// Runs third-party programs such as gnuplot and openocd and waits for them. No shell reads the arguments of these
+// programs.
 #pragma once
 
 // Start every child program with run_child_program(). If the program reads a script, run it in a folder from

@@ -1,4 +1,4 @@
-// Clears a fault and checks whether it returns because its cause remains.
+// Clears a fault and checks whether the fault returns because its cause remains.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace inkwell::device {
 
-/// The fault was cleared, but its cause has raised it again. `what()` names the fault and its remedy.
+/// The fault was cleared, but its cause has raised the fault again. `what()` names the fault and its remedy.
 class FaultStays : public Error {
  public:
   using Error::Error;
@@ -28,8 +28,8 @@ struct ShownFault {
 /// are read from the device.
 std::string fault_line(protocol::Fault fault, Device& device);
 
-/// Whether the board raises this fault when its host disconnects or falls silent with the force on. A program that
-/// finds this fault when it starts can clear it: the previous program caused it, and the arm is healthy.
+/// Whether the board raises this fault when its host disconnects or falls silent while the force is on. A program that
+/// finds this fault at its start can clear the fault, because the previous program caused the fault.
 bool is_left_by_a_host(protocol::Fault fault);
 
 /// Clears the fault and checks for 0.2 s of board time that it does not return. If a self-test follows, the check lasts

@@ -18,14 +18,15 @@ struct UpdateRequest {
   std::uint16_t value = 0;
 };
 
-/// Throws Stalled if the device refuses a request, Disconnected if the device is gone, Error if it does not answer.
+/// Throws Stalled if the device refuses a request, Disconnected if the device is gone, and Error if the device does not
+/// answer.
 class ControlChannel {
  public:
   virtual ~ControlChannel() = default;
   virtual std::vector<std::byte> read(const UpdateRequest& request, std::uint16_t length) = 0;
   virtual void write(const UpdateRequest& request, std::span<const std::byte> data) = 0;
   virtual void select_alternate(std::uint8_t alternate) = 0;
-  /// The name of an alternate setting; empty if it has none.
+  /// The name of an alternate setting; empty if the setting has no name.
   virtual std::string alternate_name(std::uint8_t alternate) = 0;
 };
 

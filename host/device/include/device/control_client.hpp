@@ -21,7 +21,8 @@ namespace inkwell::device {
 
 using Vector3 = std::array<double, 3>;
 
-/// The simulated hand. While it holds the stylus, a spring and a damper pull the probe to `target_m` (workspace frame).
+/// The simulated hand. While the hand holds the stylus, a spring and a damper pull the probe to `target_m` (workspace
+/// frame).
 struct Hand {
   bool holds = false;
   Vector3 target_m{};
@@ -29,7 +30,7 @@ struct Hand {
   double damping_Ns_per_m = 3;
 };
 
-/// The hand reaches `target_m` `after_s` seconds of board time after the path was set.
+/// A target of the hand, and the time in board time after which the hand reaches the target.
 struct HandWaypoint {
   double after_s = 0;
   Vector3 target_m{};
@@ -84,7 +85,7 @@ struct BoardStatus {
   std::vector<std::string> unmodelled;  ///< accesses to registers that the virtual chip does not model
   nlohmann::json all;                   ///< the whole reply
 
-  /// For callers that wait for the firmware: throws Error if the firmware cannot continue.
+  /// Throws Error if the firmware cannot continue. Callers that wait for the firmware use this function.
   void insist_on_running() const;
 };
 
@@ -110,8 +111,7 @@ class ControlClient {
   ControlClient(ControlClient&&) noexcept;
   ControlClient& operator=(ControlClient&&) noexcept;
 
-  /// Limits the wait for an answer. After a time-out, which is an Error, the client is unusable. The default is no
-  /// limit.
+  /// Limits the wait for an answer. A time-out throws Error and makes the client unusable. The default is no limit.
   void wait_at_most(std::chrono::milliseconds limit);
 
   BoardStatus status();

@@ -59,7 +59,7 @@ struct Driver {
   std::string program;       ///< program name, printable ASCII
   std::uint32_t process_id;  ///< on the computer of the program
   double driven_s;           ///< board time since it claimed the arm
-  /// The object of this process that holds the claim, numbered from 1 in opening order; none for another process.
+  /// Number of the object that holds the claim, from 1 in opening order; none if another process holds the claim.
   std::optional<int> object;
   bool is_this_device;  ///< true if `object` is this device
 };
@@ -78,9 +78,9 @@ class Device {
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
-  /// Continues on the link of `opened`, which was opened for the same board and must not be used afterwards. References
-  /// to this device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board
-  /// has another force law.
+  /// Continues on the link of `opened`, a device on the same board. Do not use `opened` afterwards. References to this
+  /// device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board has
+  /// another force law.
   void take_link_of(Device& opened);
 
   /// For a device of another protocol version, only the members before the table hashes are valid; the rest is 0.
@@ -95,14 +95,14 @@ class Device {
   /// Waits for the next pose report; none on time-out.
   std::optional<Pose> read_pose(std::chrono::milliseconds timeout);
 
-  /// The program that drives the arm; none if no program does.
+  /// The program that drives the arm; none if no program drives the arm.
   std::optional<Driver> driver();
-  /// Writes the driver into `driver`. Returns false without waiting if another thread has a request in progress: in
-  /// lock step that thread waits for the next pose.
+  /// Writes the driver into `driver`. Returns false without waiting if another thread has a request in progress,
+  /// because in lock step that thread may wait for the next pose.
   bool try_driver(std::optional<Driver>& driver);
   /// Makes this object the driver until release(), its destruction, or protocol::claim_expiry_s without a sign of life.
-  /// Throws InUse with the driver's name if another object or program drives the arm. If that process does not exist on
-  /// this computer, claim() first waits for its claim to expire.
+  /// Throws InUse with the driver's name if another object or program drives the arm. If the process of the driver does
+  /// not exist on this computer, claim() first waits until the claim of the driver expires.
   void claim();
   /// Like claim(), but ends the claim of the current driver, whose force fades out.
   void take_over();
@@ -119,11 +119,12 @@ class Device {
   /// does not execute the command in time.
   void carry_out(protocol::Command command);
   void carry_out(protocol::Command command, const protocol::TestPulse& pulse);
-  /// These functions switch the force off and return when the force is off. stop() acts immediately, also if another
-  /// program drives the arm. disable_force() fades the force out, and throws InUse if another program drives the arm.
+  /// `stop()` and `disable_force()` switch the force off and return when the force is off. stop() acts immediately,
+  /// also if another program drives the arm. disable_force() fades the force out, and throws InUse if another program
+  /// drives the arm.
   void stop();
   void disable_force();
-  /// disable_force(), or stop() if another program drives the arm.
+  /// Calls disable_force(), or stop() if another program drives the arm.
   void switch_force_off();
 
   /// Sends a command and returns its token, which PoseReport::command_token repeats. The result of the command is not
@@ -148,15 +149,15 @@ class Device {
   void place_shapes(const Shapes& shapes);
 
   protocol::ParameterSet parameters();
-  /// One transaction: either all changes take effect in one control period, or Refused is thrown and no change takes
-  /// effect.
+  /// One transaction, in which all changes take effect in the same control period. Throws Refused if the board refuses
+  /// a change; then no parameter changes.
   AcceptedTransaction set_parameters(std::span<const ParameterChange> changes);
   AcceptedTransaction restore_default_parameters();
   /// Sets every parameter to its stored value. Throws Refused if the board has no stored parameters.
   AcceptedTransaction restore_stored_parameters();
   /// The parameter values after the next start: the stored values, or the defaults.
   protocol::ParameterSet stored_parameters();
-  /// The state of the stored parameters. The commands that change them are in board_store.hpp.
+  /// The state of the stored parameters. The commands that change the stored parameters are in board_store.hpp.
   protocol::StoreReport store_report();
 
   /// The black box of the last fault; its `fault` is none if the black box is empty. All counters count from the last

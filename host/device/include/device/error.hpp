@@ -1,4 +1,4 @@
-// Errors of a device and of the code that uses it.
+// Errors of a device, and of the code that uses the device.
 #pragma once
 
 #include <stdexcept>

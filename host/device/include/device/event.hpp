@@ -55,7 +55,7 @@ std::vector<Event> events_between(const std::optional<Pose>& before, const Pose&
 std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
                                     std::optional<std::int64_t> at_periods, std::string_view whose = {});
 
-/// The newest events. Each has a number, counted from the start of the log.
+/// The newest events. Each event has a number, counted from the start of the log.
 class EventLog {
  public:
   static constexpr std::size_t kept_maximum = 5000;
@@ -64,7 +64,7 @@ class EventLog {
   void add(std::vector<Event> events);
   std::uint64_t begin() const { return end_ - events_.size(); }
   std::uint64_t end() const { return end_; }
-  /// `number` from begin() on, before end().
+  /// `number` is at least begin() and less than end().
   const Event& operator[](std::uint64_t number) const { return events_[number - begin()]; }
 
  private:

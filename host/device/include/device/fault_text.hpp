@@ -1,4 +1,4 @@
-// Fault texts: the protocol's table with the values of the board inserted.
+// Fault texts from the protocol's table, with the board's values inserted.
 #pragma once
 
 #include <string>

@@ -21,12 +21,12 @@ struct ForceLaw {
   std::vector<protocol::SignalInfo> signals;
 };
 
-/// Reads a protocol::ForceLawReport. Throws Error if it is damaged.
+/// Reads a protocol::ForceLawReport. Throws Error if the report is damaged.
 ForceLaw parse_force_law(std::span<const std::byte> report);
 
 /// Appends the rows of the law to the tables, so that info(), known_parameters(), known_signals(), find_parameter() and
 /// find_signal() include them. Returns false and changes nothing while another law is in use. A law is in use while a
-/// `report` that was added with it exists.
+/// `report` of this law exists.
 bool join_tables(const ForceLaw& law);
 
 /// The name of the law in the tables; empty if there is none.

@@ -19,10 +19,10 @@ struct OpenArm {
   std::unique_ptr<Device> device;
 };
 
-/// Opens the arm at the address. For an `own_board` address, starts a virtual board with these options and the
-/// address's arm description, and sends it the parameters of that description. A board that starts paused enters
-/// standby. The device of a virtual board uses `lock_step` unless `lock_step` is null. Throws Error, or NoDevice if no
-/// arm is found.
+/// Opens the arm at the address. For an `own_board` address, starts a virtual board with these options and with the arm
+/// description in the address. The board receives the parameters of the arm description. A board that starts paused
+/// enters standby. The device of a virtual board uses `lock_step` unless `lock_step` is null. Throws Error, or NoDevice
+/// if no arm is found.
 OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step = nullptr);
 
 /// The parameters that an arm description sets. Throws Error with the line number of a mistake.

@@ -36,19 +36,19 @@ void save_parameters(const std::filesystem::path& file, const protocol::Paramete
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device);
 
-/// The shortest text from which exactly this value can be read.
+/// The shortest text that parses to exactly this value.
 std::string format_value(protocol::Parameter parameter, float value);
 /// None if the text is not a number with a decimal point.
 std::optional<float> parse_number(std::string_view text);
-/// Parses a value with a decimal point. Throws Error if it is not a number or is out of range.
+/// Parses a value with a decimal point. Throws Error if the text is not a number or is out of range.
 float parse_value(protocol::Parameter parameter, std::string_view number);
 /// Parses "NAME=VALUE". Throws Error with the most similar name or with the allowed range if the text is invalid.
 ParameterChange parse_change(std::string_view text);
-/// Throws Error, with the most similar name if any, if no parameter has this name.
+/// Throws Error if no parameter has this name. The error contains the most similar name, if any.
 protocol::Parameter parameter_named(std::string_view name);
 /// " Did you mean NAME?" with a similar known name; empty if there is none.
 std::string parameter_suggestion(std::string_view name);
-/// Throws Error with the range if the value is not finite, is out of range, or is not an integer where one is required.
+/// Throws Error with the range if the value is not finite, is out of range, or is a fraction for an integer parameter.
 void check_value(protocol::Parameter parameter, float value);
 
 }  // namespace inkwell::device

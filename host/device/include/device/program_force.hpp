@@ -15,7 +15,7 @@ struct ForceRequest {
   std::array<float, 3> force_N{};  ///< on the hand, workspace axes
   protocol::ForceMode mode = protocol::ForceMode::beside_walls;
   int interval_ms = 1;  ///< interval until the next request, 1 to protocol::force_interval_maximum_ms
-  /// Sequence of the pose that this force answers; none: the newest pose.
+  /// Sequence of the pose that this force answers; by default, the newest pose.
   std::optional<std::uint32_t> pose_sequence{};
 };
 
@@ -27,7 +27,7 @@ struct Surface {
                                   ///< force
   float dynamic_friction = 0.0f;  ///< the same while the probe slides
   /// Time after which the board removes the shape, unless it is placed again. By default the shape exists while the
-  /// program drives.
+  /// program drives the arm.
   float life_s = std::numeric_limits<float>::infinity();
 };
 
@@ -51,8 +51,8 @@ struct Shapes {
   std::optional<Sphere> sphere;
 };
 
-/// These functions create the reports for the board. If the board would refuse a value, they throw Error with this
-/// value and its range.
+/// These functions create the reports for the board. These functions throw Error if the board would refuse a value. The
+/// error contains the value and its range.
 protocol::ForceReport force_report(const ForceRequest& request);
 protocol::ShapesReport shapes_report(const Shapes& shapes);
 

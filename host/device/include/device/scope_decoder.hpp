@@ -27,7 +27,7 @@ class ScopeDecoder {
   /// Announces the selection of the select_signals command with this token: at most scope_signals_maximum signals.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
-  /// Rejects samples from control periods before `period` with any token, because they belong to an earlier program. An
+  /// Rejects all samples from control periods before `period`, because these samples belong to an earlier program. An
   /// endpoint may retain its last frame for hours.
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
   /// Call this with the current control period before each selection. Otherwise, a frame more than 29 hours after the
@@ -41,11 +41,11 @@ class ScopeDecoder {
   /// `first_period` is not widened.
   ///
   /// `lost_before` counts the control periods between the previously decoded frame and this frame. If the first frames
-  /// of a selection are missing, their sample counts are unknown; each missing frame then counts as one period.
+  /// of a selection are missing, their sample counts are unknown. Each missing frame then counts as one period.
   ///
   /// A program that releases the scope cancels its transfers, possibly in the middle of a frame. The device sends the
-  /// rest of the frame to the next reader. One transfer without a header is therefore not counted as malformed if it
-  /// arrives before the first frame after the scope was stopped.
+  /// rest of the frame to the next reader. Therefore, the first transfer after a stop of the scope may lack a header
+  /// and is not counted as malformed.
   std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
 
   std::uint64_t malformed_frames() const { return malformed_frames_; }

@@ -1,5 +1,5 @@
 // A client that connects and reconnects automatically, sends the sign of life, and stores the newest pose. Separate
-// threads access the device; calls never wait for it.
+// threads access the device, so calls never wait for the device.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ struct SessionStatus {
   std::uint64_t scope_frames_malformed = 0;
 };
 
-/// The lost device is connected again.
+/// The lost device after its reconnection.
 struct Reconnection {
   std::uint64_t number = 0;         ///< increases with each reconnection
   protocol::ParameterSet before{};  ///< values when the device was lost, including pending changes
@@ -70,9 +70,9 @@ class Session {
   SessionStatus status() const;
   std::optional<Pose> newest_pose() const;
 
-  /// Queues a command; it is sent within a millisecond. A command that may move the arm first claims the arm for this
-  /// session. The session releases the arm once the force is off. While another program drives the arm, disable_force
-  /// acts as stop.
+  /// Queues a command, which is sent within a millisecond. A command that may move the arm first claims the arm for
+  /// this session. The session releases the arm once the force is off. While another program drives the arm,
+  /// disable_force acts as stop.
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
 
@@ -83,7 +83,7 @@ class Session {
   /// change.
   std::optional<protocol::ParameterSet> parameters() const;
   std::uint64_t parameters_revision() const;
-  /// Queues one transaction. Changes that were queued since the last transaction are merged into it.
+  /// Queues one transaction. Changes that were queued since the last transaction are merged into one transaction.
   void set_parameters(std::vector<ParameterChange> changes);
   void restore_default_parameters();
   /// Stores the board's parameters after the pending changes were sent. The request has no effect without a device and
@@ -91,8 +91,8 @@ class Session {
   void store_parameters();
   /// Erases the stored parameters and sets every parameter to its default.
   void factory_reset();
-  /// The newest reconnection while the device is connected. None before the first reconnection, or if the connected
-  /// device is not the lost device.
+  /// The newest reconnection of the connected device. None before the first reconnection, without a device, or if the
+  /// connected device is not the lost device.
   std::optional<Reconnection> reconnection() const;
   /// The refusal of the newest transaction; empty after an accepted transaction.
   std::optional<std::string> refusal() const;
@@ -102,7 +102,7 @@ class Session {
 
   /// Selects these signals for every control period, also after each reconnection.
   void select_signals(std::vector<protocol::Signal> signals);
-  /// The session's scope thread calls `receive` with every frame. Set it before the first selection.
+  /// The session's scope thread calls `receive` with every frame. Set `receive` before the first selection.
   void on_scope(std::function<void(const ScopeSamples&)> receive);
 
  private:

@@ -16,8 +16,8 @@
 
 namespace inkwell::device {
 
-/// Waiting calls of a program in lock step with a virtual board. Each report that the program reads is a turn. The
-/// conditions of waiting calls are checked once per turn.
+/// Lock step between a program and a virtual board, for calls that wait. Each report that the program reads is a turn.
+/// The conditions of waiting calls are checked once per turn.
 class LockStep {
  public:
   virtual ~LockStep() = default;
@@ -39,9 +39,10 @@ struct Endpoint {
   std::string path;         ///< hidapi's path for `usb`, bus id for `usbip`
   SocketAddress server{};   ///< for `usbip`
   bool is_virtual = false;  ///< true: a virtual board, so its data are simulated
-  /// For a virtual board: each report is requested when it is read. The LockStep object must outlive the transport.
+  /// Only for a virtual board. Each report is then requested when the program reads it. The LockStep object must
+  /// outlive the transport.
   LockStep* lock_step = nullptr;
-  /// For a virtual board: the seed of the otherwise random numbers, so that a run can be repeated.
+  /// Only for a virtual board: the seed of the numbers that are otherwise random, so that a run can be repeated.
   std::optional<std::uint64_t> seed = {};
 };
 
@@ -51,17 +52,18 @@ std::vector<Endpoint> find_usb_devices();
 /// numbers are known only after open_transport(), because USB/IP device lists do not contain them.
 std::vector<Endpoint> find_usbip_devices(const SocketAddress& server);
 
-/// Raw reports and bulk data. Two threads may use this class: one for reports, one for the bulk stream.
+/// Raw reports and bulk data. Two threads may use this class: one thread for reports and one thread for the bulk
+/// stream.
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Waits for an input report. Returns its length including the leading report id, or 0 on time-out. In lock step this
-  /// requests the report from the board, except with a time-out of 0.
+  /// Waits for an input report. Returns its length including the leading report id, or 0 on time-out. In lock step the
+  /// call requests the report from the board, unless the time-out is 0.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
   /// Returns without waiting for the device, unless many reports are pending.
   virtual void write_report(std::span<const std::byte> report) = 0;
-  /// Waits until the device has received every written report; false on time-out. The next report then does not queue.
-  /// The default is for a transport whose write_report() waits for the device.
+  /// Waits until the device has received every written report; false on time-out. The next report is then sent without
+  /// delay. The default suits a transport whose write_report() waits for the device.
   virtual bool wait_until_written([[maybe_unused]] std::chrono::milliseconds timeout) { return true; }
   /// `report[0]` is the report id. Returns the received length.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
@@ -71,7 +73,7 @@ class Transport {
   /// Releases the stream for other programs. Has no effect if this program has not reserved the stream.
   virtual void release_scope() = 0;
   /// Waits for one bulk transfer of the scope, which must be claimed. Returns its length, or 0 on time-out. Enough
-  /// transfers are pending that no data is lost if the reader is 100 ms late.
+  /// transfers are pending to prevent data loss if the reader is 100 ms late.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
   /// The endpoint, with the serial number and product name that the device reported.
   virtual const Endpoint& endpoint() const = 0;

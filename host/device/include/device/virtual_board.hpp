@@ -46,11 +46,11 @@ struct VirtualBoardOptions {
   bool strict = false;            ///< the board exits when the firmware violates a rule of the chip
 };
 
-/// Create this object in a thread that lives as long as the board is needed: Linux terminates the board when that
-/// thread exits.
+/// Create this object in a thread that lives as long as the board is needed, because Linux terminates the board when
+/// that thread exits.
 class VirtualBoard {
  public:
-  /// Starts the program and waits until it is ready. Throws Error with the program's message if it fails.
+  /// Starts the program and waits until it is ready. If the program fails, throws Error with the program's message.
   explicit VirtualBoard(const VirtualBoardOptions& options);
   ~VirtualBoard();
   VirtualBoard(const VirtualBoard&) = delete;

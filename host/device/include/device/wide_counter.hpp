@@ -6,8 +6,8 @@
 
 namespace inkwell::device {
 
-/// A counter of which the board sends the lower 32 bits. Control periods wrap after 59.7 hours, bus frames after 49.7
-/// days.
+/// A 64-bit counter. The board sends only the lower 32 bits. Control periods wrap after 59.7 hours, bus frames after
+/// 49.7 days.
 ///
 /// The upper bits count the wraps since the first value that this program noted. A value from before the board's last
 /// wrap may therefore be negative. A value must be noted at least every 29 hours. Any thread may call any function.
@@ -40,7 +40,7 @@ class WideCounter {
     return newest == nothing_noted ? std::int64_t{value} : nearest_to(newest, value);
   }
 
-  /// Returns nearest(), and makes it the newest value unless a newer value is known.
+  /// Returns nearest(), and makes this value the newest value unless a newer value is known.
   std::int64_t note(std::uint32_t value) {
     const std::int64_t wide = nearest(value);
     raise_to(wide);

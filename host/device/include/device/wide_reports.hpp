@@ -1,4 +1,4 @@
-// Reports of the device with widened counters. Device returns them instead of the protocol structures.
+// Reports of the device with widened counters. Device returns these reports instead of the protocol structures.
 #pragma once
 
 #include <cstdint>
