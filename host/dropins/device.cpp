@@ -16,15 +16,16 @@ constexpr double motor_value_full = 32767.0;
 /// Intervals for reading the motor heat and for checking the arm's state.
 constexpr auto heat_period = 500ms, care_period = 20ms;
 constexpr double enable_timeout_s = 1.0;
-/// Weight of each new sample, one per millisecond, in the smoothed angular velocity.
+/// Weight of each new sample in the smoothed angular velocity, with one sample per millisecond.
 constexpr double angular_smoothing = 0.125;
 /// Below this speed the probe counts as stationary.
 constexpr double rest_m_per_s = 0.1;
 
-// Faults that HDAPI treats as temporary: the force returns automatically once the probe is stationary.
+// Faults that HDAPI treats as temporary. The force returns automatically once the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
-/// Whether the board has judged the request. Other results come from the link or from the claim of a lost link.
+/// Whether the board has judged the request. Errors of the link, or of a claim that was lost with the link, are not a
+/// judgment.
 bool is_judged(inkwell_result result) { return result == INKWELL_OK || result == INKWELL_REFUSED; }
 
 /// Faults that the board raises when a program exits or is late while the force is on.
@@ -135,7 +136,7 @@ bool Device::sends_poses() const {
 /// Whether a previous program, or the loss of the link, caused the fault.
 bool Device::is_inherited(int fault) const { return is_of_a_host(fault) && !had_force_; }
 
-/// Raises each new condition since the last frame once.
+/// Raises an error for each condition that is new since the last frame.
 void Device::note_condition() {
   const int fault = !is_lost_ && now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
   if (fault != 0) held_ = {};
@@ -199,8 +200,8 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports a lost link or a fault with its specific code. FORCE_ERROR shows the program that there is
-  // no force.
+  // The next frame reports the specific cause: a lost link or a fault. Until then, FORCE_ERROR shows the program that
+  // there is no force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_loss_reported_;
   is_force_loss_reported_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;
@@ -221,7 +222,7 @@ Calibration Device::calibration() {
     raise(comm_error, inkwell_error_text(), result);
     return calibration_needs_manual_input;
   }
-  // A closed inkwell switch may be the cause of a fault, and no calibration takes place until the fault is cleared.
+  // During a fault, a closed inkwell switch does not lead to a calibration.
   const bool is_about_to_be = pose.in_inkwell != 0 && pose.state != INKWELL_FAULT;
   return is_referenced != 0 ? calibration_ok
          : is_about_to_be   ? calibration_needs_update
@@ -269,7 +270,7 @@ void Device::care() {
     // A failure means that the link is lost or the arm is not ready. The next frame reports a lost link. The next pass
     // retries if the arm is not ready.
     const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
-    // A silent board is not a lost link, because the wait then returns a time-out.
+    // inkwell_wait_for_pose() returns a time-out if the board is silent, and INKWELL_DISCONNECTED if the link is lost.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
     // The force is not switched on automatically after another program, a lasting fault or a lost link has switched it
@@ -288,7 +289,7 @@ void Device::care() {
       if (pose.state == INKWELL_FAULT && wanted &&
           (clears || (asked_for && passes_by && speed_m_per_s(pose) < rest_m_per_s)))
         is_cleared = is_judged(inkwell_clear_fault(arm()));
-      // After a failure of the link the next pass clears the fault.
+      // If the link failed, the next pass clears the fault.
       if (is_cleared) clears = false;
       if (pose.state == INKWELL_READY && wanted && asked_for &&
           inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK)

@@ -93,10 +93,10 @@ class Device {
   void set_scheduler_runs(bool runs);
   /// Switches the force on or off as the program requests, also after a loss.
   void follow_force_output();
-  /// Returns once the board has confirmed that the force is off, or the program requests the force again. Raises
+  /// Returns when the board has confirmed that the force is off, or when the program requests the force again. Raises
   /// COMM_ERROR if the board does not confirm that the force is off. Called without the lock of Devices.
   void wait_until_force_is_off();
-  /// Called after each tick: repeats the force of the last frame if the tick had no frame.
+  /// Called after each tick. Repeats the force of the last frame if the tick had no frame.
   void renew_force();
 
   Calibration calibration();
@@ -113,11 +113,11 @@ class Device {
   void poll();
   bool is_inherited(int fault) const;
   void note_condition();
-  /// Sends the force of `command` within HDAPI's limits and returns it.
+  /// Limits the force of `command` as HDAPI requires, sends the force and returns it.
   Vector send(const Command& command, const inkwell_pose& pose);
   std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
-  /// A thread for the calls that need a round trip to the device, so that no frame waits for them.
+  /// A thread for the calls that need a round trip to the device, so that frames do not wait for these calls.
   void care();
 
   const Handle handle_;

@@ -89,8 +89,8 @@ Handle Devices::open(const char* given) {
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = current_here = handle;
-    // Programs assume that errors on the stack belong to this call, so errors of the previous device with this handle
-    // are removed.
+    // Programs assume that errors on the stack belong to the last call, so errors of an earlier device with the same
+    // handle are removed.
     forget_errors_of(handle);
     return handle;
   } catch (const std::exception& error) {

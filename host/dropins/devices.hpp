@@ -13,7 +13,7 @@
 
 namespace inkwell::dropins {
 
-/// Information about the parent's devices in a forked child.
+/// Information about the parent's devices, for a forked child.
 struct ParentsDevices {
   int process = 0;
   Handle handles = 0;  ///< lower handles may belong to the parent
@@ -22,7 +22,7 @@ struct ParentsDevices {
 class Devices {
  public:
   explicit Devices(const ParentsDevices& parents) : parents_(parents) {}
-  /// Does not lock the mutex, because a thread that does not exist in the child may have held it.
+  /// Does not lock the mutex, because a parent's thread that does not exist in the child may have locked the mutex.
   ParentsDevices as_parents() const;
 
   /// Every call of the interface locks this mutex while it uses a device, but not while it opens or closes a device.
@@ -31,7 +31,7 @@ class Devices {
   /// Opens the arm with this name and makes it current. On failure raises an error and returns invalid_handle. Locks
   /// the mutex.
   Handle open(const char* name);
-  /// Locks the mutex. False if there is no such device.
+  /// Locks the mutex. False if no device has this handle.
   bool close(Handle handle);
   void close_all();
   /// Returns once the force of every device is off. Locks the mutex.
@@ -39,20 +39,21 @@ class Devices {
 
   // The following functions require the mutex.
 
-  /// The device with this handle. If there is none, returns NULL and raises BAD_HANDLE.
+  /// The device with this handle. If no device has this handle, returns NULL and raises BAD_HANDLE.
   Device* find(Handle handle);
   /// The current device of the calling thread. For a thread that has selected no device, the device that the program
   /// selected last.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
-  /// Keeps the current device open while the mutex is unlocked. If there is none, returns NULL and raises BAD_HANDLE.
+  /// Keeps the current device open while the mutex is unlocked. If there is no current device, returns NULL and raises
+  /// BAD_HANDLE.
   std::shared_ptr<Device> hold_current();
   bool make_current(Handle handle);
   /// Selects the device for the calling thread only. Has no effect if the handle has no device.
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   void renew_forces();
-  /// The first device that sends poses, which sets the pace of the scheduler; NULL if there is none.
+  /// The first device that sends poses, which sets the pace of the scheduler; NULL if no device sends poses.
   std::shared_ptr<Device> pacing();
 
  private:

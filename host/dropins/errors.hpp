@@ -11,7 +11,7 @@ namespace inkwell::dropins {
 /// the stack is full, the oldest error is dropped.
 void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int internal_code = 0);
 
-/// Pops the newest error; `success` if there is none.
+/// Pops and returns the newest error; returns `success` if the stack is empty.
 ErrorInfo take_error();
 
 /// Removes the errors of one device and returns whether `wanted` was among them.

@@ -1,8 +1,8 @@
 // libhdPhantom.so, through which CHAI3D 3 finds an Omni. The library is a client of libHD.so with one frame per tick
 // for each open device.
 //
-// CHAI3D's x axis points to the user, y to the right, z up; they are HDAPI's z, x and y axes. CHAI3D's units are meters
-// and newtons.
+// CHAI3D's x axis points to the user, y to the right, z up. These axes are HDAPI's z, x and y axes. CHAI3D's units are
+// meters and newtons.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -149,7 +149,7 @@ bool is_number(int number) {
   return number >= 0 && static_cast<std::size_t>(number) < servo().addresses.size();
 }
 
-/// The device, which is opened if necessary; NULL on failure.
+/// Opens the device if necessary. Returns NULL on failure.
 Phantom* reach(int number) {
   if (!is_number(number)) return nullptr;
   if (const auto found = servo().phantoms.find(number);
@@ -172,8 +172,8 @@ bool is_open(int number) {
   return true;
 }
 
-/// Passes the last values to `write`, so that a program that ignores the result gets no random values. Returns -1 if
-/// the values are not current.
+/// Passes the last values to `write` in every case, because some programs ignore the result. Returns -1 if the values
+/// are not current.
 template <class Write>
 int read(int number, Write write) {
   const process::CancellationGuard guard;
@@ -191,8 +191,8 @@ int read(int number, Write write) {
   return sees ? result : bad;
 }
 
-/// Calls `set` and waits for the next tick, which uses the new values. Returns -1 without a call of `set` if the device
-/// is not open or lost.
+/// Calls `set` and waits for the next tick, which uses the new values. If the device is lost or not open, does not call
+/// `set` and returns -1.
 template <class Set>
 int set_until_next_tick(int number, Set set) {
   const process::CancellationGuard guard;
@@ -299,7 +299,7 @@ INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, c
   });
 }
 
-/// The stylus has no motors: a torque is accepted and has no effect.
+/// The stylus has no motors, so a torque is accepted and has no effect.
 INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
   const double* const torque_Nm[3]{x, y, z};
   if (!is_finite(torque_Nm)) return bad;

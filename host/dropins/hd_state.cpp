@@ -70,7 +70,8 @@ void set(Enum value, unsigned type, const Value* values) {
   });
 }
 
-/// Runs `action` with the current device's capability. Raises an error if there is no device or no such capability.
+/// Runs `action` with the current device's capability. Raises an error if there is no device, or if the device lacks
+/// the capability.
 template <class Action>
 void with_capability(Enum capability, Action action) {
   guarded([&] {

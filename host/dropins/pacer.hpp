@@ -1,5 +1,5 @@
-// Derives the scheduler's ticks from the poses of the first device that sends poses, otherwise from the computer's
-// clock.
+// Derives the scheduler's ticks from the poses of the first device that sends poses, or from the computer's clock if no
+// device sends poses.
 #pragma once
 
 #include <chrono>

@@ -15,7 +15,7 @@ std::atomic<Runtime*> current = nullptr;
 
 constexpr auto patience = 1s;  // limit for a callback that does not return
 
-/// When the program exits without closing its devices: stops the callbacks and fades the force.
+/// Stops the callbacks and fades the force out if the program exits without closing its devices.
 __attribute__((destructor)) void end() {
   if (current != nullptr && runtime().scheduler.stop(patience)) runtime().devices.close_all();
 }

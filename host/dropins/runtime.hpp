@@ -19,12 +19,12 @@ struct Runtime {
                       }};
 };
 
-/// Never destroyed, because destructors of static objects may call the library. A forked child has a separate runtime:
-/// the devices and the servo thread belong to its parent.
+/// Never destroyed, because destructors of static objects may call the library. A forked child has a separate runtime,
+/// because the devices and the servo thread belong to the parent.
 Runtime& runtime();
 
-/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Call it before the
-/// scheduler starts: objects created earlier then outlive the callbacks.
+/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Call this function
+/// before the scheduler starts, so that objects created earlier outlive the callbacks.
 void stop_callbacks_at_exit();
 
 }  // namespace inkwell::dropins

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned long pose_rate_Hz = 1000;
 constexpr std::size_t tasks_maximum = 1024;
-/// Programs store handles in 32 bits, some of them signed.
+/// Programs store handles in 32-bit integers, and some programs use signed integers.
 constexpr TaskHandle handle_maximum = 0x7FFFFFFF;
 constexpr TaskHandle no_task = 0;
 /// Nice value of the servo thread. Without permission the value does not change.
@@ -162,8 +162,8 @@ TaskHandle Scheduler::add(Callback callback, void* user, unsigned short priority
   return handle;
 }
 
-/// Removes a task in its destructor and waits for a running call. The data of the task may be on the caller's stack,
-/// which is released when the scheduler stops or the caller is canceled.
+/// The destructor removes a task and waits until a running call of the task has returned. The data of the task may be
+/// on the caller's stack, which is released when the scheduler stops or the caller is canceled.
 class Scheduler::OffTheList {
  public:
   OffTheList(Scheduler& scheduler, std::unique_lock<std::mutex>& lock, TaskHandle handle)
