@@ -1,4 +1,4 @@
-// A device whose time is controlled by the experiment. The time is board time: a virtual board stops while the host
+// A device whose time is controlled by the experiment. The time is board time. A virtual board stops while the host
 // computes, and a real board reports its time with every pose. The load of the host's computer therefore has no effect.
 #pragma once
 
