@@ -38,7 +38,7 @@ std::vector<Endpoint> arms_at(const Address& address) {
   return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.server) : device::find_arms(address);
 }
 
-/// The boot loaders at the address. If the address contains a serial number, only boot loaders with this number.
+/// The boot loaders at the address. A serial number in the address excludes boot loaders with other serial numbers.
 std::vector<Endpoint> loaders_at(const Address& address) {
   auto loaders = device::find_boot_loaders(address);
   if (!address.serial_number.empty())
@@ -69,7 +69,7 @@ auto wait_for(Attempt attempt) -> decltype(attempt()) {
   }
 }
 
-/// Returns nothing if a server or device does not answer because it is restarting. The caller repeats the call.
+/// Returns nothing if a restarting server or device does not answer. The caller repeats the call.
 template <class Attempt>
 auto if_it_answers(Attempt attempt) -> decltype(attempt()) {
   try {

@@ -9,9 +9,9 @@
 
 namespace inkwell::firmware_update {
 
-/// Writes the image like a flash programmer: the sectors of the image are erased, the others are retained. A missing
-/// file is created with the flash of a new chip. Throws Objected or device::Error and leaves the file unchanged, for
-/// example while a board uses the file.
+/// Writes the image like a flash programmer, which erases only the sectors of the image. A missing file is created with
+/// the flash of a new chip. Throws Objected or device::Error and leaves the file unchanged, for example while a board
+/// uses the file.
 struct FlashFileWritten {
   std::optional<protocol::ImageIdentity> before;  ///< none: the file contained no image with an identity
   Image image;

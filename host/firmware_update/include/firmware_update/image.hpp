@@ -48,7 +48,7 @@ struct Image {
   std::optional<protocol::ImageIdentity> identity{};  ///< none: not an Inkwell image, or one without an identity
   bool is_whole = false;                              ///< the checksum at its end is correct
 
-  /// The byte at an address, or none where the image has no data.
+  /// The byte at an address, or none if the image has no data at this address.
   std::optional<std::byte> at(std::uint32_t address) const;
 };
 
@@ -61,11 +61,11 @@ Image read_image(std::span<const std::byte> elf, const std::filesystem::path& na
 /// missing.
 std::optional<Image> own_image_for(std::string_view board);
 
-/// Selects the image for the board with this name when the user has not named an image; may return none.
+/// Selects the image for the board with this name if the user has not named an image. May return none.
 using ImageFor = std::function<std::optional<Image>(std::string_view board)>;
 inline std::optional<Image> always_the_given(std::string_view) { return {}; }
 
-/// The identity in the first bytes of a flash, if there is one.
+/// The identity in the first bytes of a flash, if any.
 std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);
 /// Number of flash bytes that `identity_in` needs.
 inline constexpr std::size_t identity_end = protocol::image_identity_offset + sizeof(protocol::ImageIdentity);
@@ -73,8 +73,8 @@ inline constexpr std::size_t identity_end = protocol::image_identity_offset + si
 /// "firmware 0.1.0 for omni_driver, protocol 11".
 std::string describe(const protocol::ImageIdentity& identity);
 
-/// The reasons against writing this image to a board, one sentence each; empty if there is no reason. `there` is the
-/// identity of the board's current image, if it has one.
+/// The reasons against writing this image to a board, one sentence each; empty if there is no reason. `there`: identity
+/// of the board's current image, if known.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 /// Returns a sentence if the image is older than the installed firmware. An older image causes a warning, not an
 /// objection.

@@ -16,14 +16,14 @@ bool is_interface_name(std::string_view name);
 /// The error sentence for an invalid name.
 std::string no_interface_name(std::string_view name);
 
-/// The bytes of the image as Intel HEX. openocd reads this instead of the user's file, so that it writes nothing else.
+/// openocd reads these bytes instead of the user's file, and therefore writes nothing else.
 std::string intel_hex(const Image& image);
 
 /// Arguments of openocd for copying the first bytes of the flash to `installed_file` while the firmware continues to
 /// run.
 std::vector<std::string> openocd_arguments_for_reading(const std::string& interface);
-/// Arguments of openocd for writing and reading back the sectors of the image and printing `verified_line`. The
-/// arguments also set the brown-out level if it differs, and start the firmware.
+/// Arguments with which openocd writes the sectors of the image, reads them back, and prints `verified_line`. The
+/// arguments also set the brown-out level, if necessary, and start the firmware.
 std::vector<std::string> openocd_arguments_for_writing(const std::string& interface);
 inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
                       verified_line[] = "inkwell: the image is verified";

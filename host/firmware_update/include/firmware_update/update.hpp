@@ -19,8 +19,8 @@
 
 namespace inkwell::firmware_update {
 
-/// The update stopped after the old firmware was erased and before the new one was complete. `what()` describes how to
-/// continue.
+/// The update stopped after the old firmware was erased and before the new firmware was complete. `what()` describes
+/// how to continue.
 class Interrupted : public device::Error {
  public:
   using Error::Error;
@@ -44,8 +44,8 @@ struct UpdateResult {
   std::uint16_t protocol_version = 0;
 };
 
-/// Updates the board at the address, whose firmware or boot loader is running. Throws Objected, Interrupted, or, if the
-/// board is unchanged, device::Error.
+/// Updates the board at the address. The firmware or the boot loader of the board must be running. Throws Objected,
+/// Interrupted, or, if the board is unchanged, device::Error.
 UpdateResult update(const device::Address& address, const Image& image, const UpdateOptions& options);
 
 /// The part of an update from the boot loader to the start of the new firmware.
@@ -56,8 +56,8 @@ struct Written {
 };
 Written write_image(BootLoader& loader, const Image& image, const UpdateOptions& options);
 
-/// The option bytes with brown-out level 3 (RM0090, "Description of the option bytes": BOR_LEV), or none if it is
-/// already set. Throws device::Error if the option bytes do not show a chip without read protection.
+/// The option bytes with brown-out level 3 (RM0090, "Description of the option bytes": BOR_LEV), or none if the level
+/// is already 3. Throws device::Error if the option bytes do not show a chip without read protection.
 std::optional<std::array<std::byte, BootLoader::option_bytes>> with_brown_out_level_3(
     const std::array<std::byte, BootLoader::option_bytes>& options);
 
