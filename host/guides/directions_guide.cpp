@@ -71,7 +71,7 @@ class PulseMotor final : public Step {
   double progress() const override { return static_cast<double>(turned_rad_.size()) / 2; }
 
  private:
-  /// The stylus is out of the inkwell, and the joint moves more slowly than during the pulse.
+  /// True if the stylus is out of the inkwell and the joint is nearly stationary.
   bool holds_still(const device::Pose& pose) {
     const double angle_rad = static_cast<double>(pose.joint_rad[motor_ - 1]);
     if (is_closed(pose.switches, protocol::Switch::inkwell) ||

@@ -30,7 +30,8 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
   const control::Triple angles = parameters.of_each(Parameter::inkwell_joint_1_rad);
   control::Triple turned = angles;
   turned[static_cast<std::size_t>(joint - 1)] += 0.1f;
-  // The elbow shows the shoulder's motion best; the probe shows the motion of the other two joints.
+  // The elbow position shows the motion of the shoulder best. The probe position shows the motion of waist and elbow
+  // best.
   const auto seen = [&](const control::Triple& at) {
     const auto ends = control::link_ends(at, arm);
     return joint == 2 ? ends.elbow_m : ends.probe_m;

@@ -15,8 +15,7 @@ inline constexpr double user_limit_s = 120;  ///< limit for one step of the user
 /// "the waist", "the shoulder", "the elbow".
 const char* joint_name(int joint);
 
-/// Direction of the part that joint `joint` moves when the joint turns forward, from the arm's kinematics: "to the
-/// right", "up" and so on, as seen by the user.
+/// Direction of motion when joint `joint` turns forward, as seen by the user: "to the right", "up" and so on.
 std::string forward_direction(const protocol::ParameterSet& parameters, int joint);
 
 /// Waits until the stylus rests in the inkwell and the encoders are referenced.
@@ -44,7 +43,7 @@ class RestInInkwell final : public Step {
 /// Whether each encoder is reversed; std::nullopt if not checked.
 using ReversedEncoders = std::array<std::optional<bool>, 3>;
 
-/// The user turns one joint forward, and its encoder must count up.
+/// The user turns one joint forward, and the encoder of the joint must count up.
 class TurnJointForward final : public Step {
  public:
   TurnJointForward(std::shared_ptr<Findings> findings, std::shared_ptr<ReversedEncoders> reversed, int joint)

@@ -107,7 +107,7 @@ double mean_of_second_half(const std::vector<double>& values, const Segment& seg
   return sum / static_cast<double>(segment.last - middle);
 }
 
-/// Delay until the voltage acted, from the first current of the segment.
+/// Delay until the voltage acted, computed from the first current of the segment.
 double delay_of(const Segment& segment, double first_current_A, double final_A, double time_constant_s,
                 double period_s) {
   const double part = std::clamp(first_current_A / final_A, 0.0, 0.999);

@@ -43,7 +43,8 @@ struct AxisPoints {
   double middle_ratio = 0.5;
 };
 
-/// Mean of the latest reports, because the wiper is noisy. The window is a time, because a program may miss reports.
+/// Mean of the latest reports, because the wiper is noisy. The averaging window has a fixed duration, because a program
+/// may miss reports.
 class Smoothed {
  public:
   void take(double ratio, double time_s) {

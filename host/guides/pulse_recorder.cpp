@@ -69,7 +69,7 @@ bool PulseRecorder::advance(const device::Pose& pose, DevicePort& port) {
           "start the guide again.");
     return false;
   }
-  // From shortly before the pulse to the end of the rest period after the pulse.
+  // The recording starts shortly before the pulse and stops after the rest period.
   const std::size_t from = begin > samples_before ? begin - samples_before : 0;
   recording_.keep(from, begin + needed);
   state_ = State::done;
@@ -80,7 +80,8 @@ std::size_t PulseRecorder::samples_of_pulse() const {
   return static_cast<std::size_t>(std::lround(pulse_.duration_s * protocol::servo_rate_Hz));
 }
 
-// A repeated recording may start during the previous pulse or the rest after this pulse, when the board refuses pulses.
+// The board refuses pulses during a pulse and during the rest period after the pulse. A repeated recording may start in
+// this time.
 bool PulseRecorder::is_at_rest() const {
   const auto& seen = recording_.column(seen_in_);
   if (seen.size() < rest_samples_) return false;

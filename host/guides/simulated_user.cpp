@@ -89,7 +89,7 @@ double SimulatedUser::move(std::vector<Joints> through, double stiffness_N_per_m
 void SimulatedUser::move_to_stops(int joint, double now_s) {
   const auto middle = [&](int each) { return (limit_rad(each, false) + limit_rad(each, true)) / 2; };
   const bool parallelogram = arm_[Parameter::transmission] == 1.0f;
-  // Waist, shoulder, and the elbow angle relative to its stops.
+  // Waist angle, shoulder angle, and elbow angle relative to the elbow stops.
   const auto joints_at = [&](double waist_rad, double shoulder_rad, double elbow_rad) {
     return Joints{waist_rad, shoulder_rad, elbow_rad + (parallelogram ? shoulder_rad : 0)};
   };
@@ -157,7 +157,7 @@ void SimulatedUser::advance(const UserTask& task) {
   if (task == task_ && planned_.empty()) return;
   const double now_s = control_.status().board_time_s;
   if (task != task_) {
-    // Remaining actions belong to the previous step and are discarded, but its button is released.
+    // Remaining actions of the previous step are discarded. A button that the previous step has pressed is released.
     if (!planned_.empty()) control_.buttons(false, false);
     planned_.clear();
     task_ = task;

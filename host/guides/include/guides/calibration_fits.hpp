@@ -13,7 +13,7 @@ struct JointStops {
 };
 
 /// Correction of a joint's angles that moves its stops to the expected angles:
-/// right angle = inkwell_rad + scale (angle - old inkwell angle).
+/// corrected angle = inkwell_rad + scale (angle - old inkwell angle).
 struct StopsFit {
   double scale;                          ///< 1 if the found travel equals the expected travel
   double inkwell_rad;                    ///< inkwell angle for this scale
@@ -23,7 +23,7 @@ struct StopsFit {
 /// Tolerance for compliant stops and whole encoder counts.
 inline constexpr double stops_tolerance_rad = 0.03;
 
-/// With `fit_scale`, fits the scale and the inkwell angle; otherwise only the angle (scale 1). `expected` must have a
+/// Fits the inkwell angle and, with `fit_scale`, the scale. Without `fit_scale` the scale is 1. `expected` must have a
 /// nonzero width.
 StopsFit fit_stops(const JointStops& found, const JointStops& expected, double old_inkwell_rad, bool fit_scale);
 
@@ -43,8 +43,8 @@ struct PotentiometerPoint {
   double angle_rad;
 };
 
-/// Least-squares fit; a quadratic curve needs three points, a line two. Throws device::Error if there are too few
-/// points, or if their ratios are too close together for a meaningful curve.
+/// Least-squares fit; a quadratic curve needs at least three points, and a line needs at least two points. Throws
+/// device::Error if there are too few points, or if their ratios are too close together for a meaningful curve.
 PotentiometerCurve fit_potentiometer(std::span<const PotentiometerPoint> points, bool quadratic);
 
 }  // namespace inkwell::guides

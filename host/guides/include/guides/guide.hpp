@@ -1,13 +1,11 @@
 // A guide leads the user through steps. The guide announces each motion, measures, and finishes with a result and
 // proposed changes.
 //
-//   phase     | left by
-//   ----------+------------------------------------------------------------------------------
-//   asks      | confirm -> working
-//   working   | the step is done -> asks or working (next step), finished (last step)
-//   finished  | apply sends the proposals as one transaction
-//   cancelled | cancel, in any earlier phase
-//   failed    | the device disconnected, reported a fault or sent impossible values
+//   `awaits_consent`  The user confirms the step, which leads to `working`.
+//   `working`         A finished step leads to the next step, and the last step leads to `finished`.
+//   `finished`        The user applies the proposals, which the guide sends as one transaction.
+//   `cancelled`       The user has cancelled the guide in an earlier phase.
+//   `failed`          The device disconnected, reported a fault or sent impossible values.
 //
 // At the end of a guide, force and test pulses are off and temporary parameters are restored.
 #pragma once

@@ -2,12 +2,12 @@
 #pragma once
 
 // To add a guide:
-// 1. Add a line to INKWELL_GUIDES.
-// 2. Write host/guides/NAME_guide.cpp: the plan of the steps and an `Offer` named NAME_guide. Access the device
-//    only through DevicePort.
-// 3. Add options of the guide to Choices and to the command of its group in host/command_line.
-// 4. Add a test with a simulated arm to tests/host/guides. Add a new subcommand to the list in
-//    tests/system/bad_input_test.cpp.
+// (1) Add a line to INKWELL_GUIDES.
+// (2) Write host/guides/NAME_guide.cpp with the plan of the steps and an `Offer` named NAME_guide. Access the device
+//     only through DevicePort.
+// (3) Add options of the guide to Choices and to the command of its group in host/command_line.
+// (4) Add a test with a simulated arm to tests/host/guides. Add a new subcommand to the list in
+//     tests/system/bad_input_test.cpp.
 //
 // The window and the command line use this list.
 

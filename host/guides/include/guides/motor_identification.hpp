@@ -1,10 +1,10 @@
 // Computes resistance and inductance of a motor from its response to voltage pulses, without side effects.
 //
-// The circuit is  u = R i + L di/dt + e + s(i) U,  sampled once per control period:
-//   u  duty times supply, constant over a period; it acts one period after its computation
-//   e  back-EMF of the motor while the arm moves: torque constant times motor speed
-//   U  voltage loss due to the bridges' dead time, with the sign of the current; for currents smaller than the
-//      ripple, the sign changes within a period and only a part of U is lost
+// The circuit is  u = R i + L di/dt + e + s(i) U,  sampled once per control period.
+//   `u`  Duty times supply, constant over a period. The voltage acts one period after its computation.
+//   `e`  Back-EMF of the motor while the arm moves: torque constant times motor speed.
+//   `U`  Voltage loss due to the bridges' dead time, with the sign of the current. For currents smaller than the
+//        ripple, the sign changes within a period, and only a part of U is lost.
 // Between two samples the current follows the exact solution, exp(-R T / L). The fit starts at the second sample of the
 // pulse, with the first current as an additional unknown. The delay and the nonlinearity around zero current therefore
 // do not affect the inductance. The delay is a separate result.
@@ -15,7 +15,7 @@
 
 namespace inkwell::guides {
 
-/// Consecutive control periods with one voltage pulse and at least two periods before it.
+/// Consecutive control periods with one voltage pulse and at least two periods before the pulse.
 struct VoltagePulse {
   std::vector<double> voltage_V;   ///< duty times supply, as computed by the firmware
   std::vector<double> current_A;   ///< measured

@@ -17,8 +17,8 @@ class PulseRecorder {
 
   void begin(const device::Pose& pose, DevicePort& port);
   void receive(const device::ScopeSamples& samples);
-  /// Returns true once the pulse and the rest after it are recorded without a gap. A recording with a gap is repeated,
-  /// at most three times. Throws device::Error if the scope or the pulse does not start.
+  /// Returns true once the pulse and the rest period after the pulse are recorded without a gap. A recording with a gap
+  /// is repeated, at most three times. Throws device::Error if the scope or the pulse does not start.
   bool advance(const device::Pose& pose, DevicePort& port);
 
   const std::vector<float>& column(protocol::Signal signal) const { return recording_.column(signal); }

@@ -45,12 +45,12 @@ struct Findings {
   std::vector<Curve> curves;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< all numbers, for programs
 
-  /// Proposes `value` if it differs from the device's value. Throws device::Error if it is out of range.
+  /// Proposes `value` if it differs from the device's value. Throws device::Error if `value` is out of range.
   void propose(const protocol::ParameterSet& held, protocol::Parameter parameter, double value,
                const std::string& reason);
 };
 
-/// The user's task in a step, also readable for a simulated hand. `number` is a joint, gimbal axis or button, counted
+/// The user's task in a step, which a simulated hand can also read. `number` is a joint, gimbal axis or button, counted
 /// from 1.
 struct UserTask {
   enum class Kind : std::uint8_t {
@@ -86,8 +86,8 @@ class Step {
   /// Whether the step has a part that the user confirms.
   virtual bool takes_confirmation() const { return false; }
   virtual void confirm() {}
-  /// Previous values of temporarily changed parameters. The guide sends them at the end of the step, including after a
-  /// failure.
+  /// Previous values of temporarily changed parameters. The guide sends these values at the end of the step, including
+  /// after a failure.
   virtual std::vector<device::ParameterChange> to_put_back() const { return {}; }
 
   virtual std::vector<Check> checks() const { return {}; }
