@@ -122,7 +122,7 @@ void Arm::enable_force(double timeout_s) {
   poses_.use_force();
   poses_.forget_lost_force();
   for (double waited_s = 0;;) {
-    // A board that is not referenced yet drops the request, so it is repeated.
+    // A board that is not referenced yet drops the request, so the request is repeated.
     device().carry_out(Command::enable_force);
     const double wait_s = std::min(limit_s - waited_s, retry_s);
     const auto now = poses_.wait(

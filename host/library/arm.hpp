@@ -1,16 +1,15 @@
-// An open arm. Its parts own their data, and any thread may call them:
+// An open arm, which consists of parts. Each part owns its data, and any thread may call any part.
 //
-//   part         its thread                      what it owns
-//   PoseFeed     -                               the newest pose and the losses of poses, link and force
-//   Turns        -                               the turns of virtual boards, shared by all boards of a program
-//   Connection   opens the arm, reads poses,     the device, the board that was started for it, the arm's geometry
-//                reopens the arm after a loss
-//   ForceOutput  sends forces                    the newest force and the force mode
-//   ScopeStream  reads samples                   the selected signals, the unread samples, the recording
-//   Servo        calls the servo function        the servo function and its state
+//   Part         Thread                          Data.
+//   PoseFeed     -                               the newest pose and the losses of poses, link and force.
+//   Turns        -                               the turns of virtual boards, shared by all boards of a program.
+//   Connection   connects, reads poses           the device, its board if started for the arm, the arm's geometry.
+//   ForceOutput  sends forces                    the newest force and the force mode.
+//   ScopeStream  reads samples                   the selected signals, the unread samples, the recording.
+//   Servo        calls the servo function        the servo function and its state.
 //
-// Each part has private mutexes. While a part holds a mutex, it may call PoseFeed but no other part; PoseFeed may then
-// call only Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
+// Each part has private mutexes. While a part holds a mutex, it may call only PoseFeed. PoseFeed may then call only
+// Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>
@@ -47,8 +46,8 @@ class Arm {
   void read(Take take) const {
     poses_.read(take);
   }
-  /// The first pose after the pose with this sequence. Throws Disconnected if the link is lost, and TimedOut. `answer`:
-  /// the caller is a loop that sets a force for each pose, and lock step waits for this force.
+  /// The first pose after the pose with this sequence. Throws Disconnected if the link is lost, and TimedOut. `answer`
+  /// shows whether the calling thread sets a force for each pose, so that lock step waits for the force.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
                              Turns::Answer answer = Turns::Answer::none) const;
   /// Waits until this board time has passed. Throws TimedOut if no poses arrive.

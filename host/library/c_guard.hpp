@@ -24,7 +24,8 @@ struct inkwell_arm {
 
 namespace inkwell::library {
 
-/// The result for the current exception. Stores its sentence as inkwell_error_text() of the calling thread.
+/// The result for the current exception. Stores the sentence of the exception as inkwell_error_text() of the calling
+/// thread.
 inkwell_result result_of_exception() noexcept;
 
 template <class Action>

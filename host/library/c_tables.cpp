@@ -36,7 +36,7 @@ void require_at_most(std::size_t maximum, std::size_t count, const char* what) {
 std::mutex rows_mutex;
 const inkwell::process::HeldAtFork rows_at_fork(rows_mutex);
 
-// All texts of the tables, including those of a force law, are zero-terminated.
+// All texts of the tables, including the texts of a force law, are zero-terminated.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
   return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
 }

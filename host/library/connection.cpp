@@ -21,7 +21,7 @@ constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
-/// A process that was stopped has not received poses meanwhile, so each wait counts for at most this time.
+/// A stopped process receives no poses, so each wait counts for at most this time.
 constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
@@ -133,7 +133,7 @@ void Connection::read_poses(const OnPose& on_pose) {
 bool Connection::report_lost_claim() {
   std::optional<device::Driver> driver;
   if (!arm_.device->try_driver(driver)) return false;
-  // A release by this program is not a loss.
+  // After a release by this program, no loss is reported.
   if (driver && !driver->is_this_device)
     poses_.lose_claim(fmt::format("The arm was taken over by {}. That program now controls the force.",
                                   device::driver_text(*driver)));

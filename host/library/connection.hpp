@@ -19,7 +19,7 @@ namespace inkwell::library {
 
 class Connection {
  public:
-  /// Returns once poses arrive. For a virtual board that was started for this arm, the poses are valid. Throws Error.
+  /// Returns once poses arrive. If this arm has started a virtual board, the poses are then referenced. Throws Error.
   Connection(const std::string& address, PoseFeed& poses);
   ~Connection();
   Connection(const Connection&) = delete;

@@ -8,12 +8,13 @@
 
 namespace inkwell::library {
 
-/// Intervals are counted in poses, which follow board time. The PC clock is unsuitable: a busy computer delays threads,
-/// and a virtual board runs in simulated time.
+/// Intervals are counted in poses, which follow board time. The PC clock is unsuitable, because a busy computer delays
+/// threads, and a virtual board runs in simulated time.
 class ForceInterval {
  public:
-  /// The program's usual interval between forces, ms: the median of five intervals, so that one late force has no
-  /// effect. `pose_sequence` is the sequence of the newest pose that the program had read when it computed this force.
+  /// The usual interval between the program's forces in ms, which is the median of five intervals. One late force
+  /// therefore has no effect. `pose_sequence` is the sequence of the newest pose that the program had read when it
+  /// computed this force.
   int next(std::uint32_t pose_sequence);
 
  private:

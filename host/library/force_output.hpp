@@ -16,7 +16,7 @@
 
 namespace inkwell::library {
 
-/// Sends the newest force when the device has received the previous one. USB transfers one force per millisecond, and
+/// Sends the newest force when the device has received the previous force. USB transfers one force per millisecond, and
 /// an old force is useless. In lock step the force is sent before the next pose is requested.
 class ForceOutput : private TurnPart {
  public:

@@ -13,7 +13,7 @@
 namespace inkwell::library {
 namespace {
 
-/// Shortest time after which a stepped program is informed of a silent board: on a busy computer a pose may take long.
+/// Shortest silence that is reported to a stepped program. On a busy computer a pose may take long.
 constexpr double stepped_silence_s = 2.0;
 
 constexpr char lost_with_the_link[] =

@@ -1,4 +1,4 @@
-// Distributes the newest pose to all threads, and reports losses of the poses, the link and the force to them.
+// Informs all threads of the newest pose, and of losses of the poses, the link and the force.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /// No time-out.
 inline constexpr double forever_s = std::numeric_limits<double>::infinity();
 
-/// Returns the time-out of a call, at least 0. Throws BadArgument if it is not a number.
+/// Returns the time-out of a call, at least 0. Throws BadArgument if the time-out is not a number.
 double checked_timeout_s(double seconds);
 
 /// Reason why no poses arrive.
@@ -37,7 +37,7 @@ enum class Loss : std::uint8_t {
   link,     ///< the link is lost, and the connection searches for the board
 };
 
-/// Work of a part of the arm in the thread that reads poses. Used in lock step only.
+/// A task that the pose thread executes in each turn. Used in lock step only.
 class TurnPart {
  public:
   virtual ~TurnPart() = default;
@@ -53,19 +53,19 @@ class PoseFeed final : public device::LockStep {
  public:
   // ---- for the thread that reads the poses ---------------------------------------------------------------------
 
-  /// From now on poses arrive in these turns. `is_stepped`: after let_program_decide(), board time passes only while a
-  /// call waits.
+  /// Switches to lock step with these turns. If `is_stepped`, board time passes only while a call waits, once
+  /// let_program_decide() was called.
   void take_turns(std::shared_ptr<Turns> turns, bool is_stepped);
   /// From now on the program decides when time passes. Call this again after a lost link.
   void let_program_decide();
-  /// Waits until the next pose may be requested: immediately, unless the board is in lock step. False if the arm
+  /// Waits until the next pose may be requested. Without lock step, a request is always allowed. False if the arm
   /// closes.
   bool begin_turn();
-  /// Called when the arm closes: begin_turn() does not wait any more.
+  /// Called when the arm closes, so that begin_turn() no longer waits.
   void leave_turns();
 
-  /// Publishes a pose, which ends a loss. In lock step the function returns after servos have answered the pose and the
-  /// waiting calls that the pose completes are released.
+  /// Publishes a pose, which ends a loss. In lock step the function returns after the servos have answered the pose and
+  /// the waiting calls were notified.
   void publish(const inkwell_pose& pose, bool is_referenced);
   /// Reports a loss. `cause` is a sentence with the remedy; the newest cause replaces earlier causes.
   void lose(Loss kind, const std::string& cause);
@@ -94,8 +94,8 @@ class PoseFeed final : public device::LockStep {
   void require_link() const;
 
   /// Waits until `condition(pose, loss)` is true, this board time has passed, or no pose has arrived for the same wall
-  /// time. Returns the newest pose. Throws Disconnected while the link is lost; a silence may end before the time-out.
-  /// `answer`: use of the pose by the calling thread.
+  /// time. Returns the newest pose. Throws Disconnected while the link is lost, but not during a silence. `answer`
+  /// states how the calling thread answers the pose.
   template <class Condition>
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {
@@ -114,7 +114,7 @@ class PoseFeed final : public device::LockStep {
 
   // ---- the force ---------------------------------------------------------------------------------------------
 
-  /// This program uses forces from now on, so losses of the force are reported to it.
+  /// This program uses forces from now on, so losses of the force are reported to this program.
   void use_force();
   /// Called when this program switches the force on, or accepts that it is off.
   void forget_lost_force();
@@ -122,14 +122,15 @@ class PoseFeed final : public device::LockStep {
   void expect_force_off();
   /// Throws ForceLost after an unexpected loss of the force, until the force is on again or the loss was accepted.
   void require_force() const;
-  /// uses_force(): this program uses forces. had_force(): its force was on since the link was opened.
+  /// uses_force() returns whether this program uses forces. had_force() returns whether its force was on since the link
+  /// was opened.
   bool uses_force() const;
   bool had_force() const;
 
   /// Number of losses of the poses or the force. Each loss stops the running servo.
   std::uint64_t interruptions() const;
   /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if the number of losses is not
-  /// `known`. Only for servos: in lock step, board time stops until the servo waits again, or ends its answer.
+  /// `known`. Only for servos. In lock step, board time stops until the servo waits again or ends its answer.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
     const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };
@@ -142,10 +143,10 @@ class PoseFeed final : public device::LockStep {
   // ---- lock step ---------------------------------------------------------------------------------------------
 
   bool is_in_lock_step() const { return turn_.has_value(); }
-  /// Calls `part` in each turn until it is removed. Only in lock step.
+  /// Calls `part` in each turn until `part` is removed. Only in lock step.
   void add(TurnPart& part);
   void remove(TurnPart& part);
-  /// Marks that a thread answers a pose, so that board time waits for it. Has no effect outside lock step.
+  /// Marks that a thread answers a pose, so that board time waits for the thread. Has no effect outside lock step.
   void begin_answer(std::thread::id thread, Turns::Answer answer) const;
   void end_answer(std::thread::id thread) const;
 
@@ -203,7 +204,7 @@ class PoseFeed final : public device::LockStep {
   std::uint64_t interruptions_ = 0;
   std::exception_ptr interruption_;  ///< the newest interruption
 
-  // Set before any other part is created.
+  // These members are set before any other part is created.
   std::shared_ptr<Turns> turns_;      ///< null outside lock step
   std::optional<Turns::Board> turn_;  ///< none outside lock step
   bool is_stepped_ = false;

@@ -16,7 +16,7 @@ struct ReadPose {
   bool is_referenced;
 };
 
-/// For one arm and one thread.
+/// Each object serves one arm and one thread.
 class PoseReader {
  public:
   inkwell_pose read(const device::Pose& report, const control::Arm& geometry);

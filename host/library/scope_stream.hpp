@@ -19,7 +19,7 @@
 
 namespace inkwell::library {
 
-/// In lock step there is no thread: the samples that precede a pose are read together with it.
+/// In lock step there is no thread. The samples before a pose are read together with the pose.
 class ScopeStream : private TurnPart {
  public:
   ScopeStream(device::Device& device, PoseFeed& poses);
@@ -42,9 +42,9 @@ class ScopeStream : private TurnPart {
   void run();
   void keep(device::ScopeSamples samples);
   void end(std::uint64_t selection, const std::string& cause);
-  /// Requires the mutex, and unlocks it while it waits.
+  /// Requires the mutex, and unlocks the mutex during the wait.
   void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
-  /// If no signals are selected, this also clears the reason why the last selection ended.
+  /// If no signals are selected, the call also clears the reason why the last selection ended.
   bool is_selected();
 
   device::Device& device_;

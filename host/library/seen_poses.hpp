@@ -13,7 +13,7 @@ namespace inkwell::library {
 
 class SeenPoses {
  public:
-  /// For the calling thread; none before its first pose.
+  /// Sequence for the calling thread; none before the first pose of the thread.
   std::optional<std::uint32_t> newest() const {
     const std::lock_guard lock(mutex_);
     const auto seen = sequences_.find(std::this_thread::get_id());
@@ -29,7 +29,7 @@ class SeenPoses {
     const std::lock_guard lock(mutex_);
     if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());
   }
-  /// Whether the calling thread has set a force since its last pose: such a thread runs a loop that answers poses.
+  /// Whether the calling thread has set a force since its last pose, and therefore runs a loop that answers poses.
   bool take_force() {
     const std::lock_guard lock(mutex_);
     return drives_.erase(std::this_thread::get_id()) > 0;

@@ -19,7 +19,8 @@ class Servo {
  public:
   /// Writes the force on the hand, which is preset to 0. Returning false or throwing stops the servo.
   using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
-  /// Receives each force with the sequence of the pose that it answers. An exception of this function stops the servo.
+  /// Receives each force, and the sequence of the pose to which the force belongs. An exception of this function stops
+  /// the servo.
   using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
 
   /// `let_go` is called when a servo has stopped.
@@ -29,7 +30,7 @@ class Servo {
 
   /// Throws NotNow if a servo is running.
   void start(Function function);
-  /// Requests the stop: a running call is the last call.
+  /// Requests a stop after the running call, if any.
   void request_end();
   /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
   void stop();

@@ -1,11 +1,11 @@
-// Lock step: the program and its virtual boards take turns, and each pose is a turn.
+// Lock step of a program and its virtual boards. Each pose is a turn, which has these phases:
 //
-//   1. Board time passes until the next pose, on every board of the group.
-//   2. Servos are called with the pose, and their forces are sent. Board time is stopped.
-//   3. Calls that wait for board time check whether they are done.
+//   (1) Board time passes until the next pose, on every board of the group.
+//   (2) Servos are called with the pose, and their forces are sent. Board time is stopped.
+//   (3) Calls that wait for board time check whether they are done.
 //
 // A turn begins when no thread answers a pose. In a stepped group a turn also requires a waiting call. Program code
-// between two calls then takes no board time, and a program has the same run on any computer.
+// between two calls therefore uses no board time, and a run is the same on any computer.
 #pragma once
 
 #include <chrono>
@@ -24,12 +24,12 @@ class Turns {
   /// The group of the virtual boards that this process has started. They share one clock.
   static std::shared_ptr<Turns> of_own_boards();
 
-  /// A board of another process does not wait for loops, because other programs use its time too.
+  /// A board of another process does not wait for loops, because other programs may use the board.
   explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
 
   /// Longest time for an answer. After this time, board time passes without the answer. In a stepped group the limits
-  /// are long, so that they do not depend on the computer load. The other limits are shorter than the silence that
-  /// counts as a loss. A hanging servo therefore does not block the board for other programs.
+  /// are long, so that they do not depend on the computer load. Without stepped boards the limits are short, so that a
+  /// hanging servo does not block the board for other programs.
   struct Patience {
     std::chrono::milliseconds loop, servo;
   };
@@ -53,8 +53,8 @@ class Turns {
     bool begin();
     /// Waits until all boards of the turn have reached the same step. False after `leave`.
     bool meet();
-    /// Waits until no servo answers a pose, with a time limit: the thread that a servo waits for may itself wait for
-    /// the board. False after `leave`.
+    /// Waits until no servo answers a pose. The wait has a time limit, because a servo may itself wait for a thread
+    /// that waits for the board. False after `leave`.
     bool wait_for_servos();
     void end();
     /// The link of the board is lost. The board rejoins the group in its next turn, which begins without a waiting

@@ -1,6 +1,6 @@
 // A plane at x = 0 that attracts the stylus within 10 mm. A stronger pull releases it.
 //
-//   magnetic_surface [ADDRESS]     address of the arm for inkwell_open()
+//   Usage: magnetic_surface [ADDRESS]     address of the arm for inkwell_open()
 #include <cmath>
 #include <cstdio>
 

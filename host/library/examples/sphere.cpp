@@ -1,7 +1,7 @@
-// A sphere in the middle of the box. The board renders the sphere at its full rate. This program only renews it before
-// its life ends, so that the sphere disappears after the program exits.
+// A sphere in the middle of the box. The board renders the sphere at its full rate. This program only renews the
+// sphere regularly, so that the sphere disappears after the program exits.
 //
-//   sphere [ADDRESS]     address of the arm for inkwell_open()
+//   Usage: sphere [ADDRESS]     address of the arm for inkwell_open()
 #include <chrono>
 #include <cstdio>
 #include <future>

@@ -1,6 +1,6 @@
 /* A spring between the stylus and a point in the middle of the box.
  *
- *   spring_to_a_point [ADDRESS]     address of the arm for inkwell_open() */
+ *   Usage: spring_to_a_point [ADDRESS]     address of the arm for inkwell_open() */
 #include <stdio.h>
 
 #include <inkwell/inkwell.h>

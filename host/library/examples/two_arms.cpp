@@ -1,6 +1,6 @@
-// A spring between two arms: each hand feels the motion of the other.
+// A spring between two arms. Each hand feels the motion of the other hand.
 //
-//   two_arms ADDRESS ADDRESS     addresses of the arms for inkwell_open()
+//   Usage: two_arms ADDRESS ADDRESS     addresses of the arms for inkwell_open()
 #include <cstdio>
 
 #include <inkwell/inkwell.hpp>

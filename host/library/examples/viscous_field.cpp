@@ -1,6 +1,6 @@
 // A viscous field: the force is opposite to the velocity and proportional to it.
 //
-//   viscous_field [ADDRESS]     address of the arm for inkwell_open()
+//   Usage: viscous_field [ADDRESS]     address of the arm for inkwell_open()
 #include <cstdio>
 
 #include <inkwell/inkwell.hpp>

@@ -1,5 +1,6 @@
 // libinkwell for C++: the C interface with objects that release their resources, and with errors as exceptions.
 //
+// Example:
 //   inkwell::Arm arm;                                  // the only arm on USB, or the arm that INKWELL_DEVICE names
 //   arm.enable_force();
 //   arm.start_servo([](const inkwell::Pose& pose) {    // 1000 times per second
@@ -28,14 +29,14 @@ using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
 using Vector = std::array<double, 3>;  ///< in the workspace axes
 
-/// Error: a function of the library did not return INKWELL_OK. what() returns the error sentence.
+/// Thrown if a function of the library does not return INKWELL_OK. what() returns the error sentence.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
   inkwell_result result;
 };
 
-/// Error: no poses arrive, because the link to the arm is lost or the arm is silent. The library recovers by itself;
+/// Thrown if no poses arrive, because the link to the arm is lost or the arm is silent. The library recovers by itself;
 /// see INKWELL_DISCONNECTED.
 class Disconnected : public Failure {
  public:
@@ -58,10 +59,10 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm, which the destructor closes. Each function calls the C function of the same name. The C++ function
-/// throws Failure if the C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo
+/// An open arm, which the destructor closes. Each function calls the C function of the same name. Each C++ function
+/// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo
 /// moves with its arm. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do not destroy an arm
-/// in its own servo: the library cannot close the arm there, and it stays open.
+/// in its own servo, because the library cannot close the arm there.
 class Arm {
  public:
   /// Returns the force on the hand. An exception stops the servo, and stop_servo() throws it. Any other cause that has
@@ -73,7 +74,7 @@ class Arm {
     require(inkwell_open(address.c_str(), &opened_->arm));
   }
 
-  /// The arm for use with the C interface, which must not close it. Null in a moved-from arm.
+  /// The arm for use with the C interface. Do not close the arm with the C interface. Null in a moved-from arm.
   inkwell_arm* get() const { return opened_ ? opened_->arm : nullptr; }
 
   Pose pose() const {
@@ -125,7 +126,8 @@ class Arm {
     throw_what_ended_servo();
     if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
     std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
-    // The new servo must wait until its state is stored, so that it does not use the state of the previous servo.
+    // The new servo waits until its state is stored, so that the new servo does not use the state of the previous
+    // servo.
     const std::lock_guard<std::mutex> lock(opened_->mutex);
     require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
     opened_->servo.swap(state);
