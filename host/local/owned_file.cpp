@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
 
-/// Target of a symbolic link: the file must be replaced, and not the link.
+/// Target of a symbolic link, because the target must be replaced and not the link.
 fs::path resolve_links(fs::path path) {
   constexpr int links_maximum = 40;  // limit of Linux
   std::error_code code;

@@ -20,13 +20,13 @@ class FileInUse : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The lock is on the file itself (flock). The lock applies to every name and link of the file, and ends with the
-/// process in any case. Child processes do not inherit the lock.
+/// The lock is on the file itself (flock) and applies to every name and link of the file. The lock ends when the
+/// process exits. Child processes do not inherit the lock.
 class OwnedFile {
  public:
   using Flock = int (*)(int descriptor, int operation);
 
-  /// A missing file is owned too: no other OwnedFile can create it. Tests pass another function than flock.
+  /// A missing file is owned too, so that no other OwnedFile can create the file. Tests pass a substitute for flock.
   /// @throws FileInUse, or std::system_error if the file cannot be opened.
   explicit OwnedFile(const std::filesystem::path& path, Flock flock_like = &::flock);
   ~OwnedFile();
@@ -34,9 +34,9 @@ class OwnedFile {
   /// Empty, or a sentence if the file system does not support locks. In this case other programs can use the file.
   std::string warning() const;
   bool exists() const { return file_.is_open(); }
-  /// The content if it has exactly this size, otherwise empty. Also empty if this is not a regular file.
+  /// The content if it has exactly this size, otherwise empty. Also empty if the file is not a regular file.
   std::vector<std::byte> content(std::size_t size) const;
-  /// Replaces the content atomically: a reader finds the complete old or the complete new content.
+  /// Replaces the content atomically, so that a reader finds the complete old or the complete new content.
   /// @throws FileInUse if another program has replaced the file, which then does not change. std::system_error if the
   /// file cannot be
   ///         written.

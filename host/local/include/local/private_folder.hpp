@@ -12,10 +12,10 @@ namespace inkwell::local {
 /// throw std::runtime_error with a sentence.
 class PrivateFolder {
  public:
-  /// In the folder for temporary files.
+  /// Creates the private folder in the folder for temporary files.
   static PrivateFolder for_files();
-  /// In the user's runtime folder (XDG_RUNTIME_DIR) if it exists, otherwise in the folder for temporary files. The path
-  /// is short enough for sockets, and no other user can replace the folder.
+  /// Creates the private folder in the user's runtime folder (XDG_RUNTIME_DIR) if that folder exists, otherwise in the
+  /// folder for temporary files. The path is short enough for sockets, and no other user can replace the folder.
   static PrivateFolder for_sockets();
   ~PrivateFolder();
   PrivateFolder(PrivateFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
