@@ -1,5 +1,6 @@
 // libinkwell for Octave and MATLAB, from one source. The .m files in this folder call inkwell_mex(COMMAND, ...).
 //
+// Build commands:
 //   mkoctfile --mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell     Octave
 //   mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell                 MATLAB
 #include <cstdint>
@@ -176,7 +177,7 @@ Answers pose(const Arguments& arguments) {
   return {struct_of(pose, was_referenced != 0 && is_referenced != 0)};
 }
 
-/// Returns the last pose without an error while no poses arrive.
+/// While no poses arrive, returns the last pose and raises no error.
 Answers last_pose(const Arguments& arguments) {
   inkwell_pose pose{};
   int is_referenced = 0;
@@ -398,7 +399,7 @@ Answers run(const Arguments& arguments) {
   return command->second(Arguments(arguments.begin() + 1, arguments.end()));
 }
 
-/// Error identifier, with which a program distinguishes errors.
+/// Error identifier, by which programs distinguish errors.
 const char* identifier_of(inkwell_result result) {
   switch (result) {
     case INKWELL_DISCONNECTED: return "inkwell:disconnected";
