@@ -1,5 +1,5 @@
 // Support for program threads that are canceled with pthread_cancel() during a library call. A canceled thread unwinds
-// its stack from the system call in which it waits, which most of this code does not support.
+// its stack from the system call in which the thread waits. Most of this code does not support that.
 #pragma once
 
 #include <pthread.h>
@@ -33,8 +33,9 @@ class CancellationGuard {
   int state_ = PTHREAD_CANCEL_DISABLE;
 };
 
-/// Surrounds a wait: the thread is canceled here if its owner allows it. Every frame between this object and the
-/// interface function must unwind: none is noexcept, and each `catch (...)` rethrows a cancellation.
+/// Surrounds a wait. During the wait the thread is canceled if the program allows cancellation. Every frame between
+/// this object and the interface function must unwind, so no frame is noexcept, and each `catch (...)` rethrows a
+/// cancellation.
 class CancellationPoint {
  public:
   CancellationPoint() {
@@ -59,7 +60,7 @@ class NoCancellationPoints {
   int state_;
 };
 
-/// For a library thread that calls functions of the program: the program must not unwind the library's stack.
+/// For library threads that call functions of the program, because the program must not unwind the library's stack.
 inline void never_cancel_this_thread() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr); }
 
 }  // namespace inkwell::process

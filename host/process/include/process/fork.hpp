@@ -1,5 +1,5 @@
-// Support for a process that forks while library threads run. The child has a copy of everything except these threads:
-// their mutexes stay locked, and sockets, files and child processes belong to the parent.
+// Support for a process that forks while library threads run. The child has a copy of everything except these threads.
+// Mutexes that these threads have locked stay locked. Sockets, files and child processes belong to the parent.
 #pragma once
 
 #include <unistd.h>
@@ -47,8 +47,9 @@ class HeldAtFork {
   HeldAtFork* const next_;
 };
 
-/// A descriptor that a forked child must not use. In the child it refers to /dev/null, so that the child does not keep
-/// the parent's file open or write the parent's buffers. Destroy this object before closing the descriptor.
+/// A descriptor that a forked child must not use. In the child the descriptor refers to /dev/null, so that the child
+/// does not keep the parent's file open or write the parent's buffers. Destroy this object before closing the
+/// descriptor.
 class OwnDescriptor {
  public:
   OwnDescriptor() = default;
