@@ -154,7 +154,7 @@ void Arm::enable_force(double timeout_s) {
   call_patiently(
       timeout_s, [](inkwell_arm* arm, double time_s) { return inkwell_enable_force(arm, time_s); },
       [this](inkwell_result result) {
-        // Continue after a time-out or a temporary refusal.
+        // Repeat the call after a time-out or a temporary refusal.
         return result == INKWELL_TIMED_OUT || (result == INKWELL_REFUSED && pose().state != INKWELL_FAULT);
       });
 }
@@ -222,7 +222,7 @@ void Arm::start_servo(py::function servo) {
   if (!servo_is_running()) take_ending().raise_it();
   auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
   call([&] {
-    // Two threads that start servos must store them in the order in which the library started them.
+    // Two threads that start servos must store the servos in the order in which the library started the servos.
     const std::lock_guard lock(servo_mutex_);
     const auto result = inkwell_start_servo(arm, &Arm::call_servo, next.get());
     if (result == INKWELL_OK) servo_.swap(next);  // the previous servo is destroyed with the interpreter's lock

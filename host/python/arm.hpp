@@ -47,10 +47,10 @@ class Arm {
   void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
 
   void start_servo(py::function servo);
-  /// Raises the servo's exception, or the other reason why the servo has ended.
+  /// Raises the servo's exception, or another error that has ended the servo.
   void stop_servo();
   bool servo_is_running();
-  /// Raises once the reason why the servo has ended, if neither the program nor the servo function ended it.
+  /// Raises once the reason why the servo has ended, unless the program or the servo function has ended the servo.
   void check_servo();
 
   double parameter(const std::string& name);
@@ -68,8 +68,8 @@ class Arm {
   void press_virtual_buttons(bool button_1, bool button_2);
 
   void select_signals(const std::vector<std::string>& names);
-  /// Returns (values, periods, lost): at most `rows` rows with one value for each signal, and no rows after a
-  /// time-out. With `fill` it returns `rows` rows, or raises TimedOut if no row arrives for `timeout_s`.
+  /// Returns (values, periods, lost): at most `rows` rows with one value for each signal, and no rows after a time-out.
+  /// With `fill` the function returns `rows` rows, or raises TimedOut if no row arrives for `timeout_s`.
   py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
   void start_recording(const std::string& path);
   /// (samples, lost)
@@ -112,8 +112,8 @@ class Arm {
   template <class Call>
   void call(Call library_call);
   /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
-  /// durations of the attempts add up to the time-out, which therefore counts board time where the library counts board
-  /// time.
+  /// durations of the attempts add up to the time-out. The time-out therefore counts board time if the library counts
+  /// board time.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>

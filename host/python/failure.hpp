@@ -11,8 +11,8 @@ namespace inkwell::python {
 
 namespace py = pybind11;
 
-/// Raises the class of inkwell.errors for `result`, with the last pose if there is one. The caller holds the
-/// interpreter's lock.
+/// Raises the class of inkwell.errors for `result`, with the last pose, if any. The caller holds the interpreter's
+/// lock.
 [[noreturn]] void raise(inkwell_result result, const std::string& sentence, const Pose* last_pose = nullptr);
 
 /// Calls the library without the interpreter's lock and raises its errors.
