@@ -186,7 +186,7 @@ double right_edge(const Recording& recording, const Overlay* over, const std::ve
   return 1 - std::min(names_parts_maximum, names_pixels / width_pixels);
 }
 
-/// Command for tick labels at round steps with readable spacing. By default, gnuplot draws up to twice as many.
+/// Command for tick labels at round steps with readable spacing. The default of gnuplot is up to twice as many labels.
 std::string tics_of(const FigurePane& pane, const FigureData& data) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < data.names.size(); ++i) {
@@ -246,7 +246,7 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
       const std::string name(name_of(pane.quantities[j]));
       curves.push_back({name, j < colours.size() ? colour : colour + " dashtype 2", name});
     }
-    // Drawn last, so that noise does not hide these curves.
+    // These curves are drawn last, so that noise does not hide them.
     for (const auto quantity : held_by(over, pane.quantities)) {
       const auto j = static_cast<std::size_t>(std::find(pane.quantities.begin(), pane.quantities.end(), quantity) -
                                               pane.quantities.begin());
@@ -310,7 +310,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   write_text(work.path() / "figure.gnuplot",
              script(recording, options.over, figure_panes(quantities), data, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
-  // Written to a temporary file first, so that a full disk does not destroy an older picture.
+  // The picture is written to a temporary file first, so that a full disk does not destroy an older picture.
   std::filesystem::path unfinished = picture;
   unfinished += ".unfinished";
   std::error_code error, ignored;

@@ -20,7 +20,7 @@ std::string force_law_digits(const Information& information);
 /// force law becomes a remark with the file's name.
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
-/// Whether a board can reach the control period in a file: at most thirty years.
+/// Whether the control period in a file is plausible, which means at most thirty years.
 bool can_be_period(std::int64_t written);
 /// Control period that follows `before` in a file. Files of earlier versions store only the lower 32 bits, which wrap.
 std::int64_t period_after(std::int64_t before, std::int64_t written);
@@ -28,7 +28,7 @@ std::int64_t period_after(std::int64_t before, std::int64_t written);
 /// Converts step_periods from a file: 1 if missing or invalid, as in a file of an earlier version.
 std::uint32_t step_periods_of(double written);
 
-/// `name`: the file's name in error sentences, which can differ from the path during writing.
+/// `name`: the file's name in error sentences. The name can differ from the path during writing.
 std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information,
                                     const std::string& name);
 Recording read_hdf5(const std::filesystem::path& file);

@@ -79,7 +79,7 @@ std::string gnuplot_text(std::string_view text) {
     if (is_harmless(c))
       quoted += c;
     else
-      // gnuplot reads four octal digits after a zero, and three after any other digit.
+      // gnuplot reads four octal digits if the first digit is a zero, otherwise three octal digits.
       quoted += fmt::format("\\{:0{}o}", static_cast<unsigned>(c), c < 0100 ? 4 : 3);
   }
   return quoted + "\"";

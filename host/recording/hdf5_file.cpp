@@ -12,7 +12,7 @@ const process::HeldAtFork use_of_hdf5_at_fork(use_of_hdf5);
 
 std::recursive_mutex& hdf5_mutex() {
   // Every file is closed by its owner. At exit the library would retry writes that a full disk has refused, and print
-  // its own errors. The call has an effect only before the first use of the library, which is here.
+  // its own errors. The call has an effect only before the first use of the library.
   [[maybe_unused]] static const herr_t stays_quiet = H5dont_atexit();
   return use_of_hdf5;
 }

@@ -47,7 +47,7 @@ struct Hdf5Input::Dataset {
 };
 
 Hdf5Input::Hdf5Input(const std::filesystem::path& file) : name_(file.string()) {
-  // A file of an earlier version can still be marked as open if its writer did not close it. Readers in HDF5's
+  // A file of an earlier version can still be marked as open if its writer did not close the file. Readers in HDF5's
   // single-writer mode may open the file regardless.
   const Handle access = file_access();
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ})

@@ -1,6 +1,5 @@
-// The only interface that reads HDF5 files. HDF5 copies any declared amount of data into the given memory. The
-// functions therefore check class, type, rank, number of elements and size of each dataset and attribute before reading
-// it.
+// The only interface that reads HDF5 files. HDF5 copies any declared amount of data into the given memory. Before
+// reading a dataset or an attribute, the functions therefore check its class, type, rank, size and number of elements.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +24,8 @@ class Hdf5Input {
   const std::string& name() const { return name_; }
   bool has(const std::string& path) const;
 
-  /// Returns a file attribute, or an empty text if it is missing. std::nullopt for text of variable length, which is
-  /// not read.
+  /// Returns a file attribute. Returns an empty text if the attribute is missing, and std::nullopt if the text has
+  /// variable length.
   std::optional<std::string> text_attribute(const char* name) const;
   /// Returns 0 if the attribute is missing.
   std::int64_t number_attribute(const char* name) const;

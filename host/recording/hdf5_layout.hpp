@@ -1,21 +1,21 @@
 // Layout of a recording in an HDF5 file. Columns are compressed with shuffle and deflate, which every HDF5 build has.
 //
-//   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
-//                        serial_number, arm, force_law (as sent by the device, in hexadecimal digits), simulation,
-//                        servo_rate_Hz, step_periods (control periods from one sample to the next)
-//   /parameters/NAME     scalar float, attributes unit and help
-//   /period              int64[N], control period of each sample (wrapping uint32 in files of earlier versions)
-//   /time_s              float64[N]
-//   /signals/NAME        float32[N], attributes unit and help
-//   /simulated/NAME      float32[N], attributes unit and help: quantities of a simulation, if available
-//   /marks/period        int64[M] (wrapping uint32 in files of earlier versions)
-//   /marks/text          text[M] of fixed length, the bytes of UTF-8
-//                        (marked as UTF-8, and shorter, in files of earlier versions)
-//   /marks/kind          text[M]: mark of the user, connection, force, fault, parameter, loss
-//   /marks/clock_utc     text[M]: time of the computer, ISO 8601 with milliseconds
-//                        (kind and clock_utc are not in files of earlier versions)
-//   /samples             uint64, number of samples that are completely on disk; a column may be longer after a crash
-//   /complete            int32, 1 once the recording is complete
+//   `/`                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
+//                          serial_number, arm, force_law (as sent by the device, in hexadecimal digits), simulation,
+//                          servo_rate_Hz, step_periods (control periods from one sample to the next).
+//   `/parameters/NAME`     scalar float, attributes unit and help.
+//   `/period`              int64[N], control period of each sample (wrapping uint32 in files of earlier versions).
+//   `/time_s`              float64[N].
+//   `/signals/NAME`        float32[N], attributes unit and help.
+//   `/simulated/NAME`      float32[N], attributes unit and help: quantities of a simulation, if available.
+//   `/marks/period`        int64[M] (wrapping uint32 in files of earlier versions).
+//   `/marks/text`          text[M] of fixed length with UTF-8 bytes
+//                          (shorter and marked as UTF-8 in files of earlier versions).
+//   `/marks/kind`          text[M]: mark of the user, connection, force, fault, parameter, loss.
+//   `/marks/clock_utc`     text[M]: time of the computer, ISO 8601 with milliseconds
+//                          (kind and clock_utc are not in files of earlier versions).
+//   `/samples`             uint64, number of samples that are completely on disk; a column may be longer after a crash.
+//   `/complete`            int32, 1 once the recording is complete.
 #pragma once
 
 #include <cstddef>

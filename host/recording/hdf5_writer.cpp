@@ -1,8 +1,8 @@
-// HDF5 recordings that any program can open after this process was killed, for three reasons:
+// HDF5 recordings. Any program can open the file after this process was killed, for three reasons.
 //
-// - The file has the format of HDF5 1.8 or earlier, which has no mark "open for writing" that would have to be cleared.
-// - The index of the samples is written only in flush(), after the samples, and only if it fits on the disk.
-// - Written data does not move, because a compressed chunk is written once, when it is full.
+// (1) The file has the format of HDF5 1.8 or earlier. This format has no mark "open for writing".
+// (2) The index of the samples is written only in flush(), after the samples, and only if it fits on the disk.
+// (3) Written data does not move, because a compressed chunk is written once, when it is full.
 //
 // A risk remains while HDF5 splits a full node with 64 chunks of a column: a few writes every 13 s at 20 kHz.
 #include "formats.hpp"
@@ -74,7 +74,8 @@ class Hdf5Writer final : public Writer {
     const QuietHdf5 quiet;
     find_room();
     if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) fail();
-    // The samples are on disk only now. Before this point, a column may have grown without its values.
+    // The number of samples is written only after the samples are on disk. Until then, a column may contain more
+    // elements than were written.
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
     if (H5Dflush(samples_.id()) < 0) fail();
   }
@@ -92,7 +93,8 @@ class Hdf5Writer final : public Writer {
   static Handle access() {
     Handle list = file_access();
     H5Pset_libver_bounds(list.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
-    // HDF5 may write parts of its metadata cache at any time. These settings prevent this for caches of some megabytes.
+    // HDF5 may write parts of its metadata cache at any time. The settings below prevent early writes of a cache of up
+    // to some megabytes.
     H5AC_cache_config_t cache{};
     cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
     H5Pget_mdc_config(list.id(), &cache);
@@ -182,7 +184,7 @@ class Hdf5Writer final : public Writer {
   void open_for_writing(const Information& about) {
     file_ = Handle(H5Fopen(file_name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
-    // Otherwise a child process would prevent the space of a deleted file from being freed.
+    // This flag prevents a child process from keeping the disk space of a deleted file in use.
     ::fcntl(descriptor(), F_SETFD, FD_CLOEXEC);
     const auto open = [&](const std::string& path) {
       Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);

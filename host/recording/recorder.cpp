@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t queue_bytes_maximum = 64u << 20;
-/// A crash loses at most this interval plus one chunk of the file (hdf5_writer.cpp), together half a second.
+/// A crash loses at most half a second: this interval plus one chunk of the file (hdf5_writer.cpp).
 constexpr auto flush_interval = 300ms;
 
 std::size_t size_of(const device::ScopeSamples& samples) {

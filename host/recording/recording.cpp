@@ -35,7 +35,7 @@ std::uint64_t Recording::lost() const {
 }
 
 std::size_t Recording::sample_at(double elapsed) const {
-  // The tolerance of 1 % of a period covers rounding: a time computed from a sample must find this sample.
+  // The tolerance of 1 % of a period covers rounding errors, so that a time computed from a sample finds this sample.
   const double rounding_s = 0.01 / protocol::servo_rate_Hz;
   std::size_t first = 0, end = size();  // search range of the result
   while (first < end) {

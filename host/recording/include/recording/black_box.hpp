@@ -13,7 +13,7 @@ std::vector<protocol::Signal> black_box_signals();
 
 /// Converts a black box to a recording with a mark at the fault. `about` is the result of describe() for
 /// black_box_signals(). The parameters in `about` are the present values, because the board does not store the earlier
-/// values. Throws device::Error if there are no rows, or if their time does not increase.
+/// values. Throws device::Error if there are no rows, or if the time of the rows does not increase.
 Recording of_black_box(const protocol::BlackBoxReport& box, std::span<const protocol::BlackBoxRow> rows,
                        Information about);
 

@@ -13,7 +13,7 @@ struct CurrentStep {
   double steady_error_A = 0;  ///< mean of current minus reference over the second half of the pulse
 };
 
-/// Evaluates the first pulse in the reference. Both arguments are currents in ampere of consecutive control periods.
+/// Evaluates the first pulse in the reference. Both arguments contain one current in ampere for each control period.
 /// Throws device::Error if there is no pulse or the current never rises.
 CurrentStep current_step(const std::vector<float>& reference_A, const std::vector<float>& current_A);
 

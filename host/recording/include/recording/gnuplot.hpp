@@ -11,7 +11,8 @@
 
 namespace inkwell::recording {
 
-/// Many samples in one point of a figure: the line shows the mean, the band the smallest and the largest value.
+/// Many samples in one point of a figure. The line shows the mean, and the band shows the smallest and the largest
+/// value.
 struct Band {
   double mean, minimum, maximum;
 };

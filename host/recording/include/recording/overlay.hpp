@@ -15,14 +15,14 @@ namespace inkwell::recording {
 
 class Overlay {
  public:
-  /// Aligns both recordings at the first mark with this text, or at their starts without a text. Throws device::Error
-  /// with a sentence if a recording has no such mark, or no samples.
+  /// Aligns both recordings at the first mark with this text. If the text is empty, aligns the starts of the
+  /// recordings. Throws device::Error with a sentence if a recording has no such mark, or no samples.
   Overlay(Recording over, const Recording& base, std::string_view mark = {});
 
   const Recording& recording() const { return over_; }
   /// Start of the overlaid recording, relative to the first sample of the base.
   double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
-  /// Values at the control periods of a block of the base recording; NaN where there are none.
+  /// Values at the control periods of a block of the base recording; NaN for missing values.
   device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
 
  private:
@@ -31,8 +31,8 @@ class Overlay {
   std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
 };
 
-/// Distinct names for two recordings: file names without folder and extension. Folders or extensions are included where
-/// the file names are the same.
+/// Distinct names for two recordings: file names without folder and extension. If the file names are the same, folders
+/// or extensions are included.
 std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
                                                    const std::filesystem::path& other);
 

@@ -29,7 +29,7 @@ class Recorder {
   ~Recorder();
 
   /// Adds samples of the recording's signals; other signals are ignored. A restart of the board ends the recording.
-  /// Never blocks: if more than 64 MB are queued for the disk, samples are dropped and counted as lost.
+  /// Never blocks. If more than 64 MB are queued for the disk, samples are dropped and counted as lost.
   void push(const device::ScopeSamples& samples);
   /// Marks the newest sample, or the first sample before any sample exists.
   void mark(const std::string& text);

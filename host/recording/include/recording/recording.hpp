@@ -44,7 +44,7 @@ struct Recording {
   }
   /// Duration from the first sample to the last sample; 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
-  /// Index of the first sample at or after a time since the first sample; size() if it does not exist.
+  /// Index of the first sample at or after the time `elapsed_s`; size() if there is no such sample.
   std::size_t sample_at(double elapsed_s) const;
   /// Signals, then simulated quantities.
   std::vector<Quantity> quantities() const;
@@ -57,7 +57,7 @@ struct Recording {
   std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
   /// Samples of a range in the format of the scope. Missing periods before the range count as lost.
   device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
-  /// One sample in the format of the scope: its values are repeated until the next sample.
+  /// One sample in the format of the scope, repeated until the next sample.
   device::ScopeSamples held_sample(std::size_t sample) const;
   /// Adds samples of information.signals to a recording without simulated columns.
   void append(const device::ScopeSamples& samples);

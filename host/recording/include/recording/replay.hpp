@@ -43,8 +43,8 @@ class Replay {
   /// the new position, so that a scope is filled immediately. The replay stops at the end.
   Passed advance(double passed_s, double history_s);
 
-  /// Pose at the present position. std::nullopt if no joint angles were recorded. State and switches are not recorded:
-  /// `active` is set for a nonzero force, and no switch is shown as pressed.
+  /// Pose at the present position. std::nullopt if no joint angles were recorded. State and switches are not recorded.
+  /// The state is `active` for a nonzero force, and no switch is pressed.
   std::optional<device::Pose> pose() const;
 
  private:

@@ -29,8 +29,8 @@ class Writer {
 /// Treatment of an existing file with the same name.
 enum class Existing : std::uint8_t { stays, is_replaced };
 
-/// Throws device::Error with a sentence if the extension is unknown, if the file exists and must stay, or if its folder
-/// does not exist.
+/// Throws device::Error with a sentence if the extension is unknown, if the file exists and must not be replaced, or if
+/// its folder does not exist.
 void check_can_be_created(const std::filesystem::path& file, Existing existing = Existing::stays);
 
 /// The extension determines the format: .h5 and .hdf5, or .csv. An existing file is not overwritten.
