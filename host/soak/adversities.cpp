@@ -70,7 +70,7 @@ bool regains(Bench& bench) {
   }
 }
 
-/// Whether only a reset helps, according to the table or because the processor is locked up.
+/// Whether only a reset clears the fault, according to the table or because the processor is locked up.
 bool reset_is_the_way(Bench& bench) {
   if (bench.board.is_locked_up()) return true;
   return bench.board.is(State::fault) &&

@@ -210,8 +210,8 @@ void Bench::take_out() {
 }
 
 void Bench::dock() {
-  // The arm is referenced again after a rest in the inkwell. Lost counts are reported only there, some milliseconds
-  // after the switch has closed.
+  // The arm is referenced again after a rest in the inkwell. Lost counts are reported only in the inkwell, some
+  // milliseconds after the switch has closed.
   constexpr double longest_s = 2.3, close_check_interval_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
   double rested_s = 0;
@@ -225,7 +225,7 @@ void Bench::dock() {
       const protocol::Fault reported_fault = board.pose()->fault;
       if ((lost_counts & protocol::condition(reported_fault)) == 0) continue;
       board.command(Command::clear_fault);
-      // To clear this fault, the inkwell switch must also be open once.
+      // The inkwell switch must also open once before this fault is cleared.
       if (reported_fault == protocol::Fault::inkwell_implausible) {
         board.control().dock(false);
         pass(close_check_interval_s);

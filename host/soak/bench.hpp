@@ -29,6 +29,7 @@ class Bench {
   Bench(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board);
 
   // ---- time, with continuous checks
+
   /// Lets board time pass, with or without heartbeats. Throws SittingOver at the end of the sitting.
   void pass(double time_s, bool sends_heartbeats = true);
   /// Checks the true quantities at this instant.
@@ -39,6 +40,7 @@ class Bench {
   void check_all();
 
   // ---- user actions
+
   /// Postcondition: connected, no fault, referenced, force off, and the hand holds the stylus in free space.
   void make_ready();
   void make_active();
@@ -49,7 +51,7 @@ class Bench {
   /// Clears the fault and switches the force on.
   void go_on();
   void reset();
-  /// Starts at the present target of the hand.
+  /// The motion starts at the present target of the hand.
   void move_hand(device::Vector3 to_m, double duration_s);
   device::Vector3 free_point_m();
   device::Vector3 wall_point_m(double force_N);
@@ -80,7 +82,7 @@ class Bench {
   /// True while the cable is unplugged or the program is killed.
   bool device_may_go = false;
   bool is_undisturbed() const { return disturbance_ == Disturbance::none; }
-  /// Sets the active disturbance; Disturbance::none after it is cleared.
+  /// Sets the active disturbance; Disturbance::none if the disturbance was cleared.
   void disturb(Disturbance disturbance);
 
  private:

@@ -15,7 +15,7 @@ using protocol::ParameterKind;
 using protocol::ParameterSet;
 using protocol::Refusal;
 
-/// Range for careful use: relative to the default, or between two values.
+/// Range of a parameter for Reach::careful: relative to the default, or between two values.
 struct Careful {
   Parameter parameter;
   float below_default, above_default;  ///< fractions of the default if `by_parts`

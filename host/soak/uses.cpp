@@ -55,7 +55,7 @@ void wander(Bench& bench, double time_s, double speed_m_per_s, const std::functi
 
 double limit_N(const Bench& bench) { return static_cast<double>(bench.accepted[protocol::Parameter::force_limit_N]); }
 
-/// A random hand position: in free space, or pressed into a wall with up to the force limit.
+/// A random hand position: in free space, or pressed into a wall with at most the force limit.
 Vector3 anywhere_m(Bench& bench) {
   return bench.random.chance(0.5) ? bench.free_point_m() : bench.wall_point_m(bench.random.from(0.0, limit_N(bench)));
 }
@@ -159,7 +159,7 @@ bool the_bus_carries(const std::vector<Signal>& signals) {
   return protocol::encoding_for(selection) == protocol::ScopeEncoding::full;
 }
 
-/// Samples since the last call, and the number of lost ones.
+/// Samples since the last call, and the number of lost samples.
 struct ScopeCount {
   unsigned long samples = 0, lost = 0;
 };

@@ -66,8 +66,8 @@ struct Snapshot {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< last time at which a leg was driven high
   unsigned restarts = 0;      ///< since the simulation's start
-  /// Peak force of the motors at the probe since the last look, while a bridge was driven. Means over a control period
-  /// and over a millisecond.
+  /// Peak force of the motors at the probe since the last snapshot, while a bridge was driven. Means over a control
+  /// period and over a millisecond.
   double peak_motor_force_N = 0, peak_motor_force_over_ms_N = 0;
 };
 
@@ -85,7 +85,7 @@ class Oracle {
   static constexpr double judged_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
-  /// The cause is cleared: any further fault report in this phase is an error.
+  /// The cause is cleared, so any further fault report in this phase is an error.
   void allow_no_fault() { allowed_faults_ = 0; }
   /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
   void allow_lost_counts() { allowed_faults_ = lost_counts; }
@@ -102,7 +102,8 @@ class Oracle {
 
   void see(const device::Pose& pose);
   void see(const Snapshot& snapshot);
-  /// Compares the counts since the board's start. Returns true if the chip restarted since the last call.
+  /// Checks the counts of restarts and violated rules since the board's start. Returns true if the chip restarted since
+  /// the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
   /// At least one of these faults must have been reported.
   void require_report_of(protocol::Conditions faults);
@@ -119,18 +120,18 @@ class Oracle {
   const std::vector<Finding>& findings() const { return findings_; }
   /// Peak motor force with the force on and without a disturbance.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// Largest forces with the force on and a limit of at least judged_limit_N: without a disturbance, with a
-  /// disturbance, and with a disturbance as a mean over a millisecond. A corrupted program also counts as a
-  /// disturbance.
+  /// Largest forces while the force is on and the limit is at least judged_limit_N. The last two functions return
+  /// forces during a disturbance; the last function returns means over a millisecond. A corrupted program also counts
+  /// as a disturbance.
   const Press& hardest_press() const { return hardest_press_; }
   const Press& hardest_press_with_fault() const { return hardest_press_with_fault_; }
   const Press& hardest_press_with_fault_over_ms() const { return hardest_press_with_fault_over_ms_; }
   /// Longest control interrupt as a fraction of its period, without a disturbance.
   double longest_interrupt_part() const { return longest_interrupt_part_; }
   unsigned long poses() const { return poses_; }
-  /// Missing poses within connections, without a disturbance: bus frames without a pose.
+  /// Bus frames without a pose, while connected and without a disturbance.
   unsigned long poses_lost() const { return poses_lost_; }
-  /// Missing poses with a disturbance: a halted core produces none, and a silent host requests none.
+  /// Bus frames without a pose during a disturbance, such as a halted core or a silent host.
   unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
   const std::map<std::string, unsigned>& faults_reported() const { return faults_reported_; }

@@ -1,15 +1,15 @@
 // Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
 //
-// A reported fault that the kind does not name is a false trip. The use therefore avoids faults: the hand stays below
-// the speed limit except in the phase about this limit. Some wrong parameters make a fault-free arm look defective:
-// dimensions, resistances, and gains that cause oscillation. These parameters change only while the force is off, or
-// stay close to the correct values (storm.hpp).
+// A reported fault that the kind does not name is a false trip. Phases of normal use therefore avoid faults: the hand
+// stays below the speed limit, except in the phase that tests this limit. Some wrong parameters make a fault-free arm
+// look defective: dimensions, resistances, and gains that cause oscillation. These parameters change only while the
+// force is off, or stay close to the correct values (storm.hpp).
 #pragma once
 
 // To add a kind of phase:
-// 1. Add a row to INKWELL_SOAK_KINDS with the faults that the board may report in this phase.
-// 2. Implement the phase with the functions of Bench and add its case to host/soak/phases.cpp. The compiler reports
-//    a missing case. Only Bench::pass() advances board time, because it also checks the board.
+// (1) Add a row to INKWELL_SOAK_KINDS with the faults that the board may report in this phase.
+// (2) Implement the phase with the functions of Bench and add its case to host/soak/phases.cpp. The compiler reports
+//     a missing case. Only Bench::pass() advances board time, because it also checks the board.
 
 #include <array>
 #include <cstddef>

@@ -53,7 +53,7 @@ struct Soak {
 
 std::size_t finding_count(const Soak& soak);
 unsigned false_trip_count(const Soak& soak);
-/// A line for one phase, or a table for all.
+/// A line for one phase, or a table for all phases.
 std::string line_of(const Sitting& sitting, const PhaseResult& phase);
 std::string table_of(const Soak& soak);
 /// Command that repeats the sitting of a finding.

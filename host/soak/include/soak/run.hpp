@@ -21,7 +21,7 @@ Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoar
                     const std::function<void(const std::string&)>& print = {},
                     const std::function<bool()>& is_stopped = {});
 
-/// Number of sittings for this board time, if none is longer than choices.sitting_s.
+/// Number of sittings for this board time, if no sitting is longer than choices.sitting_s.
 unsigned sittings_in(double board_time_s, const Choices& choices);
 
 }  // namespace inkwell::soak
