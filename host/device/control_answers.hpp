@@ -1,4 +1,4 @@
-// Parses the answers on the control socket of a virtual board, one line each.
+// Parses the answers on the control socket of a virtual board. Each answer is one line.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace inkwell::device {
 /// answer of a board.
 nlohmann::json parse_answer(std::string_view line, std::string_view command);
 
-// These functions read the content of an answer. A missing value is zero or empty; a trace and the list of injected
+// The functions below read the content of an answer. A missing value is zero or empty; a trace and the list of injected
 // faults are required. Each function throws Error if a value has the wrong type.
 BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);

@@ -7,7 +7,7 @@
 
 namespace inkwell::device {
 
-/// The defaults of all parameters if requested, then individual values.
+/// Requests for the defaults of all parameters, then for individual values.
 struct ParameterRequests {
   bool restore_defaults = false;
   std::vector<ParameterChange> changes;  ///< each parameter once, as a transaction requires

@@ -6,7 +6,7 @@
 namespace inkwell::device {
 namespace {
 
-/// Also correct when the period counter wraps.
+/// The comparison is also correct if the period counter wraps.
 bool is_before(std::uint32_t period, std::uint32_t other) { return period - other > 0x8000'0000u; }
 
 using protocol::SignalWire;

@@ -49,7 +49,7 @@ Session::Implementation::~Implementation() {
   scope_thread.join();
 }
 
-// ---- report thread: connects, reads poses, sends the queued requests ----------------------------------------------
+// ---- report thread ------------------------------------------------------------------------------------------------
 
 void Session::Implementation::report_loop() {
   request_priority();

@@ -32,7 +32,7 @@ struct Session::Implementation {
   explicit Implementation(std::function<std::optional<Endpoint>()> find_device);
   ~Implementation();
 
-  // ---- report thread: connects, reads poses, sends the queued requests ----------------------------------------------
+  // ---- report thread ------------------------------------------------------------------------------------------------
 
   void report_loop();
   std::shared_ptr<Device> connect(const Endpoint& endpoint);

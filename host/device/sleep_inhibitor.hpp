@@ -21,10 +21,10 @@ class SleepInhibitor {
   SleepInhibitor(const SleepInhibitor&) = delete;
   SleepInhibitor& operator=(const SleepInhibitor&) = delete;
 
-  /// Starts the thread that follow() needs. Only the first call has an effect. Any thread may call this.
+  /// Starts the thread that follow() needs. Only the first call has an effect. Any thread may call this function.
   void prepare();
-  /// Acquires or releases the inhibitor asynchronously. Any thread may call this. Has no effect before prepare() was
-  /// called, or in a forked child.
+  /// Acquires or releases the inhibitor asynchronously. Any thread may call this function. Has no effect before
+  /// prepare() was called, or in a forked child.
   void follow(bool is_wanted) { request(is_wanted ? Request::hold : Request::release); }
 
  private:

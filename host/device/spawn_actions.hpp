@@ -1,4 +1,4 @@
-// Steps that a child process takes before its program starts (posix_spawn).
+// Steps of a child process before its program starts (posix_spawn).
 #pragma once
 
 #include <spawn.h>

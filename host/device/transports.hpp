@@ -12,7 +12,7 @@ namespace inkwell::device {
 
 inline constexpr char unplugged[] = "The device was unplugged. Connect the device again.";
 
-/// Pending scope transfers: 128 KiB last more than 100 ms on a full-speed bus.
+/// Pending scope transfers. 128 KiB last more than 100 ms on a full-speed bus.
 inline constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
 /// Unread scope frames: 4 MiB.
 inline constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;

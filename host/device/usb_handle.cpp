@@ -45,7 +45,8 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
   return reason;
 }
 
-/// True if the error code shows that the device is connected but cannot be opened. For other codes the device is gone.
+/// True if the error code shows that the device is connected but cannot be opened. Other error codes show that the
+/// device is gone.
 bool shows_closed_device(int reason) {
   return reason == LIBUSB_ERROR_ACCESS || reason == LIBUSB_ERROR_NOT_SUPPORTED || reason == LIBUSB_ERROR_NOT_FOUND;
 }

@@ -22,8 +22,8 @@ class UsbHandle {
   UsbHandle(const UsbHandle&) = delete;
   UsbHandle& operator=(const UsbHandle&) = delete;
 
-  /// Throws InUse with the sentence `in_use` if another program has claimed the interface, NoPermission if no driver is
-  /// installed, or Disconnected.
+  /// Throws Disconnected, or NoPermission if no driver is installed. Throws InUse with the sentence `in_use` if another
+  /// program has claimed the interface.
   void claim(int interface_number, const char* in_use);
   libusb_context* context() const { return context_; }
   libusb_device_handle* get() const { return handle_; }

@@ -18,12 +18,11 @@ inline constexpr UsbRules windows_usb_rules{
 /// The rules of this system. A port to another system selects its rules here.
 inline constexpr const UsbRules& usb_rules = linux_usb_rules;
 
-/// Throws the error for an interface that libusb_open or libusb_claim_interface refused with `code`: NoPermission,
-/// InUse with the sentence `in_use`, or Disconnected.
+/// Throws the error for the result `code` of libusb_open or libusb_claim_interface. The error is NoPermission,
+/// Disconnected, or InUse with the sentence `in_use`.
 [[noreturn]] void throw_libusb_refusal(int code, const char* in_use, const UsbRules& rules = usb_rules);
 
-/// Throws the error for an interface that is listed at `path` but that hidapi did not open: NoPermission or InUse.
-/// `detail`: text of hid_error.
+/// Throws NoPermission or InUse for an interface at `path` that hidapi could not open. `detail`: text of hid_error.
 [[noreturn]] void throw_hidapi_refusal(const std::string& path, const std::string& detail,
                                        const UsbRules& rules = usb_rules);
 

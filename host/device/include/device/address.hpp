@@ -24,7 +24,8 @@ class NoDevice : public Error {
   using Error::Error;
 };
 
-/// More than one arm is connected, and the address does not select one. `what()` lists their serial numbers.
+/// More than one arm is connected, and the address does not select one. `what()` lists the serial numbers of the
+/// connected arms.
 class SeveralArms : public NoDevice {
  public:
   using NoDevice::NoDevice;

@@ -30,7 +30,7 @@ class ControlChannel {
   virtual std::string alternate_name(std::uint8_t alternate) = 0;
 };
 
-/// Finds boot loaders of ST (0483:df11). These boot loaders may belong to an arm or to any other product.
+/// Finds boot loaders of ST (0483:df11). A boot loader may belong to an arm or to any other product.
 std::vector<Endpoint> find_boot_loaders(const Address& address);
 /// Throws NoPermission, InUse, Disconnected or Error.
 std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint);

@@ -21,8 +21,8 @@ enum class Connection : std::uint8_t { searching, connected, incompatible, no_pe
 /// The current fault of the device.
 struct NoticedFault {
   protocol::Fault fault;
-  /// The control period in which the fault was raised. For a fault that is reported after a restart: the period of the
-  /// first pose with this fault.
+  /// The control period in which the fault was raised. If a fault is reported only after a restart, this is the period
+  /// of the first pose with the fault.
   std::int64_t at_periods;
   bool operator==(const NoticedFault&) const = default;
 };
@@ -33,7 +33,7 @@ struct SessionStatus {
   std::optional<Information> information;  ///< read every second
   std::string board_name;                  ///< also of an incompatible device; empty: not reported
   bool is_simulation = false;              ///< connected to a virtual board
-  /// The control period at which the newest transaction of this session took effect; none before the first.
+  /// The control period at which the newest transaction of this session took effect; none before the first transaction.
   std::optional<std::int64_t> applied_at_periods;
   std::optional<NoticedFault> fault;                  ///< none: the device is not in the fault state
   std::optional<protocol::SelfTestReport> self_test;  ///< the results that led to the fault self_test_failed

@@ -17,7 +17,7 @@ enum class SimulationMode : std::uint8_t {
   fast,
 };
 
-/// Instruction cycle counts where the sources are ambiguous (docs/cycles.md).
+/// Choice of instruction cycle counts if the sources are ambiguous (docs/cycles.md).
 enum class CyclePricing : std::uint8_t {
   likely,
   conservative,  ///< for checking deadlines
@@ -56,7 +56,8 @@ class VirtualBoard {
   VirtualBoard(const VirtualBoard&) = delete;
   VirtualBoard& operator=(const VirtualBoard&) = delete;
 
-  /// Unix sockets in a private folder, so no other user can connect. The sockets are removed with the board.
+  /// The Unix sockets are in a private folder, so that no other user can connect. The sockets are removed with the
+  /// board.
   const SocketAddress& usbip() const;
   const SocketAddress& control_socket() const;
 

@@ -47,8 +47,8 @@ class WideCounter {
     return wide;
   }
 
-  /// Continues the count of an earlier connection to the same board, whose newest value was `before`. If the counter
-  /// has decreased, the board has restarted and the counter keeps its value.
+  /// Continues the count of an earlier connection to the same board. The newest value of that connection was `before`.
+  /// If the counter has decreased, the board has restarted and the counter keeps its value.
   void continue_from(std::int64_t before) {
     const std::int64_t newest = newest_.load();
     if (newest == nothing_noted) return;
