@@ -1,5 +1,4 @@
-// Types and values of the HDAPI binary interface, as compiled programs pass them. Programs use their original headers,
-// so this header is internal.
+// Types and values of the HDAPI binary interface. Programs use their original headers, so this header is internal.
 #pragma once
 
 #include <cstdint>

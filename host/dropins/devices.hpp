@@ -41,8 +41,8 @@ class Devices {
 
   /// The device with this handle. If no device has this handle, returns NULL and raises BAD_HANDLE.
   Device* find(Handle handle);
-  /// The current device of the calling thread. For a thread that has selected no device, the device that the program
-  /// selected last.
+  /// The current device of the calling thread. If the thread has selected no device, this is the device that the
+  /// program selected last.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
   /// Keeps the current device open while the mutex is unlocked. If there is no current device, returns NULL and raises

@@ -1,5 +1,5 @@
-// libhdPhantom.so, through which CHAI3D 3 finds an Omni. The library is a client of libHD.so with one frame per tick
-// for each open device.
+// The library libhdPhantom.so, which CHAI3D 3 uses for the Omni. The library is a client of libHD.so with one frame per
+// tick for each open device.
 //
 // CHAI3D's x axis points to the user, y to the right, z up. These axes are HDAPI's z, x and y axes. CHAI3D's units are
 // meters and newtons.
