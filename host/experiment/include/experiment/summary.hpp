@@ -40,7 +40,7 @@ SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Inte
 /// shorter.
 std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
 
-/// From the first to the last contact on a wall's axis; std::nullopt without contact.
+/// Interval from the first to the last contact on a wall's axis; std::nullopt without contact.
 std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
 
 struct WallResult {

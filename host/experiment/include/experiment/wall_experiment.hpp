@@ -1,6 +1,6 @@
-// The experiment of the paper's section 4.3: the sphere approaches a wall, is pressed into it, moved along it and
-// released. Every control period is recorded. A virtual board uses a simulated hand; with a real board the user moves
-// the sphere.
+// The experiment of the paper's section 4.3. The sphere approaches a wall, is pressed into the wall, is moved along the
+// wall, and is released. Every control period is recorded. A virtual board uses a simulated hand; with a real board the
+// user moves the sphere.
 #pragma once
 
 #include <filesystem>
