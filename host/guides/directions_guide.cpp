@@ -1,4 +1,4 @@
-// Directions: checks each encoder while the user turns its joint, then each motor with a current pulse.
+// Directions: checks each encoder while the user turns its joint, then checks each motor with a current pulse.
 #include <guides/guides.hpp>
 
 #include <algorithm>

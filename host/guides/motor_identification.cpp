@@ -11,7 +11,7 @@
 namespace inkwell::guides {
 namespace {
 
-/// Fitted part of a pulse: from its second sample to its last.
+/// Fitted part of a pulse, from the second sample to the last sample.
 struct Segment {
   const VoltagePulse* pulse;
   std::size_t begin;  ///< of the pulse: the first period with voltage

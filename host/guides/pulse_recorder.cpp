@@ -80,8 +80,8 @@ std::size_t PulseRecorder::samples_of_pulse() const {
   return static_cast<std::size_t>(std::lround(pulse_.duration_s * protocol::servo_rate_Hz));
 }
 
-// The board refuses pulses during a pulse and during the rest period after the pulse. A repeated recording may start in
-// this time.
+// The board refuses pulses during a pulse and during the rest period after the pulse. A repeated recording may start
+// during a pulse or a rest period.
 bool PulseRecorder::is_at_rest() const {
   const auto& seen = recording_.column(seen_in_);
   if (seen.size() < rest_samples_) return false;

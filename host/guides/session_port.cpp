@@ -9,7 +9,7 @@ Observation observe(const device::Session& session) {
   now.message = status.message;
   now.information = status.information;
   now.pose = session.newest_pose();
-  // The revision is read first, so that the parameters are at least as new.
+  // The revision is read first, so that the parameters are at least as new as the revision.
   now.parameters_revision = session.parameters_revision();
   now.parameters = session.parameters();
   now.refusal = session.refusal();

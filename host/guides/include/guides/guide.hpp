@@ -40,7 +40,8 @@ class Guide {
   /// Agrees to the step, or confirms that the user's part of the step is done.
   void confirm();
   void cancel(DevicePort& port);
-  /// Sends all proposals as one transaction. Only allowed when finished; applied() shows the device's answer.
+  /// Sends all proposals as one transaction. Only allowed in the phase `finished`. The result of applied() shows the
+  /// device's answer.
   void apply(DevicePort& port);
 
   const std::string& name() const { return name_; }
@@ -52,7 +53,7 @@ class Guide {
   const Step& step() const { return *steps_[index_ < steps_.size() ? index_ : steps_.size() - 1]; }
   bool takes_confirmation() const;
   double progress() const;  ///< of the whole guide, 0..1
-  /// Sentence about the result; empty before the end.
+  /// Sentence about the result; empty until the guide has finished.
   const std::string& outcome() const { return outcome_; }
   const Findings& findings() const { return *findings_; }
   Applied applied() const { return applied_; }

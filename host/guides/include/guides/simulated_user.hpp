@@ -1,4 +1,4 @@
-// The user of a virtual board: performs the user's tasks of a guide with the simulated hand.
+// The user of a virtual board, who performs the user's tasks of a guide with the simulated hand.
 #pragma once
 
 #include <deque>

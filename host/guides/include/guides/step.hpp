@@ -83,7 +83,7 @@ class Step {
   virtual void begin(const Observation&, DevicePort&) {}
   virtual void receive(const device::ScopeSamples&) {}
   virtual bool advance(const Observation& now, DevicePort& port) = 0;
-  /// Whether the step has a part that the user confirms.
+  /// Whether the user must confirm a part of the step.
   virtual bool takes_confirmation() const { return false; }
   virtual void confirm() {}
   /// Previous values of temporarily changed parameters. The guide sends these values at the end of the step, including
