@@ -1,12 +1,12 @@
 // An open arm, which consists of parts. Each part owns its data, and any thread may call any part.
 //
-//   Part         Thread                          Data.
-//   PoseFeed     -                               the newest pose and the losses of poses, link and force.
-//   Turns        -                               the turns of virtual boards, shared by all boards of a program.
-//   Connection   connects, reads poses           the device, its board if started for the arm, the arm's geometry.
-//   ForceOutput  sends forces                    the newest force and the force mode.
-//   ScopeStream  reads samples                   the selected signals, the unread samples, the recording.
-//   Servo        calls the servo function        the servo function and its state.
+//   Part         (thread)                    data.
+//   PoseFeed     (no thread)                 the newest pose, and the losses of poses, link and force.
+//   Turns        (no thread)                 the turns of all virtual boards of the program.
+//   Connection   (connects, reads poses)     the device, the started board, and the geometry of the arm.
+//   ForceOutput  (sends forces)              the newest force and the force mode.
+//   ScopeStream  (reads samples)             the selected signals, the unread samples, and the recording.
+//   Servo        (calls the servo function)  the servo function and its state.
 //
 // Each part has private mutexes. While a part holds a mutex, it may call only PoseFeed. PoseFeed may then call only
 // Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.

@@ -17,7 +17,7 @@ class BadArgument : public Error {
  public:
   using Error::Error;
 };
-/// The force went off without a call of this program.
+/// The force was switched off without a call of this program.
 class ForceLost : public Error {
  public:
   using Error::Error;

@@ -78,8 +78,8 @@ void ForceOutput::run() {
 
 void ForceOutput::send_next(std::chrono::milliseconds patience) {
   try {
-    // The bus accepts one report per frame, so a queue of forces would never drain. While a report is pending, newer
-    // forces replace each other in `next_`.
+    // The bus accepts one report per frame, so a queue of forces would never drain. While a report is pending, a newer
+    // force replaces the force in `next_`.
     if (!device_.wait_until_written(patience)) return;
     device::ForceRequest request = take_force();
     if (request.pose_sequence) request.interval_ms = interval_.next(*request.pose_sequence);

@@ -116,7 +116,7 @@ class PoseFeed final : public device::LockStep {
 
   /// This program uses forces from now on, so losses of the force are reported to this program.
   void use_force();
-  /// Called when this program switches the force on, or accepts that it is off.
+  /// Called when this program switches the force on, or accepts that the force is off.
   void forget_lost_force();
   /// Called when this program switches the force off.
   void expect_force_off();
@@ -178,7 +178,7 @@ class PoseFeed final : public device::LockStep {
 
   inkwell_pose wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_over, double timeout_s,
                     Turns::Answer answer) const;
-  // These functions require the mutex:
+  // The functions below require the mutex.
   void begin_waiting(Waiter& waiter) const;
   void end_waiting(const Waiter& waiter) const;
   enum class Waiting : std::uint8_t { servos, others, all };

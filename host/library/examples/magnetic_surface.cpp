@@ -1,4 +1,4 @@
-// A plane at x = 0 that attracts the stylus within 10 mm. A stronger pull releases it.
+// A plane at x = 0 that attracts the stylus within 10 mm. A stronger pull releases the stylus.
 //
 //   Usage: magnetic_surface [ADDRESS]     address of the arm for inkwell_open()
 #include <cmath>
@@ -8,7 +8,7 @@
 
 constexpr double stiffness_N_per_m = 200, reach_m = 0.010;
 
-/// Increases like a spring up to half of the reach, then decreases to zero, so that the force never jumps.
+/// The force increases like a spring up to half of the reach, then decreases to zero, so that the force never jumps.
 double attraction_N(double distance_m) {
   return stiffness_N_per_m * std::fmax(0.0, std::fmin(distance_m, reach_m - distance_m));
 }

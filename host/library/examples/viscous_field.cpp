@@ -1,4 +1,4 @@
-// A viscous field: the force is opposite to the velocity and proportional to it.
+// A viscous field. The force is opposite and proportional to the velocity.
 //
 //   Usage: viscous_field [ADDRESS]     address of the arm for inkwell_open()
 #include <cstdio>
