@@ -11,15 +11,15 @@
 
 namespace inkwell::local {
 
-/// Pause before the next accept, after the system refused to open another file.
+/// Pause before the next accept if the system has refused to open another file.
 inline constexpr std::chrono::milliseconds accept_rest{20};
 
 /// A TCP port listens on 127.0.0.1, where every user of this computer can connect. Only the owner can connect to a Unix
 /// socket, because its mode is 0600 from the start.
 class Listener {
  public:
-  /// Port 0 selects a free port. A Unix socket left by another program is replaced if it belongs to this user and no
-  /// program listens on it.
+  /// Port 0 selects a free port. A Unix socket from another program is replaced if this user owns the socket and no
+  /// program listens on the socket.
   /// @throws std::runtime_error with a sentence that names `option`.
   Listener(SocketAddress where, std::string_view option);
   /// Removes the Unix socket.

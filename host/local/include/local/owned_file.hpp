@@ -31,7 +31,7 @@ class OwnedFile {
   explicit OwnedFile(const std::filesystem::path& path, Flock flock_like = &::flock);
   ~OwnedFile();
 
-  /// Empty, or a sentence if the file system does not support locks. In this case other programs can use the file.
+  /// Empty, or a sentence if the file system does not support locks. Without a lock, other programs can use the file.
   std::string warning() const;
   bool exists() const { return file_.is_open(); }
   /// The content if it has exactly this size, otherwise empty. Also empty if the file is not a regular file.
