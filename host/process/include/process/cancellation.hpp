@@ -1,5 +1,5 @@
 // Support for program threads that are canceled with pthread_cancel() during a library call. A canceled thread unwinds
-// its stack from the system call in which the thread waits. Most of this code does not support that.
+// its stack from the system call in which the thread waits. Most of this code does not support unwinding.
 #pragma once
 
 #include <pthread.h>
@@ -48,7 +48,8 @@ class CancellationPoint {
   CancellationPoint& operator=(const CancellationPoint&) = delete;
 };
 
-/// During its lifetime, no CancellationPoint allows cancellation. For destructors, which must not unwind.
+/// During its lifetime, no CancellationPoint allows cancellation. Use this class in destructors, because destructors
+/// must not unwind.
 class NoCancellationPoints {
  public:
   NoCancellationPoints() : state_(std::exchange(detail::state_of_caller, PTHREAD_CANCEL_DISABLE)) {}
@@ -60,7 +61,8 @@ class NoCancellationPoints {
   int state_;
 };
 
-/// For library threads that call functions of the program, because the program must not unwind the library's stack.
+/// Library threads that call functions of the program use this function, because the program must not unwind the
+/// library's stack.
 inline void never_cancel_this_thread() { pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr); }
 
 }  // namespace inkwell::process

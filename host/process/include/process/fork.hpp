@@ -1,5 +1,5 @@
-// Support for a process that forks while library threads run. The child has a copy of everything except these threads.
-// Mutexes that these threads have locked stay locked. Sockets, files and child processes belong to the parent.
+// Support for a process that forks while library threads run. The child has a copy of everything except the library
+// threads. The mutexes of the library threads stay locked. Sockets, files and child processes belong to the parent.
 #pragma once
 
 #include <unistd.h>
