@@ -46,7 +46,7 @@ class CsvReader {
     std::string line;
     while (std::getline(stream_, line)) {
       ++line_number_;
-      // The last line of a killed program may be incomplete. A line without its end is ignored.
+      // The last line of a killed program may be incomplete. An incomplete line is ignored.
       if (stream_.eof()) break;
       if (line.starts_with("# "))
         comment(std::string_view(line).substr(2));

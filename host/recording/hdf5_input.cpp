@@ -164,7 +164,8 @@ Hdf5Input::Dataset Hdf5Input::open(const std::string& path) const {
   const std::string unknown = fmt::format("is damaged: {} has a storage format that recordings do not use", path);
   if (!is_known) fail(unknown);
 
-  // Read only after the checks above, because HDF5 opens other files to determine the size of a virtual dataset.
+  // Type and size are read only after the checks above, because HDF5 opens other files to determine the size of a
+  // virtual dataset.
   dataset.type = Handle(H5Dget_type(dataset.itself.id()), H5Tclose);
   dataset.space = Handle(H5Dget_space(dataset.itself.id()), H5Sclose);
   const std::size_t element_bytes = H5Tget_size(dataset.type.id());

@@ -43,7 +43,8 @@ device::ScopeSamples Overlay::compared_with(const device::ScopeSamples& of_base)
   samples.values.assign(samples.count * width, std::nanf(""));
   const std::int64_t first = of_base.first_period - base_begins_periods_ - shift_periods_;
   const auto elapsed_periods = [&](std::size_t sample) { return over_.periods[sample] - over_.periods.front(); };
-  // Starts with the newest sample at or before the first period; its values apply until the next sample.
+  // The search starts with the newest sample at or before the first period. The values of a sample apply until the next
+  // sample.
   std::size_t sample = over_.sample_at(static_cast<double>(first) / protocol::servo_rate_Hz);
   if (sample > 0 && (sample == over_.size() || elapsed_periods(sample) > first)) --sample;
   for (std::size_t i = 0; i < samples.count; ++i) {
