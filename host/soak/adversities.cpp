@@ -123,7 +123,7 @@ std::string pull_cable(Bench& bench) {
 
 std::string be_silent(Bench& bench) {
   be_in_use(bench, true);
-  // The last heartbeat may be two look intervals old.
+  // The last heartbeat may be two check intervals old.
   const double short_s = bench.random.from(0.1, 0.7) * host_timeout_s(bench);
   bench.pass(short_s, false);
   bench.pass(0.02);

@@ -96,7 +96,7 @@ class Bench {
 /// Runs a phase of this kind. Returns a description in words.
 std::string play(Bench& bench, Kind kind);
 
-// Defined in uses.cpp, storms.cpp, stores.cpp and adversities.cpp:
+// The functions below are defined in uses.cpp, storms.cpp, stores.cpp and adversities.cpp.
 std::string use_docking(Bench& bench);
 std::string use_free_space(Bench& bench, double time_s);
 std::string use_walls(Bench& bench, double time_s);

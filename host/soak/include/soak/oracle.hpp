@@ -120,9 +120,9 @@ class Oracle {
   const std::vector<Finding>& findings() const { return findings_; }
   /// Peak motor force with the force on and without a disturbance.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// Largest forces while the force is on and the limit is at least judged_limit_N. The last two functions return
-  /// forces during a disturbance; the last function returns means over a millisecond. A corrupted program also counts
-  /// as a disturbance.
+  /// Largest forces while the force is on and the limit is at least judged_limit_N. The functions with `_with_fault`
+  /// return forces during a disturbance. The function with `_over_ms` returns means over a millisecond. A corrupted
+  /// program also counts as a disturbance.
   const Press& hardest_press() const { return hardest_press_; }
   const Press& hardest_press_with_fault() const { return hardest_press_with_fault_; }
   const Press& hardest_press_with_fault_over_ms() const { return hardest_press_with_fault_over_ms_; }
