@@ -54,7 +54,7 @@ void report_start(const drivers::ResetCause& cause, const std::optional<protocol
 void report_no_crystal() {
   console.start(drivers::internal_oscillator_Hz);
   console.write("inkwell " INKWELL_VERSION
-                ", the crystal does not swing: no USB and no motors until it does. Check it, its two capacitors and "
+                ", the crystal does not oscillate: USB and motors stay off. Check the crystal, its capacitors and "
                 "their joints.\r\n");
 }
 

@@ -17,7 +17,7 @@ KINDS = {
         r"share/bash-completion/completions/inkwell", r"share/bash-completion/completions/virtual-board",
         r"share/fish/vendor_completions\.d/inkwell\.fish", r"share/fish/vendor_completions\.d/virtual-board\.fish",
         r"share/zsh/vendor-completions/_inkwell", r"share/zsh/vendor-completions/_virtual-board",
-        r"share/doc/inkwell/[\w-]+\.md", r"share/doc/inkwell/tutorial\.md", r"share/doc/inkwell/[\w-]+\.svg",
+        r"share/doc/inkwell/[\w-]+\.md", r"share/doc/inkwell/tutorial\.md", r"share/doc/inkwell/campaign/[\w-]+\.(?:md|svg)",
         r"share/doc/inkwell/pictures/[\w-]+\.(?:png|svg)",
         r"share/inkwell/arms/omni\.toml", r"share/inkwell/arms/(?!omni)\w+\.toml",
         r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-[\w-]+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
