@@ -138,8 +138,7 @@ void add_folder(CLI::App& command, CampaignOptions& options) {
 
 void add_page(CLI::App& command, CampaignOptions& options) {
   command
-      .add_option("--page", options.page,
-                  "Summary page to write. Details and plots are written to a folder with the name of the page")
+      .add_option("--page", options.page, "Summary page to write; a folder with its name gets the details and plots")
       ->type_name("FILE")
       ->capture_default_str();
 }

@@ -4,7 +4,7 @@ function [samples, time_s, lost] = inkwell_capture(arm, names, duration_s)
 %   has a row for each control period and a column for each signal. `lost` is the number of lost samples.
   rate_Hz = 20000;
   if ~(ischar(names) || iscellstr(names)) || isempty(names)
-    error('inkwell:refused', 'No signal is named. Give one or a cell array of them; inkwell_signals() lists all.');
+    error('inkwell:refused', 'No signal is given. Give a name or a cell array of names. inkwell_signals() lists all names.');
   end
   if ~(isnumeric(duration_s) && isscalar(duration_s) && isfinite(duration_s) && duration_s > 0)
     error('inkwell:refused', 'The duration is not valid. Give a time of more than 0 s.');
