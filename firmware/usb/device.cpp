@@ -26,8 +26,8 @@ constexpr float pose_replacing_s = 8e-6f;
 /// this time. A pose of the next period would be too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// Additional lead of the spare pose over the final pose. If the main loop is too late for the final pose, the host
-/// reads the spare pose. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
+/// Additional lead of the spare pose over the final pose. The host reads the spare pose if the main loop prepares the
+/// final pose too late. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
 /// After this number of consecutive unread reports (0.1 s), the host counts as not polling. In this case unread reports

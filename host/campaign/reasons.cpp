@@ -67,8 +67,7 @@ constexpr std::string_view break_of_tim8 =
     "Only the break input of TIM8 reads this pin, and only while the bridges are on. The self-test pulses switch the "
     "bridges on.";
 
-/// Whether the self-test's pulses detect the fault. A fault that the pulses detect can stay undetected only if it
-/// occurs after the pulses.
+/// Whether the self-test's pulses detect the fault. If such a fault occurs after the pulses, it can stay undetected.
 bool is_tested_by_pulses(const CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::wire_open:

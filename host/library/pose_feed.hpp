@@ -127,7 +127,7 @@ class PoseFeed final : public device::LockStep {
   bool uses_force() const;
   bool had_force() const;
 
-  /// Number of losses of the poses or the force. Each loss stops the running servo.
+  /// Counts lost links, silences and lost forces. Each of these events stops the running servo.
   std::uint64_t interruptions() const;
   /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if the number of losses is not
   /// `known`. Only for servos. In lock step, board time stops until the servo waits again or ends its answer.

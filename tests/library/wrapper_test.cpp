@@ -30,7 +30,7 @@ struct Calls {
   std::atomic<bool> is_gone = false;
 };
 
-/// A servo whose destruction lasts several poses of `clock`, so that a late library call would be detected.
+/// The destructor of this servo waits for several poses of `clock`. The test thereby detects a late library call.
 Arm::Servo counting_servo(const std::shared_ptr<Calls>& calls, const Arm& clock) {
   struct Captured {
     std::shared_ptr<Calls> calls;

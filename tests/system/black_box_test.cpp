@@ -34,7 +34,7 @@ void check_times(const protocol::BlackBoxReport& box, const std::vector<protocol
   CHECK(wrong == 0);
 }
 
-/// Checks the rows before a crash with the sphere pressed into a wall.
+/// Checks the rows before a crash. The sphere is pressed into a wall during these rows.
 void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
   CHECK(box.is_complete == 1);
   CHECK(box.is_restart == 1);

@@ -44,7 +44,7 @@ class Replay {
   Passed advance(double passed_s, double history_s);
 
   /// Pose at the present position. std::nullopt if no joint angles were recorded. State and switches are not recorded.
-  /// The state is `active` for a nonzero force, and no switch is pressed.
+  /// The returned state is `active` if the force is not zero. In the returned pose no switch is pressed.
   std::optional<device::Pose> pose() const;
 
  private:

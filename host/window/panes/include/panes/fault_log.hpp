@@ -28,7 +28,7 @@ class FaultLog {
   /// Maximum number of past faults in the log.
   static constexpr std::size_t over_maximum = 4;
 
-  /// Adds an injected fault. The next answer of the board may not contain a short fault.
+  /// Adds an injected fault. A short fault can be missing in the next answer of the board.
   void add(const device::PutInFault& put_in);
   /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
   /// the log is cleared.
