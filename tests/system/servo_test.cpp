@@ -151,7 +151,7 @@ TEST_CASE(
   const auto heat = instructions_in({"7control11update_heat"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
   // The motor check also uses this function, in every 128th check of a motor.
-  const auto resistance = instructions_in({"Controller15know_resistance"});
+  const auto resistance = instructions_in({"Controller17update_resistance"});
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {
     return std::ranges::count_if(executed, [&](std::uint32_t address) {

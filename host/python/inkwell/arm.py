@@ -299,7 +299,7 @@ class Arm:
         if not is_a_time:
             raise errors.BadArgument(f"The duration is {duration_s!r}. Give a time of more than 0 s.")
         if not names:
-            raise errors.BadArgument("No signal is named. Give at least one; inkwell.signals() lists all signals.")
+            raise errors.BadArgument("No signal is given. Give at least one. inkwell.signals() lists all signals.")
         self.select_signals(*names)
         try:
             return self._samples(max(1, round(duration_s * self._servo_rate_Hz)), timeout_s, True)
