@@ -104,8 +104,12 @@ void SimulatedUser::move_to_stops(int joint, double now_s) {
 }
 
 void SimulatedUser::press_button(int button, double at_s) {
-  planned_.push_back({at_s, [this, button] { control_.buttons(button == 1, button == 2); }});
-  planned_.push_back({at_s + press_s, [this] { control_.buttons(false, false); }});
+  planned_.push_back(
+      {at_s, [this, button] {
+         control_.buttons(button == 1, button == 2);
+         // A busy computer may be late for the press, and the release must not follow immediately.
+         planned_.push_back({control_.status().board_time_s + press_s, [this] { control_.buttons(false, false); }});
+       }});
 }
 
 void SimulatedUser::begin(const UserTask& task, double now_s) {
