@@ -100,7 +100,8 @@ TEST_CASE("one arm is meant, or the sentence says which there are") {
     CHECK(contains(refusal(parse_address("0033")), number));
   }
   CHECK(device::find_arm(parse_address("0022")).serial_number == "0022");
-  CHECK(contains(refusal(parse_address("0033")), "No arm with the serial number 0033 is plugged in. The connected arms are:"));
+  CHECK(contains(refusal(parse_address("0033")),
+                 "No arm with the serial number 0033 is plugged in. The connected arms are:"));
   CHECK(device::find_arms(parse_address("virtual")).empty());
 }
 
