@@ -3,11 +3,11 @@
 // Each leg is high while the counter is below its compare value. The diagram shows the counter of both timers in one
 // control period (three PWM periods).
 //
-//   Top   /\    /\    /\
-//        /  \  /  \  /  \
-//   0   /    \/    \/    \/
-//       |                 |
-//       update            update.
+//   Top  |   /\    /\    /\    |
+//        |  /  \  /  \  /  \   |
+//   0    | /    \/    \/    \  |
+//          |                 |
+//          update            update
 //
 // At the update, the preloaded compare values of all six legs become active, and the ADCs sample.
 //
