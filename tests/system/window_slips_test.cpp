@@ -98,7 +98,7 @@ TEST_CASE("what is no number, or out of range, leaves the old value and is told"
   for (const auto& [typed, message] : slips) {
     rig.enter(stiffness, typed);
     rig.press_key("Return");
-    rig.wait_until(fmt::format("'{}' is told", typed),
+    rig.wait_until(fmt::format("'{}' is shown", typed),
                    [&](const Sight& now) { return now.says(message) && now.says("keeps its old value"); });
     CHECK(rig.look().applied_at_periods() == before);
   }
@@ -110,7 +110,7 @@ TEST_CASE("a value that the device refuses leaves the old one") {
   const auto upper_m = WindowRig::parameters_at_start()[Parameter::box_maximum_x_m];
   rig.enter("tuning/box_minimum_x_m", std::to_string(upper_m + 0.1f));
   rig.press_key("Return");
-  rig.wait_until("it is told", [](const Sight& now) { return now.says("box_minimum_x_m"); });
+  rig.wait_until("it is shown", [](const Sight& now) { return now.says("box_minimum_x_m"); });
   rig.control.run(0.1);
   rig.control.resume();
   CHECK(rig.close_and_read_parameters() == WindowRig::parameters_at_start());
@@ -236,7 +236,7 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   RunningProgram other_program(
       {build_directory() + "/inkwell", "force", "on", "--take-over", "--usbip", rig.board.usbip().text()});
   rig.wait_until("the force is on", force_is_on);
-  rig.wait_until("it is told", [](const Sight& now) { return now.says("The window shows a recording"); });
+  rig.wait_until("it is shown", [](const Sight& now) { return now.says("The window shows a recording"); });
   rig.click("status/STOP");
   rig.wait_until("the force is off", force_is_off);
 }
@@ -270,5 +270,5 @@ TEST_CASE("what the proxy is, is told where it is drawn") {
   rig.control.pause();
   rig.release_mouse();
   rig.move_to(rig.look().item("scene/proxy").centre());
-  rig.wait_until("it is told", [](const Sight& now) { return now.says("A virtual spring connects the proxy"); });
+  rig.wait_until("it is shown", [](const Sight& now) { return now.says("A virtual spring connects the proxy"); });
 }

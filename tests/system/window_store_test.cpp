@@ -53,7 +53,7 @@ TEST_CASE("values that are not stored are counted; stored by a button, they outl
   CHECK_FALSE(rig.look().has("tabs/values to store"));
   restart(rig);
   CHECK(rig.look().says("No value has changed since the last connection."));
-  rig.wait_until("that is not told for ever", [](const Sight& now) { return !now.says("Reconnected"); });
+  rig.wait_until("the message disappears", [](const Sight& now) { return !now.says("Reconnected"); });
   CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
 }
 
