@@ -12,8 +12,8 @@
 #include <string_view>
 #include <utility>
 
-#include <local/descriptor.hpp>
-#include <local/socket_address.hpp>
+#include "host/client/local/descriptor.hpp"
+#include "host/client/local/socket_address.hpp"
 
 namespace inkwell::tests {
 

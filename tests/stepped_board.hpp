@@ -1,8 +1,8 @@
 // A virtual board whose time advances only on request. The same calls produce the same run on any machine.
 #pragma once
 
-#include <device/control_client.hpp>
-#include <device/virtual_board.hpp>
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/virtual_board.hpp"
 
 namespace inkwell::tests {
 

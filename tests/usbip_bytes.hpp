@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <usbip/messages.hpp>
+#include "protocol/usbip/messages.hpp"
 
 namespace inkwell::tests {
 

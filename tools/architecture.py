@@ -31,7 +31,7 @@ class Target:
     name: str
     folder: str
     links: list[str]
-    include_directories: list[pathlib.Path]
+    published: list[pathlib.Path]  # headers for other folders; if empty, all headers of the folder
 
 
 def read_table(document: str) -> dict[str, Row]:
@@ -59,7 +59,7 @@ def read_table(document: str) -> dict[str, Row]:
 def read_paths(document: str) -> list[list[str]]:
     """The folders of each data path in the first code block: one path per paragraph, one folder per line."""
     block = document.split("## Data path")[1].split("\n## ")[0]
-    return [re.findall(r"  ((?:firmware|host)/\w+)(?:, [^\n]*)?$", paragraph, re.MULTILINE)
+    return [re.findall(r"  ((?:firmware|host)(?:/\w+)+)(?:, [^\n]*)?$", paragraph, re.MULTILINE)
             for paragraph in block.strip("\n").split("\n\n") if paragraph.startswith("    ")]
 
 
@@ -69,9 +69,9 @@ def read_graph(path: pathlib.Path) -> list[Target]:
     except OSError as error:
         raise Unreadable(f"{error}; make it with cmake --preset {path.parent.name}") from error
     parts = [line.split("|") for line in lines]
-    return [Target(name, folder, links.split(";") if links else [], [pathlib.Path(each) for each in includes.split(";")
-                                                                     if each])
-            for name, folder, links, includes in parts]
+    return [Target(name, folder, links.split(";") if links else [],
+                   [pathlib.Path(header) for header in published.split(";") if header])
+            for name, folder, links, published in parts]
 
 
 def library_name(link: str) -> str:
@@ -92,10 +92,21 @@ class Tree:
     links: dict[str, set[str]]  # folder of a target -> folders of the targets that it links to
     libraries: dict[str, set[str]]  # folder of a target -> external libraries
     includes: dict[str, dict[str, str]]  # folder -> included folder -> one of the including lines
+    private: dict[str, dict[str, str]]  # the same for headers that their folder does not publish
 
     def uses(self, folder: str) -> set[str]:
         """A folder without a target uses the folders that it includes."""
         return self.links[folder] if folder in self.links else set(self.includes.get(folder, {}))
+
+    def library_folder(self, folder: str) -> str | None:
+        """The nearest folder with a target, which contains the files of folders without a target."""
+        while folder and folder not in self.links:
+            folder = folder.rpartition("/")[0]
+        return folder or None
+
+    def can_include(self, folder: str, other: str) -> bool:
+        own, owner = self.library_folder(folder), self.library_folder(other)
+        return own is None or owner is None or own == owner or owner in self.links[own]
 
 
 def read_tree(repository: pathlib.Path, graphs: list[pathlib.Path]) -> Tree:
@@ -120,22 +131,27 @@ def read_tree(repository: pathlib.Path, graphs: list[pathlib.Path]) -> Tree:
     def folder_of(path: pathlib.Path) -> str | None:
         return next((str(parent) for parent in path.relative_to(repository).parents if str(parent) in folders), None)
 
-    headers = {str(header.relative_to(directory)): folder_of(header)
-               for target in inside for directory in target.include_directories
-               for header in directory.rglob("*.hpp") if header.resolve().is_relative_to(repository / target.folder)}
+    published = {header.relative_to(repository) for target in inside for header in target.published}
+    with_private_headers = {str(header.parent) for header in published}
+
+    # Files of users include these by other names than the path: <inkwell/inkwell.h>, <control/force_law.hpp>.
+    installed = {str(header.relative_to(directory)): header
+                 for root in ROOTS for directory in (repository / root).rglob("include") for header in directory.rglob("*.h*")}
 
     includes: dict[str, dict[str, str]] = {}
+    private: dict[str, dict[str, str]] = {}
     for path in sources:
         folder = folder_of(path)
-        for line, quote, name in re.findall(r'^(#include ([<"])([^>"]+)[>"])', path.read_text(), re.MULTILINE):
-            beside = (path.parent / name).resolve()
-            if quote == '"' and beside.is_file():
-                owner = folder_of(beside)
-            else:
-                owner = headers.get(name)
-            if folder and owner and owner != folder:
-                includes.setdefault(folder, {})[owner] = f"{path.relative_to(repository)}: {line}"
-    return Tree(folders, links, libraries, includes)
+        for line, name in re.findall(r'^(#include [<"]([^>"]+)[>"])', path.read_text(), re.MULTILINE):
+            header = installed.get(name, repository / name)
+            owner = folder_of(header) if header.is_file() else None
+            if not folder or not owner or owner == folder:
+                continue
+            where = f"{path.relative_to(repository)}: {line}"
+            includes.setdefault(folder, {})[owner] = where
+            if owner in with_private_headers and header.relative_to(repository) not in published:
+                private.setdefault(folder, {})[owner] = where
+    return Tree(folders, links, libraries, includes, private)
 
 
 def differences(table: dict[str, Row], tree: Tree) -> list[str]:
@@ -154,5 +170,8 @@ def differences(table: dict[str, Row], tree: Tree) -> list[str]:
                      for name in sorted(row.libraries - libraries)]
         problems += [f"{line}: {folder}/ has no target that links to one of {other}/"
                      for other, line in sorted(tree.includes.get(folder, {}).items())
-                     if folder in tree.links and other not in tree.links[folder] and other in tree.links]
+                     if not tree.can_include(folder, other)]
+        problems += [f"{line}: {other}/ does not publish this header (inkwell_publish_headers in its CMakeLists.txt)"
+                     for other, line in sorted(tree.private.get(folder, {}).items())
+                     if tree.library_folder(folder) != tree.library_folder(other)]
     return problems

@@ -23,7 +23,7 @@ from interrupt_rules import LEAVES, outer_loops, paths_of
 # force law may use 1500 cycles; 2000 cycles are reserved for the inaccuracy of the model.
 BUDGET_CYCLES = 1500
 
-COSTS = pathlib.Path(__file__).parent.parent / "boards/virtual/timing/costs.toml"
+COSTS = pathlib.Path(__file__).parent.parent / "boards/stm32f405/timing/costs.toml"
 STEP = "step_force_law"
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints <timing/cost_rows.hpp> from boards/virtual/timing/costs.toml: its rows as the X-macro INKWELL_COSTS.
+"""Prints <timing/cost_rows.hpp> from boards/stm32f405/timing/costs.toml: its rows as the X-macro INKWELL_COSTS.
 
 usage: generate_costs.py COSTS.toml
 """

@@ -1,4 +1,4 @@
-#include <arms/description.hpp>
+#include "boards/arms/description.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include "known_keys.hpp"
+#include "boards/arms/known_keys.hpp"
 
 namespace inkwell::arms {
 namespace {

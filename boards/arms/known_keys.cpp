@@ -1,4 +1,4 @@
-#include "known_keys.hpp"
+#include "boards/arms/known_keys.hpp"
 
 #include <algorithm>
 #include <numeric>

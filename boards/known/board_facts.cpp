@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <string>
 
-#include <known/boards.hpp>
+#include "boards/known/boards.hpp"
 
 namespace board = inkwell::board;
 

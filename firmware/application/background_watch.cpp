@@ -1,6 +1,6 @@
-#include "background_watch.hpp"
+#include "firmware/application/background_watch.hpp"
 
-#include "parts.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 

@@ -8,14 +8,14 @@
 #include <cstdint>
 
 #include <board/board.hpp>
-#include <control/analog_supply.hpp>
-#include <control/bridge_wire.hpp>
-#include <control/encoder_wire.hpp>
-#include <control/stuck_encoder.hpp>
-#include <control/supply_ripple.hpp>
-#include <protocol/supervision.hpp>
+#include "firmware/control/supervision/analog_supply.hpp"
+#include "firmware/control/supervision/bridge_wire.hpp"
+#include "firmware/control/supervision/encoder_wire.hpp"
+#include "firmware/control/supervision/stuck_encoder.hpp"
+#include "firmware/control/supervision/supply_ripple.hpp"
+#include "protocol/supervision.hpp"
 
-#include "memory_check.hpp"
+#include "firmware/application/memory_check.hpp"
 
 namespace inkwell::application {
 

@@ -1,13 +1,13 @@
 // The control interrupt reads the sensors and sets the bridges 20 000 times per second.
-#include <control/encoders.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <drivers/interrupts.hpp>
-#include <placement/interrupt.hpp>
+#include "firmware/control/signal_path/encoders.hpp"
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/placement/interrupt.hpp"
 
-#include "handlers.hpp"
-#include "main_loop.hpp"
-#include "memory.hpp"
-#include "parts.hpp"
+#include "firmware/application/handlers.hpp"
+#include "firmware/application/main_loop.hpp"
+#include "firmware/application/memory.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 namespace {

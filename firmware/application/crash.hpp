@@ -1,8 +1,8 @@
 // Crash record. The fault handler writes this record before the reset, and the next boot reports the record.
 #pragma once
 
-#include <drivers/kept_over_reset.hpp>
-#include <protocol/black_box.hpp>
+#include "firmware/drivers/kept_over_reset.hpp"
+#include "protocol/black_box.hpp"
 
 namespace inkwell::application {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <iterator>
 
-#include <drivers/bridges_off.hpp>
-#include <drivers/system.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/bridges_off.hpp"
+#include "firmware/drivers/system.hpp"
+#include "firmware/registers/peripherals.hpp"
 
-#include "crash.hpp"
-#include "handlers.hpp"
-#include "memory.hpp"
+#include "firmware/application/crash.hpp"
+#include "firmware/application/handlers.hpp"
+#include "firmware/application/memory.hpp"
 
 namespace inkwell::application {
 

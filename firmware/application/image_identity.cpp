@@ -1,9 +1,9 @@
 // The linker script places the image identity at a fixed offset. Flashing tools read the identity
 // (protocol/image_identity.hpp).
+#include "protocol/image_identity.hpp"
 #include <board/board.hpp>
-#include <protocol/image_identity.hpp>
 
-#include "vectors.hpp"
+#include "firmware/application/vectors.hpp"
 
 namespace inkwell::application {
 

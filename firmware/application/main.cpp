@@ -2,20 +2,20 @@
 #include <optional>
 
 #include <board/board.hpp>
-#include <drivers/boot_loader.hpp>
-#include <drivers/clocks.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <drivers/system.hpp>
-#include <usb/device.hpp>
+#include "firmware/drivers/boot_loader.hpp"
+#include "firmware/drivers/clocks.hpp"
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/system.hpp"
+#include "firmware/usb/device.hpp"
 
-#include "background_watch.hpp"
-#include "crash.hpp"
-#include "main_loop.hpp"
-#include "parameter_memory.hpp"
-#include "parts.hpp"
-#include "ram_test.hpp"
-#include "start_report.hpp"
-#include "watchdog_trial.hpp"
+#include "firmware/application/background_watch.hpp"
+#include "firmware/application/crash.hpp"
+#include "firmware/application/main_loop.hpp"
+#include "firmware/application/parameter_memory.hpp"
+#include "firmware/application/parts.hpp"
+#include "firmware/application/ram_test.hpp"
+#include "firmware/application/start_report.hpp"
+#include "firmware/application/watchdog_trial.hpp"
 
 namespace inkwell::application {
 namespace {

@@ -1,9 +1,9 @@
-#include "main_loop.hpp"
+#include "firmware/application/main_loop.hpp"
 
-#include <link/motor_heat_keeper.hpp>
+#include "firmware/store/motor_heat_keeper.hpp"
 
-#include "crash.hpp"
-#include "parts.hpp"
+#include "firmware/application/crash.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 namespace {

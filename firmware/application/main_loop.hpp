@@ -1,7 +1,7 @@
 // Main loop tasks that run in each round, in addition to USB.
 #pragma once
 
-#include "background_watch.hpp"
+#include "firmware/application/background_watch.hpp"
 
 namespace inkwell::application {
 

@@ -1,11 +1,11 @@
-#include "memory_check.hpp"
+#include "firmware/application/memory_check.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "memory.hpp"
-#include "parts.hpp"
-#include "vectors.hpp"
+#include "firmware/application/memory.hpp"
+#include "firmware/application/parts.hpp"
+#include "firmware/application/vectors.hpp"
 
 namespace inkwell::application {
 namespace {

@@ -1,10 +1,10 @@
-// Memory of the record log (link/flash_log.hpp): the two flash sectors for parameters.
+// Memory of the record log (flash_log.hpp): the two flash sectors for parameters.
 #pragma once
 
-#include <link/flash_log.hpp>
+#include "firmware/store/flash_log.hpp"
 
-#include "memory.hpp"
-#include "parts.hpp"
+#include "firmware/application/memory.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 

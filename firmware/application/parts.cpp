@@ -1,8 +1,8 @@
-#include "parts.hpp"
+#include "firmware/application/parts.hpp"
 
 #include <board/board.hpp>
 
-#include "memory.hpp"
+#include "firmware/application/memory.hpp"
 
 namespace inkwell::application {
 

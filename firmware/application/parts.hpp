@@ -4,24 +4,24 @@
 #include <array>
 #include <cstdint>
 
-#include <control/controller.hpp>
-#include <drivers/analog_inputs.hpp>
-#include <drivers/bridges.hpp>
-#include <drivers/checksum.hpp>
-#include <drivers/claims.hpp>
-#include <drivers/console.hpp>
-#include <drivers/encoders.hpp>
-#include <drivers/independent_watchdog.hpp>
-#include <drivers/logic_supply.hpp>
-#include <drivers/otg_fs.hpp>
-#include <drivers/parameter_flash.hpp>
-#include <drivers/status_led.hpp>
-#include <drivers/switches.hpp>
-#include <link/link.hpp>
+#include "firmware/control/controller.hpp"
+#include "firmware/drivers/analog_inputs.hpp"
+#include "firmware/drivers/bridges.hpp"
+#include "firmware/drivers/checksum.hpp"
+#include "firmware/drivers/claims.hpp"
+#include "firmware/drivers/console.hpp"
+#include "firmware/drivers/encoders.hpp"
+#include "firmware/drivers/independent_watchdog.hpp"
+#include "firmware/drivers/logic_supply.hpp"
+#include "firmware/drivers/otg_fs/otg_fs.hpp"
+#include "firmware/drivers/parameter_flash.hpp"
+#include "firmware/drivers/status_led.hpp"
+#include "firmware/drivers/switches.hpp"
+#include "firmware/link/link.hpp"
 
 namespace inkwell::application {
 
-/// List of all drivers. The list does not compile if two drivers claim the same resource (drivers/claims.hpp).
+/// List of all drivers. The list does not compile if two drivers claim the same resource (claims.hpp).
 using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
                                  drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog,
                                  drivers::LogicSupply, drivers::Checksum, drivers::OtgFs, drivers::ParameterFlash>;

@@ -1,11 +1,11 @@
-#include "ram_test.hpp"
+#include "firmware/application/ram_test.hpp"
 
-#include <link/ram_pattern.hpp>
+#include "firmware/self_test/ram_pattern.hpp"
 
 #include <array>
 #include <span>
 
-#include "memory.hpp"
+#include "firmware/application/memory.hpp"
 
 namespace inkwell::application {
 namespace {

@@ -1,11 +1,11 @@
-#include "start_report.hpp"
+#include "firmware/application/start_report.hpp"
 
-#include <drivers/clocks.hpp>
+#include "firmware/drivers/clocks.hpp"
 
 #include <array>
 #include <string_view>
 
-#include "parts.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 

@@ -1,9 +1,9 @@
 // First console output of each boot.
 #pragma once
 
-#include <drivers/system.hpp>
 #include <optional>
-#include <protocol/black_box.hpp>
+#include "firmware/drivers/system.hpp"
+#include "protocol/black_box.hpp"
 
 namespace inkwell::application {
 

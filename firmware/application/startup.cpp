@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cstring>
 
-#include <drivers/boot_loader.hpp>
-#include <drivers/memory_protection.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/boot_loader.hpp"
+#include "firmware/drivers/memory_protection.hpp"
+#include "firmware/registers/peripherals.hpp"
 
-#include "handlers.hpp"
-#include "memory.hpp"
-#include "vectors.hpp"
+#include "firmware/application/handlers.hpp"
+#include "firmware/application/memory.hpp"
+#include "firmware/application/vectors.hpp"
 
 namespace inkwell::application {
 namespace {

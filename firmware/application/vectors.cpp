@@ -1,10 +1,10 @@
-#include "vectors.hpp"
+#include "firmware/application/vectors.hpp"
 
-#include <drivers/claims.hpp>
-#include <protocol/black_box.hpp>
+#include "firmware/drivers/claims.hpp"
+#include "protocol/black_box.hpp"
 
-#include "handlers.hpp"
-#include "memory.hpp"
+#include "firmware/application/handlers.hpp"
+#include "firmware/application/memory.hpp"
 
 namespace inkwell::application {
 namespace {

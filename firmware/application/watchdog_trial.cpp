@@ -1,10 +1,10 @@
-#include "watchdog_trial.hpp"
+#include "firmware/application/watchdog_trial.hpp"
 
-#include <drivers/clocks.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <drivers/kept_over_reset.hpp>
+#include "firmware/drivers/clocks.hpp"
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/kept_over_reset.hpp"
 
-#include "parts.hpp"
+#include "firmware/application/parts.hpp"
 
 namespace inkwell::application {
 namespace {

@@ -2,7 +2,7 @@
 // can be read.
 #pragma once
 
-#include <drivers/system.hpp>
+#include "firmware/drivers/system.hpp"
 
 namespace inkwell::application {
 

@@ -1,10 +1,10 @@
-#include <control/controller.hpp>
+#include "firmware/control/controller.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <control/trigonometry.hpp>
+#include "firmware/control/signal_path/trigonometry.hpp"
 
 namespace inkwell::control {
 

@@ -1,12 +1,12 @@
-#include <control/settings.hpp>
+#include "firmware/control/settings.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include <control/brake.hpp>
-#include <control/conditioning.hpp>
-#include <control/stuck_encoder.hpp>
-#include <protocol/faults.hpp>
+#include "firmware/control/signal_path/conditioning.hpp"
+#include "firmware/control/supervision/brake.hpp"
+#include "firmware/control/supervision/stuck_encoder.hpp"
+#include "protocol/faults.hpp"
 
 namespace inkwell::control {
 

@@ -1,10 +1,10 @@
-#include <drivers/analog_inputs.hpp>
+#include "firmware/drivers/analog_inputs.hpp"
 
-#include <drivers/interrupts.hpp>
-#include <drivers/peripheral_clocks.hpp>
-#include <drivers/pins.hpp>
-#include <placement/interrupt.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/drivers/peripheral_clocks.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/placement/interrupt.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

@@ -1,8 +1,8 @@
-#include <drivers/boot_loader.hpp>
+#include "firmware/drivers/boot_loader.hpp"
 
 #include <cstdint>
 
-#include <drivers/system.hpp>
+#include "firmware/drivers/system.hpp"
 
 namespace inkwell::drivers {
 namespace {

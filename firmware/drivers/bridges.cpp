@@ -1,14 +1,14 @@
-#include <drivers/bridges.hpp>
+#include "firmware/drivers/bridges.hpp"
 
 #include <board/board.hpp>
-#include <drivers/bridges_off.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <drivers/interrupts.hpp>
-#include <drivers/leg_compares.hpp>
-#include <drivers/peripheral_clocks.hpp>
-#include <drivers/pins.hpp>
-#include <placement/interrupt.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/bridges_off.hpp"
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/drivers/leg_compares.hpp"
+#include "firmware/drivers/peripheral_clocks.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/placement/interrupt.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

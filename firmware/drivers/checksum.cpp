@@ -1,6 +1,6 @@
-#include <drivers/checksum.hpp>
+#include "firmware/drivers/checksum.hpp"
 
-#include <drivers/peripheral_clocks.hpp>
+#include "firmware/drivers/peripheral_clocks.hpp"
 
 namespace inkwell::drivers {
 

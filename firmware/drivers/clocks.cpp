@@ -1,8 +1,8 @@
-#include <drivers/clocks.hpp>
+#include "firmware/drivers/clocks.hpp"
 
 #include <board/board.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

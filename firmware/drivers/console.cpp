@@ -1,9 +1,9 @@
-#include <drivers/console.hpp>
+#include "firmware/drivers/console.hpp"
 
-#include <drivers/cycle_counter.hpp>
-#include <drivers/peripheral_clocks.hpp>
-#include <drivers/pins.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/peripheral_clocks.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

@@ -1,9 +1,9 @@
-#include <drivers/encoders.hpp>
+#include "firmware/drivers/encoders.hpp"
 
-#include <drivers/peripheral_clocks.hpp>
-#include <drivers/pins.hpp>
-#include <placement/interrupt.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/peripheral_clocks.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/placement/interrupt.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

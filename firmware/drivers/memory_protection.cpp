@@ -1,8 +1,8 @@
-#include <drivers/memory_protection.hpp>
+#include "firmware/drivers/memory_protection.hpp"
 
 #include <cstdint>
 
-#include <registers/peripherals.hpp>
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 namespace {

@@ -1,7 +1,7 @@
-#include <drivers/parameter_flash.hpp>
+#include "firmware/drivers/parameter_flash.hpp"
 
 #include <board/board.hpp>
-#include <drivers/cycle_counter.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
 
 namespace inkwell::drivers {
 namespace {

@@ -1,7 +1,7 @@
-#include <link/command_queue.hpp>
+#include "firmware/link/command_queue.hpp"
 
-#include <control/installed_force_law.hpp>
-#include <placement/interrupt.hpp>
+#include "firmware/control/signal_path/installed_force_law.hpp"
+#include "firmware/placement/interrupt.hpp"
 
 #include <cmath>
 #include <cstring>

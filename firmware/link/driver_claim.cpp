@@ -1,4 +1,4 @@
-#include <link/driver_claim.hpp>
+#include "firmware/link/driver_claim.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,10 +1,10 @@
-#include <link/program_requests.hpp>
+#include "firmware/link/program_requests.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include <protocol/report_table.hpp>
+#include "protocol/report_table.hpp"
 
 namespace inkwell::link {
 

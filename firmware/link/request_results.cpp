@@ -1,4 +1,4 @@
-#include <link/request_results.hpp>
+#include "firmware/link/request_results.hpp"
 
 namespace inkwell::link {
 

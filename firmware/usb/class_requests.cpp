@@ -3,13 +3,13 @@
 #include <cstring>
 #include <new>
 
-#include <control/installed_force_law.hpp>
-#include <protocol/report_table.hpp>
-#include <protocol/usb_identity.hpp>
-#include <usb/device.hpp>
+#include "firmware/control/signal_path/installed_force_law.hpp"
+#include "firmware/usb/device.hpp"
+#include "protocol/report_table.hpp"
+#include "protocol/usb_identity.hpp"
 
-#include "controller_report.hpp"
-#include "descriptors.hpp"
+#include "firmware/usb/controller_report.hpp"
+#include "firmware/usb/descriptors.hpp"
 
 namespace inkwell::usb {
 

@@ -1,4 +1,4 @@
-#include <usb/control_endpoint.hpp>
+#include "firmware/usb/control_endpoint.hpp"
 
 #include <algorithm>
 #include <cstring>

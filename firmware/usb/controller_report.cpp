@@ -1,4 +1,4 @@
-#include "controller_report.hpp"
+#include "firmware/usb/controller_report.hpp"
 
 namespace inkwell::usb {
 

@@ -1,12 +1,12 @@
-#include "descriptors.hpp"
+#include "firmware/usb/descriptors.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-#include <protocol/report_table.hpp>
-#include <protocol/usb_identity.hpp>
-#include <usb/port.hpp>
+#include "firmware/usb/port.hpp"
+#include "protocol/report_table.hpp"
+#include "protocol/usb_identity.hpp"
 
 namespace inkwell::usb {
 

@@ -1,10 +1,10 @@
-#include <usb/device.hpp>
+#include "firmware/usb/device.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "controller_report.hpp"
-#include "descriptors.hpp"
+#include "firmware/usb/controller_report.hpp"
+#include "firmware/usb/descriptors.hpp"
 
 namespace inkwell::usb {
 

@@ -2,10 +2,10 @@
 #include <cstring>
 #include <string_view>
 
-#include <protocol/usb_identity.hpp>
-#include <usb/device.hpp>
+#include "firmware/usb/device.hpp"
+#include "protocol/usb_identity.hpp"
 
-#include "descriptors.hpp"
+#include "firmware/usb/descriptors.hpp"
 
 namespace inkwell::usb {
 

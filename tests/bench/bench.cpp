@@ -5,11 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
 
-#include "interrupt_stages.hpp"
+#include "tests/bench/interrupt_stages.hpp"
 
 namespace {
 

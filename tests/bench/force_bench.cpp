@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include <control/contact.hpp>
-#include <control/shapes.hpp>
+#include "firmware/control/signal_path/contact.hpp"
+#include "firmware/control/signal_path/shapes.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "interrupt_stages.hpp"
+#include "tests/bench/interrupt_stages.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
-#include <omni_driver/facts.hpp>
-#include <stepped_board.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
+#include "tests/stepped_board.hpp"
 
 namespace inkwell::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <inkwell/inkwell.hpp>
 
-#include <dropins/hdapi.hpp>
+#include "tests/dropins/hdapi.hpp"
 
 namespace {
 

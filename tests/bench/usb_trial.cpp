@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "boards/virtual/usb/firmware_on_bus.hpp"
-#include "boards/virtual/usb/force_timing.hpp"
-#include "boards/virtual/usb/hostile_host.hpp"
-#include "boards/virtual/usb/pose_timing.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/force_timing.hpp"
+#include "tests/boards/virtual/usb/hostile_host.hpp"
+#include "tests/boards/virtual/usb/pose_timing.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 namespace {
 

@@ -45,7 +45,7 @@ class Differences(unittest.TestCase):
     def setUp(self):
         self.tree = architecture.Tree(folders={"firmware/control", "host/window"},
                                       links={"firmware/control": set(), "host/window": {"firmware/control"}},
-                                      libraries={"host/window": {"imgui"}}, includes={})
+                                      libraries={"host/window": {"imgui"}}, includes={}, private={})
 
     def differences(self, table=TABLE):
         return architecture.differences(architecture.read_table(table), self.tree)
@@ -73,13 +73,32 @@ class Differences(unittest.TestCase):
         self.assertEqual(["host/window/ links to hdf5, which its row does not name"], self.differences())
 
     def test_include_without_link(self):
-        self.tree.includes["firmware/control"] = {"host/window": "contact.cpp: #include <window/window.hpp>"}
-        self.assertEqual(["contact.cpp: #include <window/window.hpp>: firmware/control/ has no target that links to "
+        self.tree.includes["firmware/control"] = {"host/window": 'contact.cpp: #include "host/window/window.hpp"'}
+        self.assertEqual(['contact.cpp: #include "host/window/window.hpp": firmware/control/ has no target that links to '
                           "one of host/window/"], self.differences())
+
+    def test_include_of_a_private_header(self):
+        line = 'window.cpp: #include "firmware/control/stage.hpp"'
+        self.tree.private["host/window"] = {"firmware/control": line}
+        self.assertEqual([f"{line}: firmware/control/ does not publish this header "
+                          "(inkwell_publish_headers in its CMakeLists.txt)"], self.differences())
+
+    def test_private_header_in_the_same_library(self):
+        self.tree.folders.add("host/window/scope")
+        self.tree.includes["host/window/scope"] = {"host/window": 'scope.cpp: #include "host/window/detail.hpp"'}
+        self.tree.private["host/window/scope"] = self.tree.includes["host/window/scope"]
+        self.assertEqual([], self.differences(self.TABLE + "| `host/window/scope/` | - | window | - |\n"))
+
+    def test_folder_without_target_includes_what_its_library_may_not(self):
+        self.tree.folders.add("firmware/control/stages")
+        line = 'stage.cpp: #include "host/window/window.hpp"'
+        self.tree.includes["firmware/control/stages"] = {"host/window": line}
+        self.assertEqual([f"{line}: firmware/control/stages/ has no target that links to one of host/window/"],
+                         self.differences(self.TABLE + "| `firmware/control/stages/` | - | window | - |\n"))
 
     def test_folder_without_target_uses_what_it_includes(self):
         self.tree.folders.add("host/window/scope")
-        self.tree.includes["host/window/scope"] = {"host/window": "scope.cpp: #include <window/window.hpp>"}
+        self.tree.includes["host/window/scope"] = {"host/window": 'scope.cpp: #include "host/window/window.hpp"'}
         self.assertEqual([], self.differences(self.TABLE + "| `host/window/scope/` | - | window | - |\n"))
         self.assertEqual(["host/window/scope/ uses host/window/, which its row does not name"],
                          self.differences(self.TABLE + "| `host/window/scope/` | - | - | - |\n"))

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include <device/virtual_board.hpp>
+#include "host/client/device/virtual_board.hpp"
 
 namespace inkwell::tests {
 

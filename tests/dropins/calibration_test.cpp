@@ -1,10 +1,10 @@
 // The result of HDAPI's calibration check in normal use and during faults.
 #include <doctest/doctest.h>
 
-#include <device/device.hpp>
-#include <protocol/reports.hpp>
+#include "host/client/device/device.hpp"
+#include "protocol/reports.hpp"
 
-#include "held.hpp"
+#include "tests/dropins/held.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <dropins/parameters.hpp>
+#include "host/bindings/dropins/parameters.hpp"
 
 namespace inkwell::dropins {
 namespace {
@@ -34,7 +34,7 @@ TEST_CASE("the document's table of parameters is that of the library") {
 
 TEST_CASE("the document names every function") {
   const auto document = read("/docs/dropins.md");
-  for (const auto header : {"/host/dropins/hd_interface.hpp", "/host/dropins/hd_phantom.cpp"}) {
+  for (const auto header : {"/host/bindings/dropins/hd_interface.hpp", "/host/bindings/dropins/hd_phantom.cpp"}) {
     const auto text = read(header);
     REQUIRE(text.size() > 1000);
     for (auto place = text.find("\nINKWELL_HD "); place != std::string::npos;

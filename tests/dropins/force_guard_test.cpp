@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <dropins/force_guard.hpp>
+#include "host/bindings/dropins/force_guard.hpp"
 
 namespace inkwell::dropins {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <thread>
 
-#include <device/device.hpp>
+#include "host/client/device/device.hpp"
 
-#include "held.hpp"
+#include "tests/dropins/held.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include <cancelled_thread.hpp>
+#include "tests/cancelled_thread.hpp"
 
-#include "held.hpp"
+#include "tests/dropins/held.hpp"
 
 namespace inkwell::tests {
 namespace {

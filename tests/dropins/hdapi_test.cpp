@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "held.hpp"
+#include "tests/dropins/held.hpp"
 
 namespace inkwell::tests {
 namespace {

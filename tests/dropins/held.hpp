@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "board.hpp"
-#include "hdapi.hpp"
+#include "tests/dropins/board.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 namespace inkwell::tests {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <sstream>
 
-#include <device/device.hpp>
-#include <system/program.hpp>
+#include "host/client/device/device.hpp"
+#include "tests/system/program.hpp"
 
-#include "board.hpp"
-#include "hdapi.hpp"
+#include "tests/dropins/board.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -1,18 +1,18 @@
 // Data from the USB cable, and text from users in parameter files and on command lines.
 #include <array>
 
-#include <arms/description.hpp>
-#include <device/address.hpp>
-#include <device/device.hpp>
-#include <device/error.hpp>
-#include <device/force_law.hpp>
-#include <device/parameter_file.hpp>
-#include <device/scope_decoder.hpp>
+#include "boards/arms/description.hpp"
+#include "host/client/device/address.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/error.hpp"
+#include "host/client/device/force_law.hpp"
+#include "host/client/device/parameter_file.hpp"
+#include "host/client/device/scope_decoder.hpp"
 
-#include "../firmware/usb/device_bench.hpp"
-#include "device/usb_descriptors.hpp"
-#include "seeds.hpp"
-#include "target.hpp"
+#include "host/client/device/usb_descriptors.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
+#include "tests/fuzz/seeds.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 namespace {

@@ -2,19 +2,19 @@
 #include <cstring>
 #include <sstream>
 
-#include <campaign/result.hpp>
-#include <device/error.hpp>
-#include <firmware_update/boot_loader.hpp>
-#include <firmware_update/image.hpp>
-#include <recording/black_box.hpp>
-#include <recording/recording.hpp>
-#include <recording/signals.hpp>
-#include <scope/formula.hpp>
-#include <window/window_settings.hpp>
+#include "host/client/device/error.hpp"
+#include "host/client/firmware_update/boot_loader.hpp"
+#include "host/client/firmware_update/image.hpp"
+#include "host/client/recording/black_box.hpp"
+#include "host/client/recording/recording.hpp"
+#include "host/client/recording/signals.hpp"
+#include "host/companion/window/scope/formula.hpp"
+#include "host/companion/window/window_settings.hpp"
+#include "host/lab/campaign/result.hpp"
 
-#include "../host/firmware_update/made_elf.hpp"
-#include "recording/formats.hpp"
-#include "target.hpp"
+#include "host/client/recording/formats.hpp"
+#include "tests/fuzz/target.hpp"
+#include "tests/host/client/firmware_update/made_elf.hpp"
 
 namespace inkwell::fuzz {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <link/stored_parameters.hpp>
+#include "firmware/store/stored_parameters.hpp"
 
-#include "../firmware/link/plain_flash.hpp"
-#include "target.hpp"
+#include "tests/firmware/store/plain_flash.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 namespace {

@@ -12,8 +12,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "seeds.hpp"
-#include "target.hpp"
+#include "tests/fuzz/seeds.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace {
 

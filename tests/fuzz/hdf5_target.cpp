@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <device/error.hpp>
-#include <recording/recording.hpp>
+#include "host/client/device/error.hpp"
+#include "host/client/recording/recording.hpp"
 
-#include "recording/formats.hpp"
-#include "recording/hdf5_file.hpp"
-#include "target.hpp"
+#include "host/client/recording/formats.hpp"
+#include "host/client/recording/hdf5_file.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "target.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 

@@ -1,8 +1,8 @@
 // Runs the fuzzer's seeds in each test run, so that a corrected error cannot return.
 #include <doctest/doctest.h>
 
-#include "seeds.hpp"
-#include "target.hpp"
+#include "tests/fuzz/seeds.hpp"
+#include "tests/fuzz/target.hpp"
 
 using namespace inkwell;
 

@@ -2,11 +2,11 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <device/error.hpp>
+#include "host/client/device/error.hpp"
 
-#include "device/control_answers.hpp"
-#include "device/usbip_answers.hpp"
-#include "target.hpp"
+#include "host/client/device/control_answers.hpp"
+#include "host/client/device/usbip_answers.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 namespace {

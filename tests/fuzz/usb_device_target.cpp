@@ -1,6 +1,6 @@
 // The firmware's USB device with a host that sends any packets in any order. The fake port checks the device.
-#include "../firmware/usb/device_bench.hpp"
-#include "target.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
+#include "tests/fuzz/target.hpp"
 
 namespace inkwell::fuzz {
 namespace {

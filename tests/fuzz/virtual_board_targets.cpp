@@ -7,18 +7,18 @@
 #include <string_view>
 #include <variant>
 
-#include <chip/chip_error.hpp>
-#include <chip/memory.hpp>
-#include <debugger/gdb_packets.hpp>
-#include <debugger/gdb_requests.hpp>
-#include <injection/injection.hpp>
-#include <known/boards.hpp>
-#include <program/requests.hpp>
-#include <usbip_bytes.hpp>
-#include <virtual_usb/usbip_requests.hpp>
+#include "boards/known/boards.hpp"
+#include "boards/stm32f405/core/chip_error.hpp"
+#include "boards/stm32f405/debugger/gdb_packets.hpp"
+#include "boards/stm32f405/debugger/gdb_requests.hpp"
+#include "boards/stm32f405/memory/memory.hpp"
+#include "boards/virtual/injection/injection.hpp"
+#include "boards/virtual/program/requests.hpp"
+#include "boards/virtual/usb/usbip_requests.hpp"
+#include "tests/usbip_bytes.hpp"
 
-#include "../host/firmware_update/made_elf.hpp"
-#include "target.hpp"
+#include "tests/fuzz/target.hpp"
+#include "tests/host/client/firmware_update/made_elf.hpp"
 
 namespace inkwell::fuzz {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include <control/felt_force_law.hpp>
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "firmware/control/signal_path/felt_force_law.hpp"
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <inkwell/inkwell.h>
-#include <protocol/self_test.hpp>
-#include <temporary_directory.hpp>
+#include "protocol/self_test.hpp"
+#include "tests/temporary_directory.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace {
 

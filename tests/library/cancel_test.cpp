@@ -4,11 +4,11 @@
 #include <atomic>
 #include <string>
 
-#include <cancelled_thread.hpp>
-#include <dropins/board.hpp>
 #include <inkwell/inkwell.hpp>
+#include "tests/cancelled_thread.hpp"
+#include "tests/dropins/board.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

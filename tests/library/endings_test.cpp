@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <inkwell/inkwell.hpp>
-#include <system/program.hpp>
+#include "tests/system/program.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

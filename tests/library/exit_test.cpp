@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include <system/program.hpp>
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

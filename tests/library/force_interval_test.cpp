@@ -1,7 +1,7 @@
 // Time over which the board interpolates a program's forces.
 #include <doctest/doctest.h>
 
-#include "library/force_interval.hpp"
+#include "host/bindings/library/force_interval.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -6,13 +6,13 @@
 #include <semaphore>
 #include <thread>
 
-#include <control/settings.hpp>
-#include <device/device.hpp>
-#include <protocol/parameters.hpp>
+#include "firmware/control/settings.hpp"
+#include "host/client/device/device.hpp"
+#include "protocol/parameters.hpp"
 
-#include "library/force_output.hpp"
-#include "library/pose_reader.hpp"
-#include "queued_transport.hpp"
+#include "host/bindings/library/force_output.hpp"
+#include "host/bindings/library/pose_reader.hpp"
+#include "tests/library/queued_transport.hpp"
 
 namespace inkwell::tests {
 namespace {

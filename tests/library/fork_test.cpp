@@ -7,11 +7,11 @@
 #include <string>
 
 #include <inkwell/inkwell.h>
-#include <dropins/board.hpp>
-#include <system/program.hpp>
-#include <temporary_directory.hpp>
+#include "tests/dropins/board.hpp"
+#include "tests/system/program.hpp"
+#include "tests/temporary_directory.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

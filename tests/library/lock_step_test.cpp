@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include <dropins/board.hpp>
 #include <inkwell/inkwell.hpp>
+#include "tests/dropins/board.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -9,11 +9,11 @@
 #include <thread>
 #include <vector>
 
-#include <dropins/board.hpp>
 #include <inkwell/inkwell.hpp>
-#include <system/program.hpp>
+#include "tests/dropins/board.hpp"
+#include "tests/system/program.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

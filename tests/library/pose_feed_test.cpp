@@ -1,12 +1,12 @@
 // Reports of lost poses and of a lost force, without a board.
 #include <doctest/doctest.h>
 
-#include <device/error.hpp>
-#include <failure.hpp>
+#include "host/client/device/error.hpp"
+#include "tests/failure.hpp"
 
-#include "library/errors.hpp"
-#include "library/pose_feed.hpp"
-#include "library/servo.hpp"
+#include "host/bindings/library/errors.hpp"
+#include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/servo.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include <control/settings.hpp>
-#include <protocol/parameters.hpp>
+#include "firmware/control/settings.hpp"
+#include "protocol/parameters.hpp"
 
-#include "library/pose_reader.hpp"
+#include "host/bindings/library/pose_reader.hpp"
 
 namespace inkwell::tests {
 namespace {

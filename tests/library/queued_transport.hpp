@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include <device/transport.hpp>
-#include <protocol/reports.hpp>
+#include "host/client/device/transport.hpp"
+#include "protocol/reports.hpp"
 
 namespace inkwell::tests {
 

@@ -2,9 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <inkwell/inkwell.h>
-#include <dropins/board.hpp>
+#include "tests/dropins/board.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

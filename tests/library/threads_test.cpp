@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <inkwell/inkwell.h>
-#include <dropins/board.hpp>
+#include "tests/dropins/board.hpp"
 
-#include "virtual_arm.hpp"
+#include "tests/library/virtual_arm.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "library/pose_feed.hpp"
-#include "library/turns.hpp"
+#include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/turns.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <inkwell/inkwell.h>
-#include <dropins/board.hpp>
+#include "tests/dropins/board.hpp"
 
 namespace inkwell::tests {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <dropins/board.hpp>
 #include <inkwell/inkwell.hpp>
+#include "tests/dropins/board.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <inkwell/inkwell.hpp>
 
-#include "answer_commands.hpp"
+#include "tests/losses/answer_commands.hpp"
 
 namespace {
 

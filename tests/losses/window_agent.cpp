@@ -8,12 +8,12 @@
 #include <string>
 #include <thread>
 
-#include <device/address.hpp>
-#include <device/fault_text.hpp>
-#include <device/open_arm.hpp>
-#include <device_desk/device_desk.hpp>
+#include "host/client/device/address.hpp"
+#include "host/client/device/fault_text.hpp"
+#include "host/client/device/open_arm.hpp"
+#include "host/companion/window/device_desk/device_desk.hpp"
 
-#include "answer_commands.hpp"
+#include "tests/losses/answer_commands.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <protocol/plain_text.hpp>
+#include "protocol/plain_text.hpp"
 
 using namespace inkwell::protocol;
 

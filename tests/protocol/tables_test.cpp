@@ -7,14 +7,14 @@
 #include <string>
 #include <string_view>
 
-#include <protocol/faults.hpp>
-#include <protocol/parameters.hpp>
-#include <protocol/report_table.hpp>
-#include <protocol/reports.hpp>
-#include <protocol/request_result.hpp>
-#include <protocol/scope.hpp>
-#include <protocol/signals.hpp>
-#include <protocol/store.hpp>
+#include "protocol/faults.hpp"
+#include "protocol/parameters.hpp"
+#include "protocol/report_table.hpp"
+#include "protocol/reports.hpp"
+#include "protocol/request_result.hpp"
+#include "protocol/scope.hpp"
+#include "protocol/signals.hpp"
+#include "protocol/store.hpp"
 
 namespace {
 

@@ -18,7 +18,7 @@ import numpy as np
 from virtual_board import AXES, FREE_POINT_M, VirtualBoard, rests_at_x
 
 BUILD = pathlib.Path()
-HOST = pathlib.Path(__file__).resolve().parents[2] / "host"
+HOST = pathlib.Path(__file__).resolve().parents[2] / "host/bindings"
 
 
 def beside(x_m: float) -> tuple[float, float, float]:

@@ -465,14 +465,14 @@ class Help(unittest.TestCase):
                 self.assertTrue(name.startswith("_") or inspect.getdoc(member), f"{kind.__name__}.{name}")
 
     def test_an_error_for_each_result(self):
-        header = (pathlib.Path(__file__).parents[2] / "host/library/include/inkwell/inkwell.h").read_text()
+        header = (pathlib.Path(__file__).parents[2] / "host/bindings/library/include/inkwell/inkwell.h").read_text()
         for result, kind in errors.BY_RESULT.items():
             name = "".join(f"_{letter}" if letter.isupper() else letter.upper() for letter in kind.__name__)
             self.assertIn(f"INKWELL{name} = {result}", header)
         self.assertEqual(len(errors.BY_RESULT), header[:header.index("} inkwell_result")].count(" = ") - 2)
 
     def test_faults_have_the_names_of_the_header(self):
-        header = (pathlib.Path(__file__).parents[2] / "host/library/include/inkwell/inkwell.h").read_text()
+        header = (pathlib.Path(__file__).parents[2] / "host/bindings/library/include/inkwell/inkwell.h").read_text()
         for fault in inkwell.Fault:
             self.assertIn(f"INKWELL_FAULT_{fault.name} = {fault.value}", header)
         self.assertEqual(inkwell.Fault.OVER_SPEED, 6)

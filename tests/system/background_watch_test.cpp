@@ -11,11 +11,11 @@
 #include <string>
 #include <utility>
 
-#include <control/encoder_wire.hpp>
-#include <control/supply_ripple.hpp>
-#include <stepped_board.hpp>
+#include "firmware/control/supervision/encoder_wire.hpp"
+#include "firmware/control/supervision/supply_ripple.hpp"
+#include "tests/stepped_board.hpp"
 
-#include "hazards.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -16,9 +16,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <protocol/parameters.hpp>
+#include "protocol/parameters.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

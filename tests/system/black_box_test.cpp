@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <string>
 
-#include <crash/crash_text.hpp>
-#include <device/error.hpp>
-#include <known/boards.hpp>
-#include <omni_driver/facts.hpp>
-#include <stepped_board.hpp>
+#include "boards/known/boards.hpp"
+#include "boards/omni_driver/facts.hpp"
+#include "host/client/crash/crash_text.hpp"
+#include "host/client/device/error.hpp"
+#include "tests/stepped_board.hpp"
 
-#include "firmware_image.hpp"
-#include "hazards.hpp"
-#include "program.hpp"
+#include "tests/system/firmware_image.hpp"
+#include "tests/system/hazards.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

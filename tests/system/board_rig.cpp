@@ -1,4 +1,4 @@
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <doctest/doctest.h>
-#include <stepped_board.hpp>
+#include "tests/stepped_board.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <device/control_client.hpp>
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
 
 namespace inkwell::tests {
 

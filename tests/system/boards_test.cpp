@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <known/boards.hpp>
-#include <protocol/self_test.hpp>
-#include <stepped_board.hpp>
+#include "boards/known/boards.hpp"
+#include "protocol/self_test.hpp"
+#include "tests/stepped_board.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

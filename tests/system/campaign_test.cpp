@@ -7,17 +7,17 @@
 #include <tuple>
 
 #include <fmt/format.h>
-#include <campaign/board_run.hpp>
-#include <campaign/cases.hpp>
-#include <campaign/handling.hpp>
-#include <campaign/result.hpp>
-#include <campaign/run.hpp>
-#include <chip/exception_numbers.hpp>
-#include <firmware_update/image.hpp>
-#include <temporary_directory.hpp>
+#include "boards/stm32f405/core/exception_numbers.hpp"
+#include "host/client/firmware_update/image.hpp"
+#include "host/lab/campaign/board_run.hpp"
+#include "host/lab/campaign/cases.hpp"
+#include "host/lab/campaign/handling.hpp"
+#include "host/lab/campaign/result.hpp"
+#include "host/lab/campaign/run.hpp"
+#include "tests/temporary_directory.hpp"
 
-#include "hazards.hpp"
-#include "program.hpp"
+#include "tests/system/hazards.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include <chip/exception_numbers.hpp>
+#include "boards/stm32f405/core/exception_numbers.hpp"
 
-#include "firmware_image.hpp"
-#include "hazards.hpp"
+#include "tests/system/firmware_image.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

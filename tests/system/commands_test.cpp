@@ -13,15 +13,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
-#include <protocol/black_box.hpp>
-#include <protocol/scope.hpp>
-#include <recording/recording.hpp>
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
+#include "host/client/recording/recording.hpp"
+#include "protocol/black_box.hpp"
+#include "protocol/scope.hpp"
 
-#include <stepped_board.hpp>
+#include "tests/stepped_board.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

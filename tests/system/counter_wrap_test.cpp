@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include <device/device.hpp>
-#include <recording/recorder.hpp>
-#include <recording/recording.hpp>
+#include "host/client/device/device.hpp"
+#include "host/client/recording/recorder.hpp"
+#include "host/client/recording/recording.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

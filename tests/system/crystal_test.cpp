@@ -1,7 +1,7 @@
 // A board whose crystal does not have the expected frequency.
 #include <doctest/doctest.h>
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

@@ -1,4 +1,4 @@
-#include "cycles_page.hpp"
+#include "tests/system/cycles_page.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "firmware_image.hpp"
+#include "tests/system/firmware_image.hpp"
 
 namespace inkwell::tests {
 namespace {

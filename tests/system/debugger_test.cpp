@@ -1,7 +1,7 @@
 // GDB, connected to the virtual board with the flashed firmware.
 #include <doctest/doctest.h>
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

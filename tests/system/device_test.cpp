@@ -11,13 +11,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include <failure.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "tests/failure.hpp"
 
-#include <stepped_board.hpp>
+#include "tests/stepped_board.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

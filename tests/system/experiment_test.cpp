@@ -14,10 +14,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <recording/recording.hpp>
+#include "host/client/recording/recording.hpp"
 
-#include "image.hpp"
-#include "program.hpp"
+#include "tests/system/image.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

@@ -1,4 +1,4 @@
-#include "firmware_image.hpp"
+#include "tests/system/firmware_image.hpp"
 
 #include <elf.h>
 
@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

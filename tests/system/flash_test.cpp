@@ -13,12 +13,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <device/control_channel.hpp>
-#include <failure.hpp>
-#include <host/firmware_update/made_elf.hpp>
+#include "host/client/device/control_channel.hpp"
+#include "tests/failure.hpp"
+#include "tests/host/client/firmware_update/made_elf.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
-#include <device/fault_text.hpp>
-#include <device/parameter_file.hpp>
+#include "host/client/device/fault_text.hpp"
+#include "host/client/device/parameter_file.hpp"
 
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -7,15 +7,15 @@
 #include <fstream>
 #include <optional>
 
-#include <force_laws/magnet.hpp>
 #include <nlohmann/json.hpp>
+#include "firmware/force_laws/magnet.hpp"
 
-#include <device/force_law.hpp>
-#include <device/parameter_file.hpp>
-#include <recording/recording.hpp>
+#include "host/client/device/force_law.hpp"
+#include "host/client/device/parameter_file.hpp"
+#include "host/client/recording/recording.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

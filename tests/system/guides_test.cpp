@@ -11,13 +11,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include <arms/description.hpp>
-#include <bench_modules/facts.hpp>
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/arms/description.hpp"
+#include "boards/bench_modules/facts.hpp"
+#include "boards/omni_driver/facts.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 using namespace inkwell;

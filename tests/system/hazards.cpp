@@ -1,10 +1,10 @@
-#include "hazards.hpp"
+#include "tests/system/hazards.hpp"
 
 #include <doctest/doctest.h>
 
-#include <device/fault_text.hpp>
+#include "host/client/device/fault_text.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include <protocol/faults.hpp>
+#include "protocol/faults.hpp"
 
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 namespace inkwell::tests {
 

@@ -1,4 +1,4 @@
-#include "image.hpp"
+#include "tests/system/image.hpp"
 
 #include <cstdlib>
 #include <set>

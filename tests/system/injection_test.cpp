@@ -3,10 +3,10 @@
 
 #include <fstream>
 
-#include <temporary_directory.hpp>
+#include "tests/temporary_directory.hpp"
 
-#include "hazards.hpp"
-#include "program.hpp"
+#include "tests/system/hazards.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -1,11 +1,11 @@
 // Firmware that locks up the core: with --seconds the board stops and reports the location of the error.
 #include <doctest/doctest.h>
 
-#include <device/control_client.hpp>
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

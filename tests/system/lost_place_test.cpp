@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hazards.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include <control/settings.hpp>
-#include <link/parameter_store.hpp>
-#include <protocol/parameters.hpp>
-#include <protocol/store.hpp>
+#include "firmware/control/settings.hpp"
+#include "firmware/store/parameter_store.hpp"
+#include "protocol/parameters.hpp"
+#include "protocol/store.hpp"
 
-#include "firmware_image.hpp"
-#include "hazards.hpp"
+#include "tests/system/firmware_image.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include <control/current_jump.hpp>
-#include <control/motor_watch.hpp>
-#include <control/settings.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "firmware/control/settings.hpp"
+#include "firmware/control/supervision/current_jump.hpp"
+#include "firmware/control/supervision/motor_watch.hpp"
 
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -1,11 +1,11 @@
 // Reading and driving pins of the virtual board through its control socket.
 #include <doctest/doctest.h>
 
-#include <device/control_client.hpp>
-#include <device/error.hpp>
-#include <device/virtual_board.hpp>
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/error.hpp"
+#include "host/client/device/virtual_board.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

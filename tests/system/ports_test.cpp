@@ -15,10 +15,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/address.hpp>
-#include <plain_client.hpp>
+#include "host/client/device/address.hpp"
+#include "tests/plain_client.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string>
 
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

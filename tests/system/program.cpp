@@ -1,4 +1,4 @@
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 #include <cstdlib>
 #include <cstring>

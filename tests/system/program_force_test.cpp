@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -11,10 +11,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/transport.hpp>
+#include "host/client/device/transport.hpp"
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

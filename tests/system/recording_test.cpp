@@ -10,11 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/virtual_board.hpp>
-#include <recording/recording.hpp>
-#include <recording/signals.hpp>
+#include "host/client/device/virtual_board.hpp"
+#include "host/client/recording/recording.hpp"
+#include "host/client/recording/signals.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "board_rig.hpp"
+#include "tests/system/board_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

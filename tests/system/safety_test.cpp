@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "firmware_image.hpp"
-#include "hazards.hpp"
+#include "tests/system/firmware_image.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

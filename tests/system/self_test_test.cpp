@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <stepped_board.hpp>
+#include "tests/stepped_board.hpp"
 
-#include "board_rig.hpp"
-#include "hazards.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/hazards.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

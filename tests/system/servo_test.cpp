@@ -16,16 +16,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <crash/firmware_image.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "host/client/crash/firmware_image.hpp"
 
-#include <stepped_board.hpp>
+#include "tests/stepped_board.hpp"
 
-#include "board_rig.hpp"
-#include "cycles_page.hpp"
-#include "firmware_image.hpp"
-#include "hazards.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/cycles_page.hpp"
+#include "tests/system/firmware_image.hpp"
+#include "tests/system/hazards.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -9,8 +9,8 @@
 
 #include <unistd.h>
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "tests/system/board_rig.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 namespace {

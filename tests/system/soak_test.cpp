@@ -12,10 +12,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <soak/plan.hpp>
-#include <temporary_directory.hpp>
+#include "host/lab/soak/plan.hpp"
+#include "tests/temporary_directory.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <device/virtual_board.hpp>
-#include <protocol/parameters.hpp>
-#include <protocol/store.hpp>
+#include "host/client/device/virtual_board.hpp"
+#include "protocol/parameters.hpp"
+#include "protocol/store.hpp"
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <campaign/handling.hpp>
+#include "host/lab/campaign/handling.hpp"
 
-#include "hazards.hpp"
+#include "tests/system/hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "program.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

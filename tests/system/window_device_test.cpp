@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include <recording/recording.hpp>
+#include "host/client/recording/recording.hpp"
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <string>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

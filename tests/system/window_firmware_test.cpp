@@ -1,7 +1,7 @@
 // The window offers its firmware to a board with another version, writes the firmware, and continues with the board.
 #include <doctest/doctest.h>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <protocol/parameters.hpp>
+#include "protocol/parameters.hpp"
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

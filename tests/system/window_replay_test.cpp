@@ -7,11 +7,11 @@
 #include <numbers>
 #include <string>
 
-#include <recording/recording.hpp>
-#include <recording/signals.hpp>
-#include <recording/writer.hpp>
+#include "host/client/recording/recording.hpp"
+#include "host/client/recording/signals.hpp"
+#include "host/client/recording/writer.hpp"
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -1,4 +1,4 @@
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <device/parameter_file.hpp>
+#include "host/client/device/parameter_file.hpp"
 
 namespace inkwell::tests {
 namespace {

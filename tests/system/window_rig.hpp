@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/control_client.hpp>
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/device/virtual_board.hpp"
 
-#include "image.hpp"
-#include "program.hpp"
+#include "tests/system/image.hpp"
+#include "tests/system/program.hpp"
 
 namespace inkwell::tests {
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include <temporary_directory.hpp>
+#include "tests/temporary_directory.hpp"
 
-#include "image.hpp"
-#include "program.hpp"
+#include "tests/system/image.hpp"
+#include "tests/system/program.hpp"
 
 using namespace inkwell::tests;
 

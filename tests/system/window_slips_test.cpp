@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include <frame/value_range.hpp>
+#include "host/companion/window/frame/value_range.hpp"
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string>
 
-#include <frame/palette.hpp>
+#include "host/companion/window/frame/palette.hpp"
 
-#include "window_rig.hpp"
+#include "tests/system/window_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;

@@ -1,4 +1,4 @@
-#include "semihosting.hpp"
+#include "tests/target/semihosting.hpp"
 
 #include <sys/stat.h>
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "semihosting.hpp"
+#include "tests/target/semihosting.hpp"
 
 extern "C" {
 

@@ -2,8 +2,8 @@
 // counts instructions in units of 168 MHz / 1 GHz.
 #include <doctest/doctest.h>
 
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

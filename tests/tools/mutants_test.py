@@ -73,7 +73,7 @@ watches = mutants.watch_mutants("table.hpp", TABLE)
 assert [mutant.what for mutant in watches] == ["without watching not_finite", "without watching encoder_wire"], watches
 assert "{Fault::encoder_wire, States{}, at_once, coast, true}," in watches[1].applied_to(TABLE)
 assert mutants.watch_mutants("table.hpp", "  X(5, ramping, true)") == []
-source = (Path(sys.argv[1]) / "protocol/include/protocol/supervision.hpp").read_text()
+source = (Path(sys.argv[1]) / "protocol/supervision.hpp").read_text()
 rows = source[source.index("condition_table = []"): source.index("std::to_array", source.index("condition_table = []")) + 4000]
 assert len(mutants.watch_mutants("supervision.hpp", source)) == rows.count("{Fault::"), "a row is written otherwise"
 assert len([mutant for mutant in mutants.way_mutants("supervision.hpp", source) if mutant.what.startswith("without")]) == \

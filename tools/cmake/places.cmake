@@ -1,4 +1,4 @@
-# Locations of the files that programs need at run time, relative to the installation prefix. host/installation searches
+# Locations of the files that programs need at run time, relative to the installation prefix. host/client/installation searches
 # these locations, and packaging/ installs the files there.
 include(GNUInstallDirs)
 foreach(kind BIN LIB DATA)

@@ -39,7 +39,7 @@ inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/
 foreach(target inkwell_command_headers inkwell_command_line inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
-inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/command_line fmt::fmt)
+inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/companion/command_line fmt::fmt)
 foreach(directory host boards)
   inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/${directory} CLI11::CLI11)
   inkwell_use_precompiled_headers(inkwell_host_headers ${PROJECT_SOURCE_DIR}/${directory} fmt::fmt)

@@ -1,7 +1,7 @@
 # Writes all targets with their folders and libraries to target-graph.txt in the build directory, one target per line.
 # The test of docs/architecture.md and tools/draw-architecture read this file. Format:
 #
-#     name|folder|library;library;...|folder of public headers;...
+#     name|folder|library;library;...|published header;...
 function(inkwell_target_lines directory result)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   get_property(subdirectories DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
@@ -12,18 +12,17 @@ function(inkwell_target_lines directory result)
     if(type STREQUAL "UTILITY")
       continue()
     endif()
-    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES INTERFACE_INCLUDE_DIRECTORIES)
+    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES HEADER_SET)
       get_target_property(${property} ${target} ${property})
       if(NOT ${property})
         set(${property} "")
       endif()
     endforeach()
-    string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>" "\\1" INTERFACE_INCLUDE_DIRECTORIES "${INTERFACE_INCLUDE_DIRECTORIES}")
     # The interface repeats the private libraries of a static library, only for the linker.
     list(APPEND LINK_LIBRARIES ${INTERFACE_LINK_LIBRARIES})
     list(FILTER LINK_LIBRARIES EXCLUDE REGEX "LINK_ONLY")
     list(REMOVE_DUPLICATES LINK_LIBRARIES)
-    string(APPEND lines "${target}|${folder}|${LINK_LIBRARIES}|${INTERFACE_INCLUDE_DIRECTORIES}\n")
+    string(APPEND lines "${target}|${folder}|${LINK_LIBRARIES}|${HEADER_SET}\n")
   endforeach()
   foreach(subdirectory IN LISTS subdirectories)
     inkwell_target_lines(${subdirectory} more)

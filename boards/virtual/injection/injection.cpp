@@ -1,4 +1,4 @@
-#include <injection/injection.hpp>
+#include "boards/virtual/injection/injection.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <chip/exception_numbers.hpp>
+#include "boards/stm32f405/core/exception_numbers.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

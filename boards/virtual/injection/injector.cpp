@@ -1,10 +1,10 @@
-#include <injection/injector.hpp>
+#include "boards/virtual/injection/injector.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
-#include <chip/memory_map.hpp>
+#include "boards/stm32f405/memory/memory_map.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

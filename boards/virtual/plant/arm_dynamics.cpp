@@ -1,4 +1,4 @@
-#include <plant/arm_dynamics.hpp>
+#include "boards/virtual/plant/arm_dynamics.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <plant/arm_motion.hpp>
+#include "boards/virtual/plant/arm_motion.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <plant/hand.hpp>
+#include "boards/virtual/plant/hand.hpp"
 
 #include <algorithm>
 #include <cmath>

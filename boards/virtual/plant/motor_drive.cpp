@@ -1,4 +1,4 @@
-#include <plant/motor_drive.hpp>
+#include "boards/virtual/plant/motor_drive.hpp"
 
 #include <cmath>
 #include <numbers>

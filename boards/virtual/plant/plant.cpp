@@ -1,4 +1,4 @@
-#include <plant/plant.hpp>
+#include "boards/virtual/plant/plant.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <plant/supply.hpp>
+#include "boards/virtual/plant/supply.hpp"
 
 #include <algorithm>
 #include <cmath>

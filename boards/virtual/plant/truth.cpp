@@ -1,4 +1,4 @@
-#include <plant/truth.hpp>
+#include "boards/virtual/plant/truth.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "board.hpp"
+#include "boards/virtual/program/board.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <debugger/fault_report.hpp>
+#include "boards/stm32f405/debugger/fault_report.hpp"
 
-#include "log.hpp"
+#include "boards/virtual/program/log.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -5,16 +5,16 @@
 #include <optional>
 #include <string>
 
-#include <chip/chip.hpp>
-#include <debugger/symbols.hpp>
-#include <debugger/waveform.hpp>
-#include <injection/injector.hpp>
-#include <plant/plant.hpp>
-#include <virtual_usb/virtual_usb.hpp>
+#include "boards/stm32f405/debugger/symbols.hpp"
+#include "boards/stm32f405/debugger/waveform.hpp"
+#include "boards/stm32f405/wiring/chip.hpp"
+#include "boards/virtual/injection/injector.hpp"
+#include "boards/virtual/plant/plant.hpp"
+#include "boards/virtual/usb/virtual_usb.hpp"
 
-#include "flash_file.hpp"
-#include "options.hpp"
-#include "profile.hpp"
+#include "boards/virtual/program/flash_file.hpp"
+#include "boards/virtual/program/options.hpp"
+#include "boards/virtual/program/profile.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,12 +1,12 @@
-#include "commands.hpp"
+#include "boards/virtual/program/commands.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <program/requests.hpp>
+#include "boards/virtual/program/requests.hpp"
 
-#include "injection_commands.hpp"
-#include "simulation.hpp"
-#include "truth_commands.hpp"
+#include "boards/virtual/program/injection_commands.hpp"
+#include "boards/virtual/program/simulation.hpp"
+#include "boards/virtual/program/truth_commands.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -1,4 +1,4 @@
-#include <program/control_server.hpp>
+#include "boards/virtual/program/control_server.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>

@@ -1,4 +1,4 @@
-#include "flash_file.hpp"
+#include "boards/virtual/program/flash_file.hpp"
 
 #include <cstring>
 #include <stdexcept>
@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include <chip/memory_map.hpp>
-#include <protocol/image_identity.hpp>
+#include "boards/stm32f405/memory/memory_map.hpp"
+#include "protocol/image_identity.hpp"
 
-#include "log.hpp"
+#include "boards/virtual/program/log.hpp"
 
 namespace inkwell::virtual_board {
 

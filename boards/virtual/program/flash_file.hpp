@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include <local/owned_file.hpp>
+#include "host/client/local/owned_file.hpp"
 
 namespace inkwell::virtual_board {
 

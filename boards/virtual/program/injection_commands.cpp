@@ -1,9 +1,9 @@
-#include "injection_commands.hpp"
+#include "boards/virtual/program/injection_commands.hpp"
 
 #include <string>
 
 #include <fmt/format.h>
-#include <program/requests.hpp>
+#include "boards/virtual/program/requests.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "simulation.hpp"
+#include "boards/virtual/program/simulation.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,10 +1,10 @@
-#include "log.hpp"
+#include "boards/virtual/program/log.hpp"
 
 #include <cstdio>
 
 #include <fmt/format.h>
 
-#include <protocol/plain_text.hpp>
+#include "protocol/plain_text.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <chip/interfaces.hpp>
+#include "boards/stm32f405/core/interfaces.hpp"
 
 namespace inkwell::virtual_board {
 

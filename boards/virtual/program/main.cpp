@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include <program/control_server.hpp>
-#include <program/stream_server.hpp>
+#include "boards/virtual/program/control_server.hpp"
+#include "boards/virtual/program/stream_server.hpp"
 
-#include "board.hpp"
-#include "log.hpp"
-#include "options.hpp"
-#include "simulation.hpp"
+#include "boards/virtual/program/board.hpp"
+#include "boards/virtual/program/log.hpp"
+#include "boards/virtual/program/options.hpp"
+#include "boards/virtual/program/simulation.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "options.hpp"
+#include "boards/virtual/program/options.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -7,12 +7,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include <debugger/symbols.hpp>
-#include <installation/places.hpp>
-#include <program/requests.hpp>
-#include <protocol/image_identity.hpp>
+#include "boards/stm32f405/debugger/symbols.hpp"
+#include "boards/virtual/program/requests.hpp"
+#include "host/client/installation/places.hpp"
+#include "protocol/image_identity.hpp"
 
-#include "log.hpp"
+#include "boards/virtual/program/log.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include <chip/chip.hpp>
-#include <debugger/waveform.hpp>
-#include <injection/injection.hpp>
-#include <known/boards.hpp>
+#include "boards/known/boards.hpp"
+#include "boards/stm32f405/debugger/waveform.hpp"
+#include "boards/stm32f405/wiring/chip.hpp"
+#include "boards/virtual/injection/injection.hpp"
 
-#include "port_option.hpp"
-#include "serial_number.hpp"
-#include "uart_links.hpp"
+#include "boards/virtual/program/port_option.hpp"
+#include "boards/virtual/program/serial_number.hpp"
+#include "boards/virtual/program/uart_links.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include "port_option.hpp"
+#include "boards/virtual/program/port_option.hpp"
 
 #include <charconv>
 #include <stdexcept>

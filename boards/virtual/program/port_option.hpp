@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include <local/private_folder.hpp>
-#include <local/socket_address.hpp>
+#include "host/client/local/private_folder.hpp"
+#include "host/client/local/socket_address.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include "profile.hpp"
+#include "boards/virtual/program/profile.hpp"
 
 #include <fstream>
 #include <stdexcept>

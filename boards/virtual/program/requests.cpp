@@ -1,10 +1,10 @@
-#include <program/requests.hpp>
+#include "boards/virtual/program/requests.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <plant/truth.hpp>
+#include "boards/virtual/plant/truth.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include "serial_number.hpp"
+#include "boards/virtual/program/serial_number.hpp"
 
 #include <unistd.h>
 

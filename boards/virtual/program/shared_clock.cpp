@@ -1,4 +1,4 @@
-#include <program/shared_clock.hpp>
+#include "boards/virtual/program/shared_clock.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>

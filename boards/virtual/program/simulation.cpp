@@ -1,4 +1,4 @@
-#include "simulation.hpp"
+#include "boards/virtual/program/simulation.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
-#include "log.hpp"
+#include "boards/virtual/program/commands.hpp"
+#include "boards/virtual/program/log.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

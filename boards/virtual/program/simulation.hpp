@@ -12,14 +12,14 @@
 #include <optional>
 #include <string>
 
-#include <debugger/gdb_session.hpp>
-#include <program/control_server.hpp>
-#include <program/shared_clock.hpp>
-#include <program/stream_server.hpp>
+#include "boards/stm32f405/debugger/gdb_session.hpp"
+#include "boards/virtual/program/control_server.hpp"
+#include "boards/virtual/program/shared_clock.hpp"
+#include "boards/virtual/program/stream_server.hpp"
 
-#include "board.hpp"
-#include "options.hpp"
-#include "uart_links.hpp"
+#include "boards/virtual/program/board.hpp"
+#include "boards/virtual/program/options.hpp"
+#include "boards/virtual/program/uart_links.hpp"
 
 namespace inkwell::virtual_board {
 

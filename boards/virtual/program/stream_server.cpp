@@ -1,4 +1,4 @@
-#include <program/stream_server.hpp>
+#include "boards/virtual/program/stream_server.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>

@@ -1,4 +1,4 @@
-#include "terminal_stream.hpp"
+#include "boards/virtual/program/terminal_stream.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

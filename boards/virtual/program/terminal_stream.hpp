@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include <program/byte_stream.hpp>
+#include "boards/virtual/program/byte_stream.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,12 +1,12 @@
-#include "truth_commands.hpp"
+#include "boards/virtual/program/truth_commands.hpp"
 
 #include <string>
 #include <utility>
 
-#include <program/requests.hpp>
-#include <protocol/simulation.hpp>
+#include "boards/virtual/program/requests.hpp"
+#include "protocol/simulation.hpp"
 
-#include "injection_commands.hpp"
+#include "boards/virtual/program/injection_commands.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "simulation.hpp"
+#include "boards/virtual/program/simulation.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include "uart_links.hpp"
+#include "boards/virtual/program/uart_links.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <program/stream_server.hpp>
+#include "boards/virtual/program/stream_server.hpp"
 
-#include "terminal_stream.hpp"
+#include "boards/virtual/program/terminal_stream.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <chip/chip.hpp>
+#include "boards/stm32f405/wiring/chip.hpp"
 
-#include <program/byte_stream.hpp>
+#include "boards/virtual/program/byte_stream.hpp"
 
-#include "port_option.hpp"
+#include "boards/virtual/program/port_option.hpp"
 
 namespace inkwell::virtual_board {
 

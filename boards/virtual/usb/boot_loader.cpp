@@ -1,5 +1,5 @@
 // Endpoint 0 of the boot loader: descriptors (AN2606, STM32F405), standard requests and transfer stages.
-#include <virtual_usb/boot_loader.hpp>
+#include "boards/virtual/usb/boot_loader.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <utility>
 
-#include <virtual_usb/boot_loader.hpp>
+#include "boards/virtual/usb/boot_loader.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -1,4 +1,4 @@
-#include <virtual_usb/client_name.hpp>
+#include "boards/virtual/usb/client_name.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <system_error>
 
-#include <local/process_name.hpp>
+#include "host/client/local/process_name.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include <virtual_usb/descriptors.hpp>
+#include "boards/virtual/usb/descriptors.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
-#include <virtual_usb/host_controller.hpp>
+#include "boards/virtual/usb/host_controller.hpp"
 
 #include <algorithm>
 
-#include <virtual_usb/bit_stuffing.hpp>
+#include "boards/stm32f405/otg_fs/bit_stuffing.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,4 +1,4 @@
-#include <virtual_usb/host_pace.hpp>
+#include "boards/virtual/usb/host_pace.hpp"
 
 #include <algorithm>
 

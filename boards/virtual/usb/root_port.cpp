@@ -1,4 +1,4 @@
-#include <virtual_usb/root_port.hpp>
+#include "boards/virtual/usb/root_port.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "shared_port.hpp"
+#include "boards/virtual/usb/shared_port.hpp"
 
 #include <algorithm>
 #include <utility>

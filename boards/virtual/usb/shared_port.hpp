@@ -20,7 +20,7 @@
 #include <optional>
 #include <vector>
 
-#include <virtual_usb/root_port.hpp>
+#include "boards/virtual/usb/root_port.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include <virtual_usb/urb.hpp>
+#include "boards/virtual/usb/urb.hpp"
 
 namespace inkwell::virtual_board {
 

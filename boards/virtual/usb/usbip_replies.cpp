@@ -1,6 +1,6 @@
-#include "usbip_replies.hpp"
+#include "boards/virtual/usb/usbip_replies.hpp"
 
-#include <virtual_usb/usbip_requests.hpp>
+#include "boards/virtual/usb/usbip_requests.hpp"
 
 namespace inkwell::virtual_board {
 

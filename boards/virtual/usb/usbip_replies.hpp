@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <usbip/messages.hpp>
-#include <virtual_usb/descriptors.hpp>
-#include <virtual_usb/urb.hpp>
+#include "boards/virtual/usb/descriptors.hpp"
+#include "boards/virtual/usb/urb.hpp"
+#include "protocol/usbip/messages.hpp"
 
 namespace inkwell::virtual_board {
 

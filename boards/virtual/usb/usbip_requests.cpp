@@ -1,4 +1,4 @@
-#include <virtual_usb/usbip_requests.hpp>
+#include "boards/virtual/usb/usbip_requests.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "usbip_server.hpp"
+#include "boards/virtual/usb/usbip_server.hpp"
 
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -18,7 +18,7 @@
 #include <string>
 #include <utility>
 
-#include "usbip_replies.hpp"
+#include "boards/virtual/usb/usbip_replies.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -16,14 +16,14 @@
 #include <thread>
 #include <vector>
 
-#include <local/descriptor.hpp>
-#include <local/listener.hpp>
-#include <virtual_usb/client_name.hpp>
-#include <virtual_usb/descriptors.hpp>
-#include <virtual_usb/urb.hpp>
-#include <virtual_usb/usbip_requests.hpp>
+#include "boards/virtual/usb/client_name.hpp"
+#include "boards/virtual/usb/descriptors.hpp"
+#include "boards/virtual/usb/urb.hpp"
+#include "boards/virtual/usb/usbip_requests.hpp"
+#include "host/client/local/descriptor.hpp"
+#include "host/client/local/listener.hpp"
 
-#include "usbip_import.hpp"
+#include "boards/virtual/usb/usbip_import.hpp"
 
 namespace inkwell::virtual_board {
 

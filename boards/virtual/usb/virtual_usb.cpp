@@ -1,4 +1,4 @@
-#include <virtual_usb/virtual_usb.hpp>
+#include "boards/virtual/usb/virtual_usb.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include <virtual_usb/client_name.hpp>
-#include <virtual_usb/host_pace.hpp>
+#include "boards/virtual/usb/client_name.hpp"
+#include "boards/virtual/usb/host_pace.hpp"
 
-#include "shared_port.hpp"
-#include "usbip_server.hpp"
+#include "boards/virtual/usb/shared_port.hpp"
+#include "boards/virtual/usb/usbip_server.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 
 #include <board/board.hpp>
-#include <drivers/interrupts.hpp>
-#include <drivers/otg_fs.hpp>
-#include <drivers/pins.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/drivers/otg_fs/otg_fs.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::drivers {
 

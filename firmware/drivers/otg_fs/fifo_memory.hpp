@@ -17,7 +17,7 @@
 
 #include <cstdint>
 
-#include <usb/port.hpp>
+#include "firmware/usb/port.hpp"
 
 namespace inkwell::drivers::fifo_memory {
 

@@ -1,10 +1,10 @@
-#include <drivers/frame_clock.hpp>
+#include "firmware/drivers/otg_fs/frame_clock.hpp"
 
 #include <board/board.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/registers/peripherals.hpp"
 
-#include "core.hpp"
+#include "firmware/drivers/otg_fs/core.hpp"
 
 namespace inkwell::drivers {
 

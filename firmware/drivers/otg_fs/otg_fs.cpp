@@ -1,14 +1,14 @@
 // Events and transfers of the OTG_FS core (RM0090, "Device programming model").
-#include <drivers/otg_fs.hpp>
+#include "firmware/drivers/otg_fs/otg_fs.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include <drivers/cycle_counter.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/registers/peripherals.hpp"
 
-#include "core.hpp"
-#include "fifo_memory.hpp"
+#include "firmware/drivers/otg_fs/core.hpp"
+#include "firmware/drivers/otg_fs/fifo_memory.hpp"
 
 namespace inkwell::drivers {
 

@@ -1,13 +1,13 @@
 // Start-up of the core and the FIFO memory (RM0090, "OTG_FS programming model": core and device initialization).
 #include <board/board.hpp>
-#include <drivers/cycle_counter.hpp>
-#include <drivers/otg_fs.hpp>
-#include <drivers/peripheral_clocks.hpp>
-#include <drivers/pins.hpp>
-#include <registers/peripherals.hpp>
+#include "firmware/drivers/cycle_counter.hpp"
+#include "firmware/drivers/otg_fs/otg_fs.hpp"
+#include "firmware/drivers/peripheral_clocks.hpp"
+#include "firmware/drivers/pins.hpp"
+#include "firmware/registers/peripherals.hpp"
 
-#include "core.hpp"
-#include "fifo_memory.hpp"
+#include "firmware/drivers/otg_fs/core.hpp"
+#include "firmware/drivers/otg_fs/fifo_memory.hpp"
 
 namespace inkwell::drivers {
 

@@ -1,11 +1,11 @@
-#include <arms/description.hpp>
+#include "boards/arms/description.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
-#include <failure.hpp>
+#include "tests/failure.hpp"
 
 namespace {
 

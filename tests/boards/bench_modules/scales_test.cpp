@@ -1,9 +1,9 @@
 // Checks the board's scale factors against values that are derived separately from the components and wiring in
 // README.md.
-#include <bench_modules/facts.hpp>
+#include "boards/bench_modules/facts.hpp"
 
 #include <doctest/doctest.h>
-#include <boards/virtual/plant/driven_plant.hpp>
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 namespace {
 

@@ -1,12 +1,12 @@
 // Checks the board's scale factors against values that are derived separately from the components and wiring in
 // README.md. Firmware and simulation use the same board facts, so a comparison between firmware and simulation would
 // not reveal a wrong fact.
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
 #include <numbers>
 
 #include <doctest/doctest.h>
-#include <boards/virtual/plant/driven_plant.hpp>
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "../hdapi.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <thread>
 
-#include "../hdapi.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string>
 
-#include "../hdapi.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 extern "C" {
 int hdPhantomGetNumDevices(void);

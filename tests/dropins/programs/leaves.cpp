@@ -7,7 +7,7 @@
 #include <cstring>
 #include <thread>
 
-#include "../hdapi.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 using namespace std::chrono_literals;
 

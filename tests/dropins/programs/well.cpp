@@ -1,7 +1,7 @@
 // A typical HDAPI program: a spring of 100 N/m to the middle of the box. HDAPI uses millimeters.
 #include <cstdio>
 
-#include "../hdapi.hpp"
+#include "tests/dropins/hdapi.hpp"
 
 namespace {
 

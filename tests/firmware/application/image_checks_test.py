@@ -7,13 +7,13 @@ import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
-PLACEMENT = REPOSITORY / "firmware/placement/include"
+PLACEMENT = REPOSITORY
 LINKER_SCRIPT = REPOSITORY / "boards/facts/stm32f405.ld"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
 # The minimum program that the tools accept as a firmware. `work` is the code under test.
 FRAME = """
-#include <placement/interrupt.hpp>
+#include "firmware/placement/interrupt.hpp"
 extern "C" {
 volatile float value = 1.0f;
 volatile int sink;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <arm_files.hpp>
-#include <control/settings.hpp>
-#include <protocol/parameters.hpp>
+#include "firmware/control/settings.hpp"
+#include "protocol/parameters.hpp"
 
 namespace inkwell::tests {
 

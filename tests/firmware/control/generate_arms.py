@@ -16,7 +16,7 @@ def main() -> None:
         "",
         "#include <span>",
         "",
-        "#include <protocol/parameters.hpp>",
+        "#include \"protocol/parameters.hpp\"",
         "",
         "namespace inkwell::tests {",
         "",

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "arms.hpp"
-#include "simulated_arm.hpp"
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

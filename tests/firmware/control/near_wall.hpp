@@ -1,8 +1,8 @@
 // An arm and a host that sends signs of life. The inkwell is near a wall.
 #pragma once
 
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace inkwell::tests {
 

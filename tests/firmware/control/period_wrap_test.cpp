@@ -1,7 +1,7 @@
 // The count of control periods wraps after 59 hours without an effect on the signal path.
 #include <doctest/doctest.h>
 
-#include <firmware/control/near_wall.hpp>
+#include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // Allowed currents during the pulses of the self-test.
 #include <doctest/doctest.h>
 
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <control/controller.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "firmware/control/controller.hpp"
 
 namespace inkwell::tests {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include <control/vector.hpp>
-#include <omni_driver/facts.hpp>
-#include <protocol/reports.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "firmware/control/signal_path/vector.hpp"
+#include "protocol/reports.hpp"
 
 namespace inkwell::tests {
 

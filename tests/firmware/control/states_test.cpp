@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "arms.hpp"
-#include "simulated_arm.hpp"
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

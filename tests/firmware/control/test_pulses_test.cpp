@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

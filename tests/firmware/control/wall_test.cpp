@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+#include "tests/firmware/control/arms.hpp"
+#include "tests/firmware/control/simulated_arm.hpp"
 
 namespace {
 

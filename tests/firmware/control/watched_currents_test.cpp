@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <firmware/control/near_wall.hpp>
+#include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 

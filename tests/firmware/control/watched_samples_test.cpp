@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <firmware/control/near_wall.hpp>
+#include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 

@@ -16,9 +16,9 @@ COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-mcpu=cortex-m4", "-mthumb", "-m
 
 # Headers of the firmware, and a driver that uses their peripherals.
 HEADERS = """
-#include <parts.hpp>
-#include <drivers/interrupts.hpp>
-#include <drivers/peripheral_clocks.hpp>
+#include "firmware/application/parts.hpp"
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/drivers/peripheral_clocks.hpp"
 """
 FRAME = """
 using namespace inkwell;

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include <force_laws/detent_dial.hpp>
-#include <force_laws/magnet.hpp>
-#include <force_laws/virtual_mass.hpp>
-#include <force_laws/viscous_sphere.hpp>
+#include "firmware/force_laws/detent_dial.hpp"
+#include "firmware/force_laws/magnet.hpp"
+#include "firmware/force_laws/virtual_mass.hpp"
+#include "firmware/force_laws/viscous_sphere.hpp"
 
 namespace {
 

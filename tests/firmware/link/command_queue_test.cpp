@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include <link/command_queue.hpp>
+#include "firmware/link/command_queue.hpp"
 
 namespace inkwell {
 

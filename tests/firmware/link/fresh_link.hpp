@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <new>
 
-#include <link/link.hpp>
+#include "firmware/link/link.hpp"
 
 namespace inkwell::test {
 

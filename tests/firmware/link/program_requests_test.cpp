@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <link/program_requests.hpp>
+#include "firmware/link/program_requests.hpp"
 
 namespace {
 

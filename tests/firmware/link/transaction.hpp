@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <span>
 
-#include <protocol/reports.hpp>
+#include "protocol/reports.hpp"
 
 namespace inkwell::test {
 

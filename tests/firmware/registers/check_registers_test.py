@@ -11,7 +11,7 @@ import unittest
 TOOL = pathlib.Path(__file__).resolve().parents[3] / "tools/check_registers.py"
 
 SOURCE = """
-#include <registers/register.hpp>
+#include "firmware/registers/register.hpp"
 namespace inkwell::registers {
 template <std::uint32_t base>
 struct Lamp {

@@ -1,9 +1,9 @@
 // print-chip-registers: all registers and fields of the emulated chip as JSON.
-#include <chip/chip.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <virtual_usb/otg_fs_device.hpp>
+#include "boards/stm32f405/otg_fs/otg_fs_device.hpp"
+#include "boards/stm32f405/wiring/chip.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Instantiates all register maps of the firmware, so that the debug information contains them under their class names.
-#include <registers/peripherals.hpp>
+#include "firmware/registers/peripherals.hpp"
 
 namespace inkwell::registers {
 

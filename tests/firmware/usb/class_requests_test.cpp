@@ -6,10 +6,10 @@
 #include <limits>
 #include <span>
 
-#include <control/installed_force_law.hpp>
+#include "firmware/control/signal_path/installed_force_law.hpp"
 
-#include "../link/transaction.hpp"
-#include "device_bench.hpp"
+#include "tests/firmware/link/transaction.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 
@@ -159,7 +159,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.parameter_table_hash == protocol::parameter_table_hash);
   CHECK(report.signal_table_hash == protocol::signal_table_hash);
 
-  // tests/host/device/force_law_test.cpp checks the content after the header.
+  // tests/host/client/device/force_law_test.cpp checks the content after the header.
   const auto law = bench.get_report(3, static_cast<std::uint8_t>(protocol::ReportId::force_law), 2048).data;
   const auto& installed = control::installed_force_law;
   REQUIRE(law.size() == 2048);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "usb/controller_report.hpp"
+#include "firmware/usb/controller_report.hpp"
 
 namespace {
 

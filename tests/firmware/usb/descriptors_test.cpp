@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include <protocol/report_table.hpp>
+#include "protocol/report_table.hpp"
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

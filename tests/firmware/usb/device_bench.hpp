@@ -4,11 +4,11 @@
 #include <cstring>
 #include <initializer_list>
 
-#include <protocol/driver.hpp>
-#include <usb/device.hpp>
+#include "firmware/usb/device.hpp"
+#include "protocol/driver.hpp"
 
-#include "../link/fresh_link.hpp"
-#include "fake_port.hpp"
+#include "tests/firmware/link/fresh_link.hpp"
+#include "tests/firmware/usb/fake_port.hpp"
 
 namespace inkwell::test {
 

@@ -1,7 +1,7 @@
 // The USB device decides which program is the driver.
 #include <doctest/doctest.h>
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell::test {
 namespace {

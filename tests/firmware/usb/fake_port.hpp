@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <usb/port.hpp>
+#include "firmware/usb/port.hpp"
 
 namespace inkwell::test {
 

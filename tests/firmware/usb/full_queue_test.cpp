@@ -1,7 +1,7 @@
 // A host that sends commands faster than the control interrupt carries them out.
 #include <doctest/doctest.h>
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell::test {
 

@@ -1,8 +1,8 @@
 // Hosts that abort transfers, request or send wrong lengths, or disappear.
 #include <doctest/doctest.h>
 
-#include "../link/transaction.hpp"
-#include "device_bench.hpp"
+#include "tests/firmware/link/transaction.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <utility>
 
-#include <control/installed_force_law.hpp>
-#include <protocol/report_table.hpp>
+#include "firmware/control/signal_path/installed_force_law.hpp"
+#include "protocol/report_table.hpp"
 
-#include "../link/transaction.hpp"
-#include "device_bench.hpp"
+#include "tests/firmware/link/transaction.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

@@ -1,7 +1,7 @@
 // Poses and controller reports. Each bus frame has one new pose, as recent as possible.
 #include <doctest/doctest.h>
 
-#include "host_reads.hpp"
+#include "tests/firmware/usb/host_reads.hpp"
 
 namespace inkwell {
 

@@ -1,7 +1,7 @@
 // Standard requests of USB 2.0, chapter 9.
 #include <doctest/doctest.h>
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

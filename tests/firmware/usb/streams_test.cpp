@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "host_reads.hpp"
+#include "tests/firmware/usb/host_reads.hpp"
 
 namespace inkwell {
 

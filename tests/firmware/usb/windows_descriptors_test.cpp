@@ -8,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include <protocol/usb_identity.hpp>
+#include "protocol/usb_identity.hpp"
 
-#include "device_bench.hpp"
+#include "tests/firmware/usb/device_bench.hpp"
 
 namespace inkwell {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include <device/address.hpp>
-#include <device_desk/device_desk.hpp>
+#include "host/client/device/address.hpp"
+#include "host/companion/window/device_desk/device_desk.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include <usbip/messages.hpp>
+#include "protocol/usbip/messages.hpp"
 
 namespace inkwell {
 namespace {

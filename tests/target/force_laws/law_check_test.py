@@ -23,8 +23,8 @@ def compile_law(law: str, name: str = "well") -> subprocess.CompletedProcess:
         file.write_text(law)
         return subprocess.run(
             ["arm-none-eabi-g++", *FLAGS, f'-DINKWELL_FORCE_LAW_FILE="{file}"', f"-DINKWELL_FORCE_LAW={name}",
-             f"-I{REPOSITORY}/firmware/control/include", f"-I{REPOSITORY}/protocol/include", f"-I{GENERATED}",
-             REPOSITORY / "firmware/control/installed_force_law.cpp"],
+             f"-I{REPOSITORY}", f"-I{REPOSITORY}/firmware/force_laws/include", f"-I{GENERATED}",
+             REPOSITORY / "firmware/control/signal_path/installed_force_law.cpp"],
             capture_output=True, text=True, check=False)
 
 

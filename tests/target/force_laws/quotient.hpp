@@ -1,7 +1,7 @@
 // A force law that divides by a parameter, to test a division by zero. The signals of the law show some of its inputs.
 #pragma once
 
-#include <control/force_law.hpp>
+#include "firmware/control/signal_path/force_law.hpp"
 
 namespace inkwell::force_laws {
 

@@ -1,5 +1,5 @@
-#include <injection/injection.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/virtual/injection/injection.hpp"
+#include "boards/omni_driver/facts.hpp"
 
 #include <string>
 

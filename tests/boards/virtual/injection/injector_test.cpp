@@ -1,5 +1,5 @@
 // Injects each fault of the table by name and checks the effect and the removal of the fault.
-#include <injection/injector.hpp>
+#include "boards/virtual/injection/injector.hpp"
 
 #include <cmath>
 #include <optional>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "../plant/arms.hpp"
+#include "tests/boards/virtual/plant/arms.hpp"
 
 using namespace inkwell;
 using namespace inkwell::virtual_board;

@@ -1,4 +1,4 @@
-#include <plant/arm_dynamics.hpp>
+#include "boards/virtual/plant/arm_dynamics.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "arms.hpp"
+#include "tests/boards/virtual/plant/arms.hpp"
 
 namespace {
 

@@ -1,11 +1,11 @@
-#include <plant/arm_motion.hpp>
+#include "boards/virtual/plant/arm_motion.hpp"
 
 #include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include "arms.hpp"
+#include "tests/boards/virtual/plant/arms.hpp"
 
 namespace {
 

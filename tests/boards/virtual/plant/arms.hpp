@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include <arms/description.hpp>
-#include <omni_driver/facts.hpp>
-#include <plant/imperfections.hpp>
+#include "boards/arms/description.hpp"
+#include "boards/omni_driver/facts.hpp"
+#include "boards/virtual/plant/imperfections.hpp"
 
 namespace inkwell::test {
 

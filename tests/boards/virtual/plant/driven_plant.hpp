@@ -6,10 +6,10 @@
 #include <map>
 #include <utility>
 
-#include <omni_driver/facts.hpp>
-#include <plant/plant.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "boards/virtual/plant/plant.hpp"
 
-#include "arms.hpp"
+#include "tests/boards/virtual/plant/arms.hpp"
 
 namespace inkwell::test {
 

@@ -1,13 +1,13 @@
-#include <plant/hand.hpp>
+#include "boards/virtual/plant/hand.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "driven_plant.hpp"
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 using namespace inkwell;
 using namespace inkwell::test;

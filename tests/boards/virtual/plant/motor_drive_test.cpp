@@ -1,11 +1,11 @@
-#include <plant/motor_drive.hpp>
+#include "boards/virtual/plant/motor_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 #include <arm/defaults.hpp>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
 namespace {
 

@@ -1,11 +1,11 @@
-#include <plant/plant.hpp>
+#include "boards/virtual/plant/plant.hpp"
 
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "driven_plant.hpp"
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 using namespace inkwell;
 using namespace inkwell::test;

@@ -1,13 +1,13 @@
 // Faults of encoders, shunts, motors, bridges and supply, by index.
-#include <plant/plant.hpp>
+#include "boards/virtual/plant/plant.hpp"
 
 #include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "driven_plant.hpp"
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 using namespace inkwell;
 using namespace inkwell::test;

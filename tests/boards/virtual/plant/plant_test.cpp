@@ -1,4 +1,4 @@
-#include <plant/plant.hpp>
+#include "boards/virtual/plant/plant.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <doctest/doctest.h>
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "driven_plant.hpp"
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 using namespace inkwell;
 using namespace inkwell::test;

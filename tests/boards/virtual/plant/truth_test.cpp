@@ -1,8 +1,8 @@
-#include <plant/truth.hpp>
+#include "boards/virtual/plant/truth.hpp"
 
 #include <doctest/doctest.h>
 
-#include "driven_plant.hpp"
+#include "tests/boards/virtual/plant/driven_plant.hpp"
 
 using namespace inkwell::test;
 

@@ -1,4 +1,4 @@
-#include <plant/wires.hpp>
+#include "boards/virtual/plant/wires.hpp"
 
 #include <cmath>
 #include <map>

@@ -13,9 +13,9 @@
 #include <string>
 #include <thread>
 
-#include <plain_client.hpp>
-#include <program/control_server.hpp>
-#include <temporary_directory.hpp>
+#include "boards/virtual/program/control_server.hpp"
+#include "tests/plain_client.hpp"
+#include "tests/temporary_directory.hpp"
 
 using namespace inkwell;
 using namespace inkwell::virtual_board;

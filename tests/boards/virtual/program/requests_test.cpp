@@ -1,11 +1,11 @@
 // Requests of the control socket and their validation, without a board.
-#include <program/requests.hpp>
+#include "boards/virtual/program/requests.hpp"
 
 #include <string>
 
 #include <doctest/doctest.h>
-#include <failure.hpp>
-#include <plant/truth.hpp>
+#include "boards/virtual/plant/truth.hpp"
+#include "tests/failure.hpp"
 
 using namespace inkwell::virtual_board;
 using inkwell::tests::contains;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include <program/shared_clock.hpp>
-#include <temporary_directory.hpp>
+#include "boards/virtual/program/shared_clock.hpp"
+#include "tests/temporary_directory.hpp"
 
 namespace inkwell::tests {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include <plain_client.hpp>
-#include <program/stream_server.hpp>
+#include "boards/virtual/program/stream_server.hpp"
+#include "tests/plain_client.hpp"
 
 using namespace inkwell;
 using namespace inkwell::virtual_board;

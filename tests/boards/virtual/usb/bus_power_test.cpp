@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

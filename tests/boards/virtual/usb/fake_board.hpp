@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <chip/violations.hpp>
+#include "boards/stm32f405/core/rules.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -1,4 +1,4 @@
-#include "fake_firmware.hpp"
+#include "tests/boards/virtual/usb/fake_firmware.hpp"
 
 #include <algorithm>
 #include <array>

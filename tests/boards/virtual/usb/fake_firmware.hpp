@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include <virtual_usb/otg_fs_device.hpp>
+#include "boards/stm32f405/otg_fs/otg_fs_device.hpp"
 
-#include "fake_board.hpp"
+#include "tests/boards/virtual/usb/fake_board.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -1,12 +1,12 @@
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 #include <array>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
-#include <omni_driver/facts.hpp>
-#include <protocol/scope.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "protocol/scope.hpp"
 
 namespace inkwell::virtual_usb_test {
 

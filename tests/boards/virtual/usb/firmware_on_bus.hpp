@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include <chip/chip.hpp>
-#include <protocol/reports.hpp>
-#include <virtual_usb/connector.hpp>
-#include <virtual_usb/root_port.hpp>
+#include "boards/stm32f405/wiring/chip.hpp"
+#include "boards/virtual/usb/connector.hpp"
+#include "boards/virtual/usb/root_port.hpp"
+#include "protocol/reports.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <chip/debug_port.hpp>
-#include <chip/memory_map.hpp>
-#include <protocol/black_box.hpp>
+#include "boards/stm32f405/core/debug_port.hpp"
+#include "boards/stm32f405/memory/memory_map.hpp"
+#include "protocol/black_box.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "force_timing.hpp"
+#include "tests/boards/virtual/usb/force_timing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include <protocol/driver.hpp>
-#include <protocol/scope.hpp>
+#include "protocol/driver.hpp"
+#include "protocol/scope.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <numeric>
 
-#include <protocol/reports.hpp>
+#include "protocol/reports.hpp"
 
-#include "firmware_on_bus.hpp"
-#include "force_timing.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/force_timing.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include <protocol/scope.hpp>
+#include "protocol/scope.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <vector>
 
-#include <protocol/scope.hpp>
+#include "protocol/scope.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 

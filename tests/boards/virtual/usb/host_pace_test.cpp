@@ -1,7 +1,7 @@
 // Conditions under which board time waits for the host.
 #include <doctest/doctest.h>
 
-#include <virtual_usb/host_pace.hpp>
+#include "boards/virtual/usb/host_pace.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

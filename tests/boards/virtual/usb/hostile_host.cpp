@@ -1,4 +1,4 @@
-#include "hostile_host.hpp"
+#include "tests/boards/virtual/usb/hostile_host.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

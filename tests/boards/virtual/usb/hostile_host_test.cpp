@@ -2,8 +2,8 @@
 // cases.
 #include <doctest/doctest.h>
 
-#include "firmware_on_bus.hpp"
-#include "hostile_host.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/hostile_host.hpp"
 
 namespace inkwell::virtual_usb_test {
 

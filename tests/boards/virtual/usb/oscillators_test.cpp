@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <omni_driver/facts.hpp>
-#include <protocol/self_test.hpp>
+#include "boards/omni_driver/facts.hpp"
+#include "protocol/self_test.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "fake_board.hpp"
-#include "fake_firmware.hpp"
+#include "tests/boards/virtual/usb/fake_board.hpp"
+#include "tests/boards/virtual/usb/fake_firmware.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "pose_timing.hpp"
+#include "tests/boards/virtual/usb/pose_timing.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstring>
 #include <optional>
 
-#include <omni_driver/facts.hpp>
+#include "boards/omni_driver/facts.hpp"
 
-#include "firmware_on_bus.hpp"
-#include "pose_timing.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/pose_timing.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include <protocol/reports.hpp>
+#include "protocol/reports.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

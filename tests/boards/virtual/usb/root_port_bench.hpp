@@ -5,10 +5,10 @@
 
 #include <map>
 
-#include <virtual_usb/root_port.hpp>
+#include "boards/virtual/usb/root_port.hpp"
 
-#include "fake_board.hpp"
-#include "fake_firmware.hpp"
+#include "tests/boards/virtual/usb/fake_board.hpp"
+#include "tests/boards/virtual/usb/fake_firmware.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include <virtual_usb/bit_stuffing.hpp>
-#include "root_port_bench.hpp"
+#include "boards/stm32f405/otg_fs/bit_stuffing.hpp"
+#include "tests/boards/virtual/usb/root_port_bench.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

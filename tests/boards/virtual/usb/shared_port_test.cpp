@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "usbip_client.hpp"
+#include "tests/boards/virtual/usb/usbip_client.hpp"
 
 namespace inkwell::virtual_usb_test {
 

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include <chip/memory_map.hpp>
-#include <link/flash_log.hpp>
-#include <protocol/store.hpp>
+#include "boards/stm32f405/memory/memory_map.hpp"
+#include "firmware/store/flash_log.hpp"
+#include "protocol/store.hpp"
 
-#include "firmware_on_bus.hpp"
+#include "tests/boards/virtual/usb/firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

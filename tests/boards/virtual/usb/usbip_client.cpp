@@ -1,4 +1,4 @@
-#include "usbip_client.hpp"
+#include "tests/boards/virtual/usb/usbip_client.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -9,11 +9,11 @@
 #include <thread>
 #include <vector>
 
-#include <usbip/messages.hpp>
-#include <virtual_usb/virtual_usb.hpp>
+#include "boards/virtual/usb/virtual_usb.hpp"
+#include "protocol/usbip/messages.hpp"
 
-#include "fake_board.hpp"
-#include "fake_firmware.hpp"
+#include "tests/boards/virtual/usb/fake_board.hpp"
+#include "tests/boards/virtual/usb/fake_firmware.hpp"
 
 namespace inkwell::virtual_usb_test {
 

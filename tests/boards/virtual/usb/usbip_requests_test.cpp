@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include <usbip_bytes.hpp>
-#include <virtual_usb/usbip_requests.hpp>
+#include "boards/virtual/usb/usbip_requests.hpp"
+#include "tests/usbip_bytes.hpp"
 
 using namespace inkwell;
 using namespace inkwell::virtual_board;

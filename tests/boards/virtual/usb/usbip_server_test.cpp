@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include <failure.hpp>
-#include <plain_client.hpp>
-#include <temporary_directory.hpp>
-#include <virtual_usb/client_name.hpp>
+#include "boards/virtual/usb/client_name.hpp"
+#include "tests/failure.hpp"
+#include "tests/plain_client.hpp"
+#include "tests/temporary_directory.hpp"
 
-#include "usbip_client.hpp"
+#include "tests/boards/virtual/usb/usbip_client.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {

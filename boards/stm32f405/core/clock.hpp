@@ -1,0 +1,45 @@
+// Exact conversion between clock cycles and ticks of board time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include "boards/stm32f405/core/interfaces.hpp"
+
+namespace inkwell::virtual_board {
+
+inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
+
+/// The period of a clock is numerator / denominator ticks. For most clocks of the chip the denominator is 1, because
+/// the frequency divides ticks_per_s.
+struct Clock {
+  /// A crystal with a frequency deviation leads to a large numerator and denominator.
+  __extension__ using Wide = unsigned __int128;
+
+  std::uint64_t numerator = 0;  ///< 0: the clock is stopped
+  std::uint64_t denominator = 1;
+
+  static Clock of(std::uint32_t frequency_Hz) {
+    if (frequency_Hz == 0) return {};
+    const std::uint64_t common = std::gcd(ticks_per_s, static_cast<std::uint64_t>(frequency_Hz));
+    return {ticks_per_s / common, frequency_Hz / common};
+  }
+  bool runs() const { return numerator != 0; }
+  bool operator==(const Clock&) const = default;
+
+  /// Duration of `cycles` clock cycles.
+  Ticks duration(std::uint64_t cycles) const {
+    if (denominator == 1) return cycles * numerator;
+    return static_cast<Ticks>((Wide{cycles} * numerator + denominator - 1) / denominator);
+  }
+  /// Number of whole cycles within `time`.
+  std::uint64_t cycles_in(Ticks time) const {
+    if (!runs()) return 0;
+    if (denominator == 1) return time / numerator;
+    return static_cast<std::uint64_t>(Wide{time} * denominator / numerator);
+  }
+  /// Number of whole `divider`-cycle periods within `time`.
+  std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,40 @@
+// Fast stores to RAM.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+
+#include "boards/stm32f405/core/engine_calls.hpp"
+#include "boards/stm32f405/memory/memory.hpp"
+
+namespace inkwell::virtual_board {
+
+/// Unicorn 2.0.1 treats every store to RAM as a possible change of instructions and searches for translated code. The
+/// search makes stores tens of times slower than loads. Only pages with executed instructions need the search. In the
+/// address cache of Unicorn, this class marks pages without executed instructions as plain.
+class PlainStores {
+ public:
+  /// Marks pages with instructions, so that the engine checks stores to these pages.
+  void code_runs_at(std::uint32_t address, std::uint32_t bytes, EngineCalls& engine) {
+    const std::uint32_t end = address + bytes;
+    for (std::uint32_t page = address - address % page_bytes; page < end; page += page_bytes) {
+      const std::uint32_t offset = page - sram_base;
+      if (offset >= sram_bytes || holds_code_[offset / page_bytes]) continue;
+      holds_code_.set(offset / page_bytes);
+      for (std::uint32_t part = 0; part < page_bytes; part += smallest_page_bytes) engine.forget_page(page + part);
+    }
+  }
+  /// True if `address` is in a RAM page without executed instructions.
+  bool plain(std::uint32_t address) const {
+    if (address - ccm_base < ccm_bytes) return true;  // CCM is not on the instruction bus
+    const std::uint32_t offset = address - sram_base;
+    return offset < sram_bytes && !holds_code_[offset / page_bytes];
+  }
+
+ private:
+  /// The engine uses ARM pages of 1 or 4 kB.
+  static constexpr std::uint32_t smallest_page_bytes = 1024, page_bytes = 4096;
+  std::bitset<sram_bytes / page_bytes> holds_code_;
+};
+
+}  // namespace inkwell::virtual_board

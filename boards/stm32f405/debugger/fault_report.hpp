@@ -1,0 +1,25 @@
+// Report of a lock-up: the first fault with registers, function and call stack.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+#include "boards/stm32f405/wiring/chip.hpp"
+
+#include "boards/stm32f405/debugger/symbols.hpp"
+
+namespace inkwell::virtual_board {
+
+/// Reads a word of memory without side effects.
+using MemoryReader = std::function<std::uint32_t(std::uint32_t address)>;
+
+/// Returns up to `limit` probable callers of the code at `registers`, innermost first. Candidates are LR and all stack
+/// words with the address after a call instruction. Old return addresses on the stack can lead to wrong results.
+std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const MemoryReader& word, std::size_t limit);
+
+/// Returns text lines that describe the first fault of a lock-up. `elf` is part of the suggested addr2line command.
+std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf);
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,89 @@
+// Adaptive real-time (ART) accelerator between the core and the flash (RM0090, "Adaptive real-time memory
+// accelerator").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+#include "boards/stm32f405/timing/costs.hpp"
+
+namespace inkwell::virtual_board {
+
+/// Cache of 128-bit lines. A new line replaces the least recently used line. The associativity is not documented; the
+/// model is fully associative.
+class LineCache {
+ public:
+  /// Creates a cache with `places` entries (at most 254) for a memory of `lines` lines.
+  LineCache(std::size_t places, std::size_t lines);
+  /// Returns true if the line is in the cache, and marks the line as most recently used.
+  bool holds(std::uint32_t line) {
+    const std::uint8_t place = place_of_[line];
+    if (place == 0) return false;
+    if (place != places_[0].newer) use(place);
+    return true;
+  }
+  void keep(std::uint32_t line);
+  void forget();
+
+ private:
+  static constexpr std::uint32_t no_line = ~0u;
+  /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
+  /// most recently used entry, and `older` is the least recently used entry.
+  struct Place {
+    std::uint32_t line = no_line;
+    std::uint8_t older = 0, newer = 0;
+  };
+  void use(std::uint8_t place);
+  std::vector<Place> places_;
+  std::vector<std::uint8_t> place_of_;  ///< index: line; 0 means not in the cache
+};
+
+class FlashAccelerator {
+ public:
+  static constexpr std::uint32_t line_bytes = 16;
+  static constexpr std::size_t instruction_lines = 64, data_lines = 8;
+
+  /// `flash_bytes` must be a multiple of line_bytes. Addresses are offsets from the start of the flash.
+  FlashAccelerator(std::uint32_t flash_bytes, const Costs& costs);
+
+  /// Applies the settings in FLASH_ACR: wait states, prefetch and caches.
+  void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
+  void forget_instructions() { instructions_.forget(); }  ///< ICRST
+  void forget_data() { data_.forget(); }                  ///< DCRST
+  /// Call this after an erase or program operation, because the line buffers of the flash become invalid.
+  void forget_lines() { current_ = ahead_ = no_line; }
+  /// True if the flash has no wait states.
+  bool is_free() const { return wait_states_ == 0; }
+  unsigned wait_states() const { return wait_states_; }
+
+  /// Wait cycles for the instruction line at `offset`, from cycle `now`.
+  unsigned fetch(std::uint32_t offset, std::uint64_t now) {
+    const std::uint32_t line = offset / line_bytes;
+    if (line == current_) return 0;
+    return fetch_other(line, now);
+  }
+  /// Wait cycles for data in the line at `offset`, from cycle `now`.
+  unsigned read(std::uint32_t offset, std::uint64_t now);
+  /// Wait cycles for an uncached line, from cycle `now`.
+  unsigned miss(std::uint64_t now) const {
+    const bool busy = miss_waits_ && ahead_ != no_line && ahead_at_ > now;
+    return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;
+  }
+
+ private:
+  static constexpr std::uint32_t no_line = ~0u;
+  unsigned fetch_other(std::uint32_t line, std::uint64_t now);
+  void read_ahead(std::uint32_t line, std::uint64_t now);
+
+  std::uint32_t flash_lines_;
+  unsigned wait_states_ = 0;
+  bool prefetch_ = false, instruction_cache_ = false, data_cache_ = false;
+  const bool prefetch_follows_hit_, keeps_prefetched_, miss_waits_;
+  std::uint32_t current_ = no_line;  ///< the most recent instruction line
+  std::uint32_t ahead_ = no_line;    ///< the prefetched line
+  std::uint64_t ahead_at_ = 0;       ///< time at which the prefetched line is complete
+  std::uint32_t current_data_ = no_line;
+  LineCache instructions_, data_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,244 @@
+// An STM32F405 for any firmware: Cortex-M4F processor, memories, and the peripherals of RM0090.
+//
+// The duration of an instruction includes the cycles of the core pipeline, the flash and the buses (timing/costs.hpp).
+// The clock tree, timers, converters and watchdogs run in board time. `Chip` is not thread-safe: the chip and the
+// circuit run in the thread that calls run_until().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+#include "boards/stm32f405/core/chip_error.hpp"
+#include "boards/stm32f405/core/debug_port.hpp"
+#include "boards/stm32f405/core/exception_numbers.hpp"
+#include "boards/stm32f405/core/interfaces.hpp"
+#include "boards/stm32f405/core/rules.hpp"
+#include "boards/stm32f405/memory/loader_order.hpp"
+#include "boards/stm32f405/timing/costs.hpp"
+
+namespace inkwell::virtual_board {
+
+enum class Mode : std::uint8_t {
+  exact,  ///< interrupts can occur at any instruction
+  fast,   ///< interrupts occur between basic blocks; several times faster
+};
+
+struct ChipOptions {
+  Mode mode = Mode::fast;
+  Pricing pricing = Pricing::likely;
+  std::uint32_t crystal_Hz = 8'000'000;          ///< nominal frequency of HSE
+  std::int32_t crystal_ppm = 0;                  ///< deviation from the nominal frequency
+  std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz (data sheet)
+  unsigned brown_out_level = 0;                  ///< option bytes: 0 (off, as in a new chip) to 3
+  bool slowest_flash = false;  ///< longest erase and program times of the data sheet instead of the typical times
+  std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
+  std::uint32_t random_seed = 1;  ///< for the RNG peripheral and for flash operations that a reset interrupts
+  /// Receives each line of the log (without a newline). By default the log goes to stderr.
+  std::function<void(const std::string&)> log;
+  /// Returns the name of the function at `address` for log lines, or an empty string. By default log lines contain no
+  /// function names.
+  std::function<std::string(std::uint32_t address)> name_of_code;
+  /// Called before each instruction in exact mode. `cycles` is the number of cycles that the processor has run.
+  std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
+};
+
+/// Reset flags in the order of RCC_CSR bits 26 to 31, then bit 25.
+enum class ResetCause : std::uint8_t {
+  pin,
+  power_on,
+  software,
+  independent_watchdog,
+  window_watchdog,
+  low_power,
+  brown_out
+};
+inline constexpr std::size_t reset_causes = 7;
+
+struct ExceptionCounters {
+  std::uint64_t count = 0;
+  /// Cycles of the longest handler run, including entry and return, excluding the exceptions that preempted the run.
+  std::uint64_t longest_cycles = 0;
+};
+
+/// Counts since construction or since the last clear_counters().
+struct Counters {
+  std::uint64_t instructions = 0;
+  std::uint64_t cycles = 0;  ///< without sleep
+  Ticks duration = 0;
+  Ticks asleep = 0;
+  std::array<ExceptionCounters, exception_numbers> exceptions{};
+  std::array<std::uint32_t, reset_causes> resets{};  ///< by ResetCause
+  std::uint32_t all_resets() const { return std::accumulate(resets.begin(), resets.end(), 0u); }
+  double sleep_share() const {
+    return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration);
+  }
+};
+
+/// Reason why run_until() returned.
+enum class Stop : std::uint8_t {
+  time_reached,
+  firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED; see exit_code()
+  locked_up,  ///< time reached with a locked-up processor; only reset() or a watchdog resumes it; see lockup_reason()
+  requested,  ///< request_stop()
+  debugger,   ///< a breakpoint, a watch point or the end of a step; see debug_port()
+};
+
+/// Configured frequencies in Hz, 0 for stopped clocks.
+struct Clocks {
+  std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
+  std::uint32_t timer1_Hz;  ///< timers on APB1
+  std::uint32_t timer2_Hz;  ///< timers on APB2
+  std::uint32_t usb_Hz;     ///< PLL48CLK
+};
+
+struct Fault {
+  std::string what;  ///< cause and addresses
+  Ticks when = 0;
+  /// Core registers before the entry of the fault handler. R0 to R3, R12, LR, PC and XPSR are the stacked values.
+  CoreRegisters registers;
+};
+
+class Chip {
+ public:
+  /// `circuit` must outlive the chip.
+  explicit Chip(Circuit& circuit, const ChipOptions& options = {});
+  ~Chip();
+  Chip(const Chip&) = delete;
+  Chip& operator=(const Chip&) = delete;
+
+  /// Erases the flash sectors that the ELF's load segments overlap, and programs the segments at their physical
+  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated or too large, or if it is
+  /// not a 32-bit ARM executable.
+  void load_elf(const std::filesystem::path& path);
+  /// Resets processor and peripherals like the NRST pin. Board time continues.
+  void reset(ResetCause cause = ResetCause::pin);
+
+  /// Runs until board time reaches `when` or the firmware exits. The function calls the circuit, the peripherals and
+  /// the scheduled events.
+  Stop run_until(Ticks when);
+  /// Starts the firmware like the "go" command of the boot loader (AN2606). Call reset() before this function. Clocks,
+  /// CCM and vector table have the state that the boot loader leaves, not their reset state.
+  void start_by_boot_loader();
+  /// Starts the boot loader, like a reset with BOOT0 high.
+  void start_boot_loader();
+  /// Sets the program counter between two instructions, like a debugger or a bit flip. Not allowed inside run_until().
+  void jump(std::uint32_t address);
+  // Injected faults. Calls are not allowed inside run_until(). A reset clears stall(), stall_thread() and halt(); all
+  // other injected faults remain.
+  /// Stops the core for `duration`, like a long bus wait. The peripherals continue.
+  void stall(Ticks duration);
+  /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
+  /// exceptions, the stop begins only after the instruction that unmasks the exceptions.
+  void stall_thread(Ticks duration);
+  /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ also freeze. Board
+  /// time continues, unlike during a halt by debug_port().
+  void halt(Ticks duration);
+  /// For `duration`, inverts the level that the circuit drives at the pin, like a voltage spike.
+  void glitch(char port, unsigned pin, Ticks duration);
+  /// While `lost` is true, the exception does not reach the core.
+  void lose_exception(unsigned exception, bool lost);
+  /// Delays each further occurrence of an exception by `cycles` of HCLK. A value of 0 removes the delay.
+  void delay_exception(unsigned exception, std::uint32_t cycles);
+  /// Flips one bit of a byte of RAM or flash. Returns false if there is no memory at `address`.
+  [[nodiscard]] bool flip_bit(std::uint32_t address, unsigned bit);
+  /// Prevents new conversions of ADC `number` (1 to 3) while `stopped` is true.
+  void stop_converter(unsigned number, bool stopped);
+  /// Prevents both DMA controllers from accepting requests while `stopped` is true.
+  void stop_dma(bool stopped);
+  /// Interrupts the power in the middle of an erase or program operation. `number` 1 selects the next operation. Power
+  /// returns immediately. `number` 0 cancels the interruption.
+  void cut_power_at_flash_operation(std::uint64_t number);
+  /// Number of erase and program operations since construction.
+  std::uint64_t flash_operations() const;
+  /// Sets the 3.3 V supply of the chip and VDDA. Below the brown-out level of the option bytes the chip stays in reset.
+  void set_supply_V(double volts);
+  /// Sets VDDA alone. VDDA is the reference of the converters.
+  void set_analog_supply_V(double volts);
+  void let_crystal_swing(bool swings);
+  /// Sets the deviation of the crystal from its nominal frequency. The initial value is ChipOptions::crystal_ppm.
+  void drift_crystal(std::int32_t ppm);
+  /// Number of the running exception; 0 in thread mode.
+  unsigned current_exception() const;
+
+  /// Makes run_until() return as soon as possible. Callbacks may call this function.
+  void request_stop();
+
+  Scheduler& scheduler();
+  DebugPort& debug_port();
+  InterruptController& interrupts();
+  InputPins& input_pins();
+  /// Level at a pin, and level that the chip drives. `port` is 'A' to 'I', `pin` 0 to 15.
+  PinLevel pin_level(char port, unsigned pin) const;
+  PinLevel pin_output(char port, unsigned pin) const;
+  ChipConnections connections();
+
+  /// Adds a peripheral to the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or 0x50000000..0x50060BFF.
+  /// Each chip reset also resets the peripheral. `peripheral` must outlive the chip.
+  void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
+
+  /// Called at the trigger of each injected ADC sequence. `index` counts the sequences since reset. ADCs that are
+  /// triggered simultaneously count once.
+  std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
+  /// Called for each character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
+  std::function<void(std::uint8_t byte)> on_console;
+  /// Called for each character from USART `number` (1..6), at the end of its stop bit.
+  std::function<void(unsigned number, std::uint8_t byte)> on_usart;
+  /// Calls `changed` at each level change of a pin, and initially for each pin that is not floating. An empty function
+  /// stops the calls.
+  void watch_pins(std::function<void(char port, unsigned pin, PinLevel level, Ticks when)> changed);
+  /// Calls `changed` with the exception number when a handler starts or resumes, and with 0 when thread mode resumes.
+  /// An empty function stops the calls.
+  void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
+  /// Called when the firmware breaks a rule, once for each combination of rule and peripheral or pin.
+  std::function<void(const Violation& violation)> on_violation;
+  /// Called when the boot loader in the chip has executed an order. Returns the next order.
+  std::function<LoaderOrder()> on_boot_loader;
+  /// Called after each reset of any cause.
+  std::function<void(ResetCause cause)> on_reset;
+
+  /// Sends a character to the receiver of USART `number` (1..6). Characters follow each other at the baud rate.
+  void usart_receive(unsigned number, std::uint8_t byte);
+  /// True if the receiver of USART `number` is on. While the receiver is off, incoming characters are lost.
+  bool usart_listens(unsigned number) const;
+  /// Number of bytes from usart_receive() that the USART has not received yet.
+  std::size_t usart_waiting(unsigned number) const;
+
+  Ticks now() const;
+  Mode mode() const;
+  Clocks clocks() const;
+  const Counters& counters() const;
+  void clear_counters();
+  /// Exit code from SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, valid after Stop::firmware_exit.
+  int exit_code() const;
+  /// Description of the fault with its addresses, valid after Stop::locked_up.
+  const std::string& lockup_reason() const;
+  /// Most recent fault outside of fault handlers. A lock-up results from this fault.
+  const std::optional<Fault>& first_fault() const;
+  std::vector<RegisterMap> register_maps() const;
+  /// Rules that the firmware has broken, in the order of their first violations.
+  const std::vector<Violation>& violations() const;
+  /// Log lines of all accesses to unmodeled registers.
+  const std::vector<std::string>& unmodelled_accesses() const;
+
+  /// Returns a word of flash, SRAM or CCM for debuggers, without side effects. Returns 0 for addresses outside of
+  /// flash, SRAM and CCM.
+  std::uint32_t memory_word(std::uint32_t address) const;
+  /// Contents of the flash, for programmers. Call reset() after a change of the contents.
+  std::span<std::uint8_t> flash();
+  /// Hash of the memory and the core registers, for comparing runs.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace inkwell::virtual_board

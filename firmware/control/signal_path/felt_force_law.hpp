@@ -1,0 +1,35 @@
+// State and time of the installed force law between periods.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/control/signal_path/installed_force_law.hpp"
+
+namespace inkwell::control {
+
+class FeltForceLaw {
+ public:
+  FeltForceLaw() { reset_force_law(memory_); }
+
+  /// Runs one period of the law and sets the time of `probe`. The force may be infinite or not a number.
+  const Vector3& force_N(Probe& probe, const ForceLawValues& values) {
+    probe.periods = periods_++;
+    step_force_law(probe, values, memory_, force_N_);
+    return force_N_;
+  }
+
+  /// Call this function in each period in which the law does not run. The law then restarts from its initial state.
+  void reset() {
+    if (periods_ != 0) reset_force_law(memory_);
+    periods_ = 0;
+  }
+
+  float signal(std::size_t place) const { return memory_.signals[place]; }
+
+ private:
+  std::uint32_t periods_ = 0;  ///< number of periods since the law became active
+  Vector3 force_N_;
+  ForceLawMemory memory_;
+};
+
+}  // namespace inkwell::control

@@ -1,0 +1,66 @@
+// Joint speed from the encoder, updated in every control period.
+//
+// One count in one period of 50 us corresponds to 1.1 m/s at the probe, so the difference of two samples is too coarse.
+// The estimator is a first-order adaptive window (Janabi-Sharifi, Hayward, Chen, IEEE T-CST 2000) that uses encoder
+// edges instead of samples. An edge is detected within one control period. The error of an edge position is therefore
+// the joint motion of one period. The error of a sample would be one count.
+//
+// A straight line connects the oldest edge and the newest edge of the window. All other edges of the window must be
+// within a tolerance of this line. A constant speed never exceeds the tolerance. The tolerance is half a count at
+// speeds up to half a count per period, and one count at higher speeds. A window stops growing if it contains a whole
+// quadrature cycle and is long enough for an error below 2 %. The phase errors of the encoder cancel over a whole
+// cycle, and a longer window would only add lag. Slow motion results in long windows with little noise. Acceleration
+// results in short windows with little lag.
+//
+// Between edges the estimate does not change, unless a long time without an edge indicates a lower speed. After n
+// periods without an edge, the speed is at most 1/n counts per period. At a reversal the speed is set to zero and the
+// window restarts. The estimate for a motion of one count back and forth is therefore zero.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/control/signal_path/vector.hpp"
+
+namespace inkwell::control {
+
+/// Boundary between two counts, and the first control period in which the encoder was beyond this boundary.
+struct EncoderEdge {
+  std::uint32_t period;
+  std::int32_t boundary;
+};
+
+/// State of the speed estimate of one joint.
+struct SpeedEstimate {
+  static constexpr std::uint32_t capacity = 6;
+  /// An edge is not stored if it is closer than this to the last stored edge. Six stored edges therefore cover 3 ms
+  /// even at a speed at which every period has an edge.
+  static constexpr std::uint32_t spacing_periods = 11;
+  /// The time of an edge has an uncertainty of one period, so the speed error of a window of this length is 1/64.
+  static constexpr std::uint32_t enough_periods = 64;
+  static constexpr std::int32_t enough_counts = 4;
+  /// After half a second without an edge the speed is zero.
+  static constexpr std::uint32_t rest_periods = 10'000;
+
+  std::array<EncoderEdge, capacity> edges{};  ///< ring
+  std::uint32_t newest = 0;                   ///< index of the last stored edge
+  std::uint32_t remembered = 0;               ///< number of stored edges, 0..capacity
+  EncoderEdge head{};                         ///< last edge, stored or not
+  bool head_waits = false;                    ///< `head` is not fitted yet
+  std::int32_t counts = 0;
+  std::int32_t direction = 0;  ///< direction of the last edge: +1, -1, or 0 before the first edge
+  float counts_per_period = 0.0f;
+};
+
+/// Starts a new estimate with a speed of zero at these counts.
+constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
+  estimate.counts = counts;
+  estimate.head.period = period;
+}
+
+/// Processes the counts of one control period. If `may_fit` is false, a new edge is not fitted until the next period in
+/// which `may_fit` is true. The caller can thus limit each period to the fit of one joint. A fit needs at most
+/// `capacity` short steps and no division.
+void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit = true);
+
+}  // namespace inkwell::control

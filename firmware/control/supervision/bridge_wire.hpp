@@ -1,0 +1,44 @@
+// Checks the levels of the wires to the bridges. The input register shows the level at the pad even while the chip
+// drives the pin. A wire that touches ground or a supply overrides the output of the chip.
+//
+// While the bridges are off, the enable wire, the monostable output and all legs must be low. While the bridges are on,
+// the enable wire must be high. The control interrupt checks in each period that the monostable output is also high.
+// The legs switch while the bridges are on, so the leg levels are not checked. The check in motor_watch.hpp
+// ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so the main loop
+// always reads a low level.
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::control {
+
+/// Levels at one instant.
+struct BridgePins {
+  bool on = false;  ///< state commanded by the control interrupt
+  bool enable_is_high = false;
+  bool heartbeat_is_high = false;
+  bool hold_is_high = false;
+  bool a_leg_is_high = false;
+};
+
+struct BridgeWire {
+  /// Number of tolerated consecutive wrong readings. A wire settles within 1 us, but a single reading may coincide with
+  /// a spike.
+  static constexpr std::uint32_t tolerated_readings = 1;
+
+  std::uint32_t wrong_readings = 0;
+};
+
+/// Returns true after too many consecutive readings of a wrong wire level.
+constexpr bool is_shorted(const BridgeWire& wire) { return wire.wrong_readings > BridgeWire::tolerated_readings; }
+
+constexpr void update_wire_check(BridgeWire& wire, const BridgePins& pins) {
+  const bool wrong = pins.heartbeat_is_high ||
+                     (pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.hold_is_high || pins.a_leg_is_high);
+  if (!wrong)
+    wire.wrong_readings = 0;
+  else if (!is_shorted(wire))
+    ++wire.wrong_readings;
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,152 @@
+// Checks that voltage, current and speed of a motor are consistent.
+//
+// The motor equation is u = R i + k w. The voltage is resistance times current plus back EMF. The voltage is the
+// command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
+// be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
+// explain. An open motor and a stuck bridge leg also cause an unexplained voltage. In all these cases the force is
+// undefined. A voltage that is too small for its current indicates shorted turns or a current reading that is too
+// large.
+//
+// Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
+// of a healthy motor are integrated over time. The result is a flux. The equation neglects the inductance. The
+// inductance adds at most L di to this flux. A large difference is detected sooner than a small difference.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "firmware/control/signal_path/current_loop.hpp"
+#include "firmware/control/signal_path/vector.hpp"
+#include "protocol/reports.hpp"
+
+namespace inkwell::control {
+
+/// Voltage model of a healthy motor.
+struct MotorModel {
+  Triple resistance_ohm;  ///< from the parameters
+  /// Back EMF per joint speed: gear ratio times torque constant, negative for a reversed motor.
+  Triple back_emf_Vs_per_rad;
+};
+
+/// Voltage drop of a bridge. The drop opposes the current. At small currents the drop may have the opposite sign.
+struct BridgeLoss {
+  float measured_V;  ///< from the self-test, including brushes; 0 if unknown
+  float most_V;      ///< from the dead time of the bridge
+
+  constexpr float least_V() const { return measured_V < most_V ? measured_V : most_V; }
+  constexpr float expected_V() const { return measured_V > 0.0f ? measured_V : most_V; }
+};
+
+/// Self-test measurements of motors and bridges. Each value comes from the last conclusive test.
+struct MeasuredMotors {
+  Triple bridge_loss_part{};  ///< voltage drop of bridge and brushes, as a part of the supply; 0 if unknown
+  Triple resistance_ohm{};    ///< measured resistance; 0 if unknown
+  Triple heat{};              ///< heat at the resistance measurement (MotorHeat)
+};
+
+/// Assumed resistance of a motor.
+struct Resistance {
+  /// Tolerated excess resistance of a motor with a measured resistance. The tolerance covers an error of 50 K in the
+  /// heat model.
+  static constexpr float tolerated_increase_if_measured = 0.2f;
+  /// Tolerated excess resistance of a motor without a measured resistance. Copper that is 100 K hotter has 39 % more
+  /// resistance. Switches and shunt add 4 %.
+  static constexpr float tolerated_increase_if_unmeasured = 0.43f;
+  /// The voltage range of a current loop includes this part of the resistance tolerance. For a motor with a measured
+  /// resistance, this part is 5 % of the resistance. The resistance of a healthy motor may be higher, depending on
+  /// angle or heat. A motor with a higher resistance gets less current at the force limit, but no fault is raised.
+  static constexpr float room_part = 0.25f;
+  /// Increase of copper resistance at a temperature rise of 100 K. This rise is the steady state at the continuous
+  /// current.
+  static constexpr float part_per_heat = 0.39f;
+
+  float value_ohm;
+  float tolerated_increase;  ///< part of value_ohm
+
+  constexpr float with_room_ohm() const { return value_ohm + room_part * tolerated_increase * value_ohm; }
+
+  /// `warmer` is the heat gained since the measurement.
+  static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
+    if (!(measured_ohm > 0.0f)) return {parameter_ohm, tolerated_increase_if_unmeasured};
+    // If the motor has cooled since the measurement, the measured resistance is used. After a restart, the heat model
+    // may have overestimated the heat at the measurement.
+    const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
+    return {measured_ohm + measured_ohm * more, tolerated_increase_if_measured};
+  }
+};
+
+struct MotorWatch {
+  /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. The flux tolerance covers short
+  /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
+  /// arm stops.
+  static constexpr float tolerance_V = 0.3f;
+  /// The current ripple does not change the sign of a current above this value. The bridge drop of such a current does
+  /// not depend on the current.
+  static constexpr float steady_A = 0.3f;
+  /// A motor that has cooled by 100 K since its measurement has 28 % less resistance.
+  static constexpr float tolerated_decrease_of_resistance = 0.28f;
+  /// Magnets that are 100 K hotter are 20 % weaker.
+  static constexpr float tolerated_part_of_back_emf = 0.25f;
+  /// A motor of 0.24 mH needs 1.2 mVs to change its current from one limit to the other.
+  static constexpr float tolerance_flux_Vs = 0.003f;
+
+  /// Each period checks one motor, so each reading represents three periods.
+  static constexpr float tolerance_sum_V = tolerance_flux_Vs / (3.0f * protocol::servo_period_s);
+
+  Triple beyond_V{};       ///< sum of the voltages beyond the tolerance, per motor; 0 while its bridge is off
+  std::size_t motor = 0;   ///< motor of this period, 0..2
+  float voltage_V = 0.0f;  ///< bridge voltage in the period before the present reading
+  BridgeLoss loss{};       ///< voltage drop of the bridge in that period
+};
+
+/// Unexplained voltage, and its tolerance for a healthy motor.
+struct Unexplained {
+  float voltage_V, tolerance_V;
+};
+inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float current_A, float joint_speed_rad_per_s,
+                               const Resistance& resistance, float back_emf_Vs_per_rad) {
+  const float ohmic_V = resistance.value_ohm * current_A;
+  const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
+  const float left_V = voltage_V - ohmic_V - back_emf_V;
+  const bool is_more = left_V * current_A > 0.0f;
+  const float part_of_resistance =
+      is_more ? resistance.tolerated_increase : MotorWatch::tolerated_decrease_of_resistance;
+  // The bridge drop opposes the current. If the voltage is too small for its current, the drop therefore reduces the
+  // tolerance.
+  const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
+  return {std::fabs(left_V), bridge_V + MotorWatch::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
+                                 MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
+}
+
+/// Checks the motor of this period. Returns true if voltage, current and speed of the motor are consistent.
+bool update_motor_check(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
+                        const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
+
+/// Clears the sums. Call this function while the current loops do not drive the bridges.
+inline void reset(MotorWatch& watch) {
+  watch.beyond_V = {};
+  watch.voltage_V = 0.0f;
+}
+
+/// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. `voltage_V` is the bridge voltage
+/// of this motor until the next call, and `loss` is the voltage drop of the bridge.
+inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
+  watch.motor = motor;
+  watch.voltage_V = voltage_V;
+  watch.loss = loss;
+}
+
+/// Returns the voltage range of a motor for currents up to +-`most_A`. The range is limited to +-`bound_V`.
+/// `back_emf_V` is the approximate back EMF of the motor, and `bridge_V` is the voltage drop of the bridge. The range
+/// always contains 0 V, so that a wrong speed value cannot drive the motor.
+inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
+                                  float bound_V) {
+  const float half_V =
+      resistance.with_room_ohm() * most_A + bridge_V + MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V);
+  return {std::max(std::min(back_emf_V - half_V, 0.0f), -bound_V),
+          std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,85 @@
+// Small voltage pulses for the self-test of motors, bridges and shunts. The pulses drive one motor after another. Each
+// motor is driven with the levels low, high, -high and -low, followed by a rest.
+//
+// The current rise from the low level to the high level depends on the resistance. The dead time of the bridge and a
+// constant back EMF reduce both levels equally. The force impulses on the hand add up to zero.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/control/signal_path/conditioning.hpp"
+#include "firmware/control/signal_path/vector.hpp"
+#include "firmware/control/supervision/motor_watch.hpp"
+
+namespace inkwell::control {
+
+/// Measurements during the pulses. The main loop evaluates these measurements.
+struct PulseRound {
+  static constexpr std::size_t levels = 4;  ///< low, high, -high, -low
+  struct Motor {
+    std::array<Triple, levels> current_A{};  ///< mean of each of the three sensors at each level
+    float low_V = 0.0f, high_V = 0.0f;
+    std::int32_t moved_counts = 0;  ///< motion of the motor's encoder during the four levels
+    bool takes_part = false;
+  };
+  std::array<Motor, 3> motors{};
+  float supply_V = 0.0f;
+  float dead_V = 0.0f;  ///< voltage drop from the dead time of the bridges
+};
+
+/// Values that determine the pulse voltages.
+struct PulseScale {
+  const Triple& resistance_ohm;
+  const Triple& current_limit_A;  ///< a motor with limit 0 is not used
+  float supply_V;
+  float dead_time_part;  ///< voltage drop from the dead time of the bridges, as a part of the supply
+};
+
+class SelfTestPulses {
+ public:
+  /// Nine times the electrical time constant of a motor.
+  static constexpr std::uint32_t level_periods = periods_in(0.001f);
+  /// The last periods of a level are averaged, because the current has settled by then.
+  static constexpr std::uint32_t mean_periods = 8;
+  static constexpr std::uint32_t rest_periods = 10;
+  static constexpr std::uint32_t round_periods = 3 * (PulseRound::levels * level_periods + rest_periods);
+  /// Expected current at the high level. This current applies 1.4 N to the hand for 1 ms. The current at the low level
+  /// is `low_part` of this current.
+  static constexpr float high_A = 0.7f, low_part = 0.4f;
+  /// Smallest pulse current, even for motors with a lower limit. The resistance cannot be measured with a smaller
+  /// current. Every motor tolerates this current for 1 ms.
+  static constexpr float high_minimum_A = 0.3f;
+  /// Over-current bound during the pulses. The bound includes the effects of the back EMF and of the other motors'
+  /// pulses.
+  static constexpr float maximum_A = 1.5f * high_A;
+  /// Voltage bound for windings with a high resistance.
+  static constexpr float ohmic_maximum_V = 7.5f;
+
+  void start() {
+    runs_ = true;
+    motor_ = level_ = 0;
+    periods_ = 0;
+  }
+  void stop() { runs_ = false; }
+  bool runs() const { return runs_; }
+
+  /// Runs one control period of a round. Returns the voltage of each motor for the next period.
+  [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
+                            const PulseScale& scale);
+
+  /// The measurements are complete after the round has finished.
+  const PulseRound& round() const { return round_; }
+
+ private:
+  [[gnu::cold]] void size_pulses(const PulseScale& scale);
+
+  PulseRound round_;
+  std::size_t motor_ = 0;
+  std::size_t level_ = 0;      ///< `levels` while the motor rests
+  std::uint32_t periods_ = 0;  ///< number of periods of this level
+  bool runs_ = false;
+};
+
+}  // namespace inkwell::control

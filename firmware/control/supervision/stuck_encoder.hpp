@@ -1,0 +1,73 @@
+// Detects an encoder that does not change although the current of its motor changes.
+//
+// The encoder is the only sensor of a joint angle, so a stuck encoder has the same readings as a blocked joint. A
+// blocked joint, however, is never rigid. A change of motor torque turns the joint slightly, because cables, links,
+// stops and hands are elastic. The stiffness of an Omni at the stylus is 1 to 2 N/mm, so 1 N turns its joints by ten
+// counts. Friction blocks a joint if the force changes by less than 0.5 N, twice the friction of an Omni.
+//
+// A change of 1.5 N at the end of the longer link must move the encoder by more than one count. An arm with twice the
+// friction and twice the stiffness of an Omni still moves by more than one count. The count of an encoder with one dead
+// wire also changes by at most one. On a slow arm, these changes are too rare for the check in
+// encoder_wire.hpp.
+//
+// A healthy joint occasionally does not move when the force changes by 1.5 N. A hand that slides along a wall or
+// presses into a wall at an angle may balance the change of the wall force. Friction then blocks the joint. In one hour
+// of random use on the virtual board, each standstill of a healthy joint contained at most two changes of 1 N and at
+// most one change of 2 N. The fault is raised after three changes of 1.5 N. A press, a release and a second press count
+// as three changes. An increase of 4.5 N also counts as three changes.
+//
+// In one observed reversal, a healthy arm was stationary for 30 ms while the wall force raised the current by 0.5 A.
+// Current changes therefore count only after the joint has been stationary for 0.1 s. The current is low-pass filtered
+// over about 10 ms, so a force that alternates too fast for the arm has no effect on the filtered current.
+//
+// The inkwell is too rigid for this check, so the check is inactive while the stylus is in the inkwell.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "firmware/control/signal_path/conditioning.hpp"
+
+namespace inkwell::control {
+
+struct StuckEncoder {
+  /// Force change at the end of the longer link. A change of this size almost always turns every joint.
+  static constexpr float moving_force_N = 1.5f;
+  static constexpr unsigned tolerated_changes = 2;
+  static constexpr std::uint32_t tolerance_counts = 1;
+  static constexpr std::uint32_t settle_periods = periods_in(0.1f);
+  /// Filter weight of a new reading. With one reading in three periods, the time constant of this low-pass filter is
+  /// 9.6 ms.
+  static constexpr float weight = 1.0f / 64.0f;
+
+  std::int32_t counts = 0;          ///< count at which the encoder is stationary
+  std::uint32_t since_periods = 0;  ///< start of the standstill
+  float current_A = 0.0f;           ///< filtered motor current
+  float least_A = 0.0f;             ///< least filtered current since the joint settled or since the last counted change
+  float most_A = 0.0f;
+  unsigned changes = 0;  ///< number of current changes in this standstill
+};
+
+/// Checks an encoder and the current of its motor at period `now_periods`. Returns true after too many current changes
+/// of more than `moving_A` while the encoder was stationary. If `held` is true, the joint may be blocked, and the
+/// standstill time restarts.
+inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
+                     float moving_A) {
+  encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);
+  const std::uint32_t away =
+      static_cast<std::uint32_t>(counts) - static_cast<std::uint32_t>(encoder.counts) + StuckEncoder::tolerance_counts;
+  if (held || away > 2 * StuckEncoder::tolerance_counts) {
+    encoder.counts = counts;
+    encoder.since_periods = now_periods;
+    encoder.changes = 0;
+  }
+  const bool settles = now_periods - encoder.since_periods < StuckEncoder::settle_periods;
+  encoder.least_A = std::min(encoder.least_A, encoder.current_A);
+  encoder.most_A = std::max(encoder.most_A, encoder.current_A);
+  const bool changed = !settles && encoder.most_A - encoder.least_A > moving_A;
+  if (settles || changed) encoder.least_A = encoder.most_A = encoder.current_A;
+  if (changed) ++encoder.changes;
+  return encoder.changes > StuckEncoder::tolerated_changes;
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,48 @@
+// Lines of the interrupt controller. Each line belongs to one driver (PM0214, chapter NVIC).
+#pragma once
+
+#include "firmware/drivers/claims.hpp"
+#include "firmware/registers/peripherals.hpp"
+
+namespace inkwell::drivers {
+
+/// Disables interrupts during the lifetime of this object. The lifetime must not exceed a few microseconds, except for
+/// a sleep. A pending interrupt ends a sleep.
+class InterruptsHeld {
+ public:
+  InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }
+  ~InterruptsHeld() { asm volatile("cpsie i" ::: "memory"); }
+  InterruptsHeld(const InterruptsHeld&) = delete;
+  InterruptsHeld& operator=(const InterruptsHeld&) = delete;
+};
+
+/// This function is the last statement of every handler. Without this statement, a handler may return while a store is
+/// in progress. The processor may then clear a newly arrived interrupt and run another interrupt instead (erratum
+/// 838869 of the Cortex-M4).
+inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
+
+/// This handler runs after all interrupts have been served and before the program continues (PendSV: ARMv7-M, B1.5.6).
+/// Every interrupt can preempt this handler.
+struct CallAfterInterrupts {
+  static void start() {
+    constexpr std::uint32_t after_all_interrupts = 0xF0;
+    registers::SCB::SHPR3::modify(registers::SCB::SHPR3::PRI_14(after_all_interrupts));
+  }
+  static void request() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
+};
+
+/// Interrupt line of a driver. No interrupt preempts another interrupt. Faults preempt all interrupts.
+template <class Driver, Interrupt line>
+struct InterruptLine {
+  static void enable() {
+    require_claim<Driver, interrupt(line)>();
+    constexpr std::uint8_t after_faults = 0x10;
+    registers::NVIC::IPR::write(position, after_faults);
+    registers::NVIC::ISER::write(position / 32, 1u << position % 32);
+  }
+
+ private:
+  static constexpr unsigned position = static_cast<unsigned>(line);
+};
+
+}  // namespace inkwell::drivers

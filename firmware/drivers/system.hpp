@@ -1,0 +1,63 @@
+// Chip functions: reset, reset cause, sleep, identity.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/drivers/interrupts.hpp"
+#include "firmware/registers/peripherals.hpp"
+
+namespace inkwell::drivers {
+
+/// Flags of RCC_CSR: the cause of the last reset.
+struct ResetCause {
+  std::uint32_t flags;
+  bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
+  /// Returns true if the supply fell below the brown-out level and rose again. Power-on also sets this reset flag and
+  /// is excluded.
+  bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
+  bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
+};
+
+/// Reads and clears the flags of the last reset, so that the next reset is reported alone.
+inline ResetCause take_reset_cause() {
+  const ResetCause cause{registers::RCC::CSR::read()};
+  registers::RCC::CSR::modify(registers::RCC::CSR::RMVF(1));
+  return cause;
+}
+
+/// Returns true if the boot pins selected the chip's boot loader and the boot loader started the firmware. After a
+/// reset SYSCFG_MEMRMP contains the selection of the pins (RM0090).
+inline bool started_by_boot_loader() {
+  registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
+  static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"
+  const bool is_so = registers::SYSCFG::MEMRMP::MEM_MODE::read() != 0;
+  registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(0));
+  return is_so;
+}
+
+[[noreturn]] inline void reset_chip() {
+  constexpr std::uint32_t key = 0x05FA;
+  asm volatile("dsb" ::: "memory");
+  registers::SCB::AIRCR::write(registers::SCB::AIRCR::VECTKEY(key), registers::SCB::AIRCR::SYSRESETREQ(1));
+  for (;;) asm volatile("dsb" ::: "memory");
+}
+
+/// Unique identifier of the chip as 24 hexadecimal digits (RM0090, "Unique device ID register").
+inline std::array<char, 24> unique_identifier() {
+  std::array<char, 24> digits{};
+  for (unsigned i = 0; i < digits.size(); ++i)
+    digits[i] = "0123456789ABCDEF"[registers::SIGNATURE::U_ID::read(i / 8) >> (28 - i % 8 * 4) & 0xF];
+  return digits;
+}
+
+/// Sleeps until an interrupt has been served. Returns without a sleep if work is already pending. Interrupts are
+/// disabled during the check, and a pending interrupt ends the sleep immediately. An interrupt between check and sleep
+/// therefore cannot be missed.
+template <class Question>
+void sleep_unless(Question has_work) {
+  const InterruptsHeld held;
+  if (!has_work()) asm volatile("wfi" ::: "memory");
+}
+
+}  // namespace inkwell::drivers

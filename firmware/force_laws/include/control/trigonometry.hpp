@@ -1,0 +1,4 @@
+// For force laws: #include <control/trigonometry.hpp>.
+#pragma once
+
+#include "firmware/control/signal_path/trigonometry.hpp"

@@ -1,0 +1,68 @@
+// Force and shape requests of a program on the PC.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "firmware/control/signal_path/program_force.hpp"
+#include "firmware/control/signal_path/shapes.hpp"
+#include "firmware/exchange/handover.hpp"
+#include "protocol/reports.hpp"
+#include "protocol/request_result.hpp"
+
+namespace inkwell::link {
+
+/// Returns the force target of a ForceReport. The report starts with its report id and may be padded to the longest
+/// output report. Returns nothing if length, version, mode, interval or force is invalid.
+std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report);
+
+/// Decodes a ShapesReport. Returns false if any part of the report is invalid. In this case `shapes` is undefined.
+/// Bytes after the used part of the report are ignored.
+bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
+
+/// Returns the claim of a ForceReport or ShapesReport, or 0 if the report is too short.
+std::uint32_t claim_of_force(std::span<const std::byte> report);
+std::uint32_t claim_of_shapes(std::span<const std::byte> report);
+
+/// Returns the ticket of a ShapesReport, or 0 if the report is too short or has another version.
+std::uint32_t ticket_of_shapes(std::span<const std::byte> report);
+
+/// A new request replaces the previous request.
+class ProgramRequests {
+ public:
+  // ---- main loop ----
+
+  /// Accepts a ForceReport. Returns false and counts a refusal if the report is invalid or not from the driver. Also
+  /// refuses a report that answers a pose older than force_pose_age_maximum_ms. `pose_sequence` is the sequence number
+  /// of the newest pose report.
+  bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
+
+  /// Accepts a ShapesReport of the driver. Returns `busy` while the interrupt has not accepted the previous report, and
+  /// `malformed` for an invalid report.
+  protocol::RequestResult accept_shapes(std::span<const std::byte> report);
+
+  /// Removes all shapes and lets the program force fade. Call this function when the driver is gone.
+  void driver_gone();
+
+  std::uint32_t forces_received() const { return forces_received_; }
+  std::uint32_t forces_lost() const { return forces_lost_; }
+  std::uint32_t forces_refused() const { return forces_refused_; }
+
+  // ---- control interrupt ----
+
+  /// Returns the newest request since the last call, or null. The result is valid until the next call.
+  const control::ForceTarget* take_force() { return forces_.swap_if_offered() ? &forces_.used() : nullptr; }
+  const control::Shapes* take_shapes() { return shapes_.swap_if_offered() ? &shapes_.used() : nullptr; }
+
+ private:
+  Handover<control::ForceTarget> forces_;
+  Handover<control::Shapes> shapes_;
+  std::uint32_t forces_received_ = 0;
+  std::uint32_t forces_lost_ = 0;
+  std::uint32_t forces_refused_ = 0;
+  std::optional<std::uint32_t> newest_sequence_;  ///< empty while no program sends forces
+};
+
+}  // namespace inkwell::link

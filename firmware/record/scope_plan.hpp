@@ -1,0 +1,27 @@
+// A selection of signals, prepared for recording with few instructions per sample.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "protocol/scope.hpp"
+
+namespace inkwell::link {
+
+struct ScopePlan {
+  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};    ///< indices in SignalValues
+  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< for signals in 16-bit encoding
+  /// The items form alternating runs of floats and 16-bit integers. The first run has floats and may be empty. Each
+  /// entry of this array is the number of items up to the end of one run. The entry after the last run is 0.
+  std::array<std::uint8_t, protocol::scope_signals_maximum + 2> run_ends{};
+  std::uint32_t count = 0;                ///< 0: the scope is off
+  std::uint32_t sample_size_maximum = 0;  ///< bytes, including the mask of a `changes` sample
+  protocol::ScopeEncoding encoding = protocol::ScopeEncoding::full;
+  std::uint8_t token = 0;  ///< token of the select_signals command
+};
+
+/// `selection` must contain only known signals (checked by decode_command()).
+ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token);
+
+}  // namespace inkwell::link

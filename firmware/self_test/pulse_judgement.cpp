@@ -1,0 +1,124 @@
+#include "firmware/self_test/pulse_judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inkwell::link {
+namespace {
+
+using control::PulseRound;
+using Result = protocol::SelfTestResult;
+using Found = PulseJudgement::Found;
+
+constexpr float levels_s = PulseRound::levels * control::SelfTestPulses::level_periods * protocol::servo_period_s;
+
+/// Expected values of a motor.
+struct Expected {
+  float resistance_ohm;
+  float back_emf_Vs_per_count;
+  float dead_V;
+};
+
+/// Resistance from the pulses of one current sign. The result is limited to the largest reported resistance.
+float resistance_ohm(const PulseRound::Motor& motor, float low_A, float high_A, float shown_maximum_ohm) {
+  const float step_V = motor.high_V - motor.low_V;
+  const float step_A = high_A - low_A;
+  return step_A * shown_maximum_ohm > step_V ? step_V / step_A : shown_maximum_ohm;
+}
+
+/// Ratio of the larger value to the smaller value.
+float apart(float a, float b) { return a > b ? a / b : b / a; }
+
+float mean_back_emf_V(const PulseRound::Motor& motor, const Expected& expected) {
+  return std::fabs(static_cast<float>(motor.moved_counts) * expected.back_emf_Vs_per_count / levels_s);
+}
+
+Result failed_or_moved(const PulseRound::Motor& motor, const Expected& expected) {
+  return mean_back_emf_V(motor, expected) > PulseJudgement::moves_V ? Result::moved : Result::failed;
+}
+
+struct OfMotor {
+  Found motor, bridge;
+  float kept_ohm = 0.0f;
+};
+
+OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
+  if (!motor.takes_part) return {{Result::no_part}, {Result::no_part}, 0.0f};
+  const auto& current_A = motor.current_A;
+  const float shown_ohm = PulseJudgement::resistance_shown_part * expected.resistance_ohm;
+  const float forward_ohm = resistance_ohm(motor, current_A[0][own], current_A[1][own], shown_ohm);
+  const float backward_ohm = resistance_ohm(motor, -current_A[3][own], -current_A[2][own], shown_ohm);
+  const bool forward_is_worse =
+      apart(forward_ohm, expected.resistance_ohm) > apart(backward_ohm, expected.resistance_ohm);
+  const float worse_ohm = forward_is_worse ? forward_ohm : backward_ohm;
+  const float part = worse_ohm / expected.resistance_ohm;
+  if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
+    return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
+  // Voltage loss extrapolated to zero current. A back EMF raises the current of one sign and lowers the current of the
+  // other sign, so the effect of the back EMF cancels out.
+  const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
+  const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
+  const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&
+                       mean_back_emf_V(motor, expected) < PulseJudgement::rests_V;
+  return {{Result::passed, worse_ohm},
+          {is_slow ? failed_or_moved(motor, expected) : Result::passed, bridge_V},
+          is_kept ? 0.5f * (forward_ohm + backward_ohm) : 0.0f};
+}
+
+/// Evaluates the currents that the pulses of one motor cause in the sensors of the other motors.
+Found judge_wires(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
+  if (!motor.takes_part) return {Result::no_part};
+  float foreign_A = 0.0f;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (i != own) foreign_A = std::max(foreign_A, 0.5f * std::fabs(motor.current_A[1][i] - motor.current_A[2][i]));
+  const float own_A = (motor.high_V - expected.dead_V) / expected.resistance_ohm;
+  const bool is_insulated = foreign_A < PulseJudgement::foreign_part * own_A;
+  return {is_insulated ? Result::passed : failed_or_moved(motor, expected), foreign_A};
+}
+
+/// Combines two results of one item. A failure has precedence, then `moved`, then the larger figure.
+Found worse(const Found& a, const Found& b) {
+  const auto rank = [](Result result) {
+    return result == Result::failed ? 3 : result == Result::moved ? 2 : result == Result::passed ? 1 : 0;
+  };
+  if (rank(a.result) != rank(b.result)) return rank(a.result) > rank(b.result) ? a : b;
+  return a.figure > b.figure ? a : b;
+}
+
+}  // namespace
+
+bool PulseJudgement::any(Result result) const {
+  bool is_there = wires.result == result;
+  for (std::size_t i = 0; i < 3; ++i) is_there |= motors[i].result == result || bridges[i].result == result;
+  return is_there;
+}
+
+PulseJudgement PulseJudgement::moved() {
+  PulseJudgement judgement{};
+  judgement.motors.fill({Result::moved});
+  judgement.bridges.fill({Result::moved});
+  judgement.wires = {Result::moved};
+  return judgement;
+}
+
+PulseJudgement judge(const control::PulseRound& round, const control::Settings& settings) {
+  PulseJudgement judgement{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Expected expected{
+        settings.motor_model.resistance_ohm[i],
+        settings.motor_model.back_emf_Vs_per_rad[i] * settings.encoders.rad_per_count[i],
+        round.dead_V,
+    };
+    const OfMotor found = judge_motor(round.motors[i], i, expected);
+    judgement.motors[i] = found.motor;
+    judgement.bridges[i] = found.bridge;
+    judgement.resistance_ohm[i] = found.kept_ohm;
+    if (found.bridge.result == Result::passed)
+      judgement.bridge_loss_part[i] = std::max(found.bridge.figure, 0.0f) / round.supply_V;
+    const Found wires = judge_wires(round.motors[i], i, expected);
+    judgement.wires = i == 0 ? wires : worse(judgement.wires, wires);
+  }
+  return judgement;
+}
+
+}  // namespace inkwell::link

@@ -1,0 +1,189 @@
+#include "firmware/self_test/self_test.hpp"
+
+#include "firmware/placement/interrupt.hpp"
+
+namespace inkwell::link {
+namespace {
+
+using Item = protocol::SelfTestItem;
+using Result = protocol::SelfTestResult;
+
+/// Wires in test order.
+constexpr Item tested_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,      Item::encoder_2_a,
+                                 Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
+                                 Item::bridge_fault_tim1, Item::bridge_fault_tim8};
+
+/// First item that every self-test repeats. Earlier items are tested only at start-up.
+constexpr Item first_of_each_test = Item::current_offsets;
+
+constexpr std::uint32_t orders = 4;
+
+}  // namespace
+
+void SelfTest::note(Item item, Result result, float figure) {
+  entry(item).result = result;
+  entry(item).figure = figure;
+}
+
+std::optional<Item> SelfTest::wanted_wire() const {
+  if (phase_ != Phase::wires) return std::nullopt;
+  return tested_wires[wire_];
+}
+
+void SelfTest::note_wire(bool follows) {
+  if (follows && ++following_readings_ < wire_readings) return;
+  note(tested_wires[wire_], !follows);
+  following_readings_ = 0;
+  if (++wire_ < std::size(tested_wires)) return;
+  begin_round();
+}
+
+void SelfTest::follow(const control::Controller& controller, const control::Settings& settings,
+                      const Readings& readings) {
+  const auto& [signals, now] = samples_[samples_.recorded() - 1];
+  if (begun_.load() != test_) begin(readings, controller.current_offsets_A());
+  if (now.state != protocol::State::testing) {
+    if (phase_ != Phase::idle && phase_ != Phase::verdict) break_off();
+    phase_ = Phase::idle;
+  } else if (phase_ == Phase::rest) {
+    wait_for_rest(signals, settings.motor_model);
+  } else if (phase_ == Phase::pulses && round_is_over_.load()) {
+    end_round(judge(controller.pulse_round(), settings), signals);
+  }
+}
+
+void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) {
+  test_ = begun_.load();
+  for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
+  offset_A_ = offset_A;
+  test_since_ = samples_.recorded();
+  note(Item::analog_supply, readings.analog_supply_is_right, readings.analog_supply_V);
+  for (std::size_t i = 0; i < readings.gimbal_ratio.size(); ++i) {
+    const float ratio = readings.gimbal_ratio[i];
+    note(of_axis(Item::gimbal_1, i), ratio > gimbal_rail_part && ratio < 1.0f - gimbal_rail_part, ratio);
+  }
+  wire_ = 0;
+  following_readings_ = rounds_ = failures_ = 0;
+  phase_ = Phase::wires;
+}
+
+/// Measures the sensor offsets. The samples are relative to the offsets at start-up, so the start-up offsets are added.
+void SelfTest::note_offsets() {
+  const std::uint32_t recorded = samples_.recorded();
+  float largest_A = 0.0f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    float sum_A = 0.0f;
+    for (std::uint32_t back = 1; back <= offset_readings; ++back)
+      sum_A += samples_[recorded - back].signals[of_axis(protocol::Signal::current_1_A, i)];
+    const float reads_A = offset_A_[i] + sum_A * (1.0f / static_cast<float>(offset_readings));
+    if (reads_A * reads_A > largest_A * largest_A) largest_A = reads_A;
+  }
+  constexpr float plausible_A = control::CurrentOffsets::plausible_A;
+  note(Item::current_offsets, largest_A <= plausible_A && largest_A >= -plausible_A, largest_A);
+}
+
+void SelfTest::break_off() {
+  for (auto& entry : entries_)
+    if (entry.result == Result::not_done && &entry >= &this->entry(first_of_each_test))
+      entry.result = Result::broken_off;
+}
+
+void SelfTest::begin_round() {
+  phase_ = Phase::rest;
+  waits_since_ = samples_.recorded();
+}
+
+void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model) {
+  if (entry(Item::current_offsets).result == Result::not_done) {
+    if (samples_.recorded() - test_since_ < off_periods + offset_readings) return;
+    note_offsets();
+  }
+  bool rests = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
+    rests = rests && back_emf_V < rest_V && back_emf_V > -rest_V;
+  }
+  if (rests) {
+    phase_ = Phase::pulses;
+    send_order(Order::pulses);
+  } else if (samples_.recorded() - waits_since_ > rest_patience_periods) {
+    end_round(PulseJudgement::moved(), signals);
+  }
+}
+
+void SelfTest::end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
+  note_pulses(judgement);
+  store_measurements(judgement, signals);
+  if (judgement.any(Result::failed)) ++failures_;
+  const bool is_conclusive = !judgement.any(Result::failed) && !judgement.any(Result::moved);
+  if (is_conclusive || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
+    finish_test();
+  else
+    begin_round();
+}
+
+void SelfTest::note_pulses(const PulseJudgement& judgement) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    note(of_axis(Item::motor_1, i), judgement.motors[i].result, judgement.motors[i].figure);
+    note(of_axis(Item::bridge_1, i), judgement.bridges[i].result, judgement.bridges[i].figure);
+  }
+  note(Item::current_wires, judgement.wires.result, judgement.wires.figure);
+}
+
+/// Stores the new measurements. Values without a new measurement do not change.
+void SelfTest::store_measurements(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (judgement.bridges[i].result == Result::passed) measured_.bridge_loss_part[i] = judgement.bridge_loss_part[i];
+    if (judgement.resistance_ohm[i] == 0.0f) continue;
+    measured_.resistance_ohm[i] = judgement.resistance_ohm[i];
+    measured_.heat[i] = signals[of_axis(protocol::Signal::motor_heat_1, i)];
+  }
+}
+
+void SelfTest::finish_test() {
+  ++tests_ended_;
+  phase_ = Phase::verdict;
+  send_order(protocol::takes_force(report()) ? Order::fail : Order::pass);
+}
+
+void SelfTest::send_order(Order order) {
+  round_is_over_.store(false);
+  order_.store(test_ * orders + static_cast<std::uint32_t>(order));
+}
+
+protocol::SelfTestReport SelfTest::report() const {
+  protocol::SelfTestReport report{};
+  report.is_running = phase_ != Phase::idle;
+  report.tests_begun = test_;
+  report.tests_ended = tests_ended_;
+  report.time_periods = samples_.recorded();
+  for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
+  const Sample* const newest = samples_.newest();
+  if (newest == nullptr) return report;
+  // A fault from continuous monitoring has precedence over the result of a single test.
+  const protocol::Fault reported = newest->summary.fault;
+  const auto fail = [&report](Item item) { report.entries[static_cast<std::size_t>(item)].result = Result::failed; };
+  if (reported == protocol::Fault::current_sensor) fail(Item::current_offsets);
+  if (reported == protocol::Fault::memory_damaged) fail(Item::flash);
+  return report;
+}
+
+INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
+  const std::uint32_t number = controller.self_tests();
+  begun_.store(number);
+  if (pulses_run_ && !controller.pulses_run()) {
+    pulses_run_ = false;
+    round_is_over_.store(true);
+  }
+  const std::uint32_t order = order_.load();
+  if (order / orders != number) return;
+  order_.store(0);
+  switch (static_cast<Order>(order % orders)) {
+    case Order::none: return;
+    case Order::pulses: pulses_run_ = true; return controller.start_pulses();
+    case Order::pass: return controller.pass_self_test(measured_);
+    case Order::fail: return controller.raise(protocol::Fault::self_test_failed);
+  }
+}
+
+}  // namespace inkwell::link

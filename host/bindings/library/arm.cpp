@@ -1,0 +1,221 @@
+#include "host/bindings/library/arm.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/client/device/board_store.hpp"
+#include "host/client/device/clear_fault.hpp"
+#include "host/client/device/fault_text.hpp"
+
+#include "host/bindings/library/errors.hpp"
+
+namespace inkwell::library {
+namespace {
+
+using protocol::Command;
+
+/// Board time after which enable_force is sent again.
+constexpr double retry_s = 0.1;
+
+/// After this time without a pose the board counts as reset or paused.
+constexpr double silence_s = 2.0;
+
+std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
+
+/// Converts the fault information of a library pose.
+device::ShownFault shown_fault(const inkwell_pose& pose) {
+  const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
+                     : pose.state == INKWELL_STARTING ? protocol::State::testing
+                                                      : protocol::State::ready;
+  return {periods_of(pose), state, static_cast<protocol::Fault>(pose.fault)};
+}
+
+void refuse_in_fault(const inkwell_pose& pose) {
+  if (pose.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(pose.fault)));
+}
+
+}  // namespace
+
+Arm::Arm(const std::string& address)
+    : connection_(address, poses_),
+      force_(connection_.device(), poses_),
+      scope_(connection_.device(), poses_),
+      servo_(
+          poses_, [this](const auto& force_N, std::uint32_t pose_sequence) { drive(force_N, pose_sequence); },
+          [this] { force_.let_go(); }) {}
+
+Arm::~Arm() {
+  servo_.request_end();
+  force_.stop();  // discards later forces of a servo that is still running
+  if (connection_.device().drives() && poses_.loss() != Loss::link) bid_farewell();
+}
+
+void Arm::bid_farewell() {
+  auto& device = connection_.device();
+  poses_.expect_force_off();
+  try {
+    device.send_force({.mode = protocol::ForceMode::none});
+    device.place_shapes({});
+    // The board raises a fault if USB disconnects while the force is on. Over USB/IP, the exit of the last program
+    // disconnects USB.
+    device.disable_force();
+    device.release();
+  } catch (const Error&) {  // the device is already gone, and so is its force
+  }
+}
+
+device::Device& Arm::device() {
+  poses_.require_poses();
+  return connection_.device();
+}
+
+device::Device& Arm::linked_device() {
+  poses_.require_link();
+  return connection_.device();
+}
+
+// ---- pose --------------------------------------------------------------------------------------------------
+
+inkwell_pose Arm::pose() const {
+  inkwell_pose pose;
+  read([&](const PoseFeed::Seen& last) { pose = last.pose; });
+  return pose;
+}
+
+inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
+                                Turns::Answer answer) const {
+  const std::uint32_t seen = after_sequence.value_or(last().pose.sequence);
+  bool is_new = false;
+  const auto next =
+      poses_.wait([&](const auto& newest, Loss loss) { return is_new = loss == Loss::none && newest.sequence != seen; },
+                  checked_timeout_s(timeout_s), answer);
+  if (!is_new) throw TimedOut("No pose arrived in time. Reset the board, or let a paused virtual board run.");
+  return next;
+}
+
+void Arm::sleep(double duration_s) const {
+  constexpr double rounding_s = 1e-6;  // tolerance for times that are multiples of a control period
+  inkwell_pose now = pose();
+  const double end_s = now.time_s + checked_timeout_s(duration_s) - rounding_s;
+  while (now.time_s < end_s) {
+    const double before_s = now.time_s;
+    now = poses_.wait([&](const auto& newest, Loss) { return newest.time_s >= end_s; }, silence_s);
+    if (now.time_s == before_s)
+      throw TimedOut("No pose arrived for 2 s. Reset the board, or let a paused virtual board run.");
+  }
+}
+
+control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
+  return control::forward_kinematics(joint_rad, connection_.geometry());
+}
+
+// ---- force -------------------------------------------------------------------------------------------------
+
+void Arm::enable_force(double timeout_s) {
+  const double limit_s = checked_timeout_s(timeout_s);
+  clear_inherited_fault();
+  refuse_in_fault(pose());
+  claim();
+  poses_.use_force();
+  poses_.forget_lost_force();
+  for (double waited_s = 0;;) {
+    // A board that is not referenced yet drops the request, so the request is repeated.
+    device().carry_out(Command::enable_force);
+    const double wait_s = std::min(limit_s - waited_s, retry_s);
+    const auto now = poses_.wait(
+        [](const auto& newest, Loss) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
+        wait_s);
+    if (now.state == INKWELL_ACTIVE) return;
+    refuse_in_fault(now);
+    waited_s += wait_s;
+    if (waited_s < limit_s) continue;
+    if (now.state == INKWELL_UNREFERENCED)
+      throw NotNow("The encoders are not referenced. Put the stylus into the inkwell once, then try again.");
+    throw TimedOut("The device did not switch the force on in time. Try again.");
+  }
+}
+
+// A silent board may still receive requests, so the request is sent during a silence too.
+void Arm::disable_force() {
+  expecting_force_off([this] { linked_device().disable_force(); });
+}
+
+void Arm::stop() {
+  expecting_force_off([this] { linked_device().stop(); });
+}
+
+/// Clears a fault that a previous program, or the loss of the link, has caused.
+void Arm::clear_inherited_fault() {
+  const auto now = shown_fault(pose());
+  if (now.state == protocol::State::fault && device::is_left_by_a_host(now.fault) && !poses_.had_force()) clear_fault();
+}
+
+void Arm::clear_fault() {
+  poses_.forget_lost_force();
+  inkwell_pose seen = pose();
+  device::clear_fault(device(), shown_fault(seen), [&] {
+    seen = wait_for_pose(silence_s, seen.sequence);
+    return shown_fault(seen);
+  });
+}
+
+void Arm::claim() {
+  if (connection_.device().drives()) return;
+  const std::lock_guard lock(claim_mutex_);
+  if (!connection_.device().drives()) device().claim();
+}
+
+void Arm::take_over() {
+  const std::lock_guard lock(claim_mutex_);
+  device().take_over();
+}
+
+void Arm::set_force(const double (&force_N)[3]) { drive(force_N, pose().sequence); }
+
+void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
+  poses_.require_poses();
+  poses_.require_force();
+  claim();
+  poses_.use_force();
+  force_.send(force_N, pose_sequence);
+}
+
+void Arm::place_shapes(const device::Shapes& shapes) {
+  claim();
+  device().place_shapes(shapes);
+}
+
+void Arm::start_servo(Servo::Function function) {
+  claim();
+  poses_.require_poses();
+  poses_.use_force();
+  poses_.forget_lost_force();
+  servo_.start(std::move(function));
+}
+
+// ---- parameters --------------------------------------------------------------------------------------------
+
+void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
+  const std::lock_guard lock(parameters_mutex_);
+  device().set_parameters(changes);
+  const bool changes_arm =
+      std::any_of(changes.begin(), changes.end(), [](const auto& change) { return info(change.first).belongs_to_arm; });
+  if (changes_arm) connection_.set_geometry(device().parameters());
+}
+
+void Arm::restore_parameters() {
+  const std::lock_guard lock(parameters_mutex_);
+  device().restore_stored_parameters();
+  connection_.set_geometry(device().parameters());
+}
+
+void Arm::factory_reset() {
+  const std::lock_guard lock(parameters_mutex_);
+  device::factory_reset(device());
+  connection_.set_geometry(device().parameters());
+}
+
+}  // namespace inkwell::library

@@ -1,0 +1,114 @@
+// An open arm, which consists of parts. Each part owns its data, and any thread may call any part.
+//
+//   Part         (thread)                    data.
+//   PoseFeed     (no thread)                 the newest pose, and the losses of poses, link and force.
+//   Turns        (no thread)                 the turns of all virtual boards of the program.
+//   Connection   (connects, reads poses)     the device, the started board, and the geometry of the arm.
+//   ForceOutput  (sends forces)              the newest force and the force mode.
+//   ScopeStream  (reads samples)             the selected signals, the unread samples, and the recording.
+//   Servo        (calls the servo function)  the servo function and its state.
+//
+// Each part has private mutexes. While a part holds a mutex, it may call only PoseFeed. PoseFeed may then call only
+// Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/bindings/library/connection.hpp"
+#include "host/bindings/library/force_output.hpp"
+#include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/scope_stream.hpp"
+#include "host/bindings/library/servo.hpp"
+
+namespace inkwell::library {
+
+class Arm {
+ public:
+  explicit Arm(const std::string& address);
+  /// Removes the force first and then waits for a running call of the servo. The servo must not call this destructor.
+  ~Arm();
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+
+  device::Device& device();  ///< throws Disconnected while no poses arrive
+  const device::Endpoint& endpoint() const { return connection_.endpoint(); }
+  Servo& servo() { return servo_; }
+  ScopeStream& scope() { return scope_; }
+
+  /// The newest pose.
+  PoseFeed::Seen last() const { return poses_.last(); }
+  /// Passes the newest pose to `take`, then throws Disconnected if no poses arrive.
+  template <class Take>
+  void read(Take take) const {
+    poses_.read(take);
+  }
+  /// The first pose after the pose with this sequence. Throws Disconnected if the link is lost, and TimedOut. `answer`
+  /// shows whether the calling thread sets a force for each pose, so that lock step waits for the force.
+  inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
+                             Turns::Answer answer = Turns::Answer::none) const;
+  /// Waits until this board time has passed. Throws TimedOut if no poses arrive.
+  void sleep(double duration_s) const;
+  control::Pose forward_kinematics(const control::Triple& joint_rad) const;
+
+  /// Makes this arm object the driver, like set_force(), place_shapes() and start_servo(). Throws InUse with the name
+  /// of the driver if another program or arm object drives the arm.
+  void enable_force(double timeout_s);
+  /// Takes the arm over from its current driver.
+  void take_over();
+  void disable_force();
+  void stop();
+  /// Throws FaultStays if the cause remains.
+  void clear_fault();
+  void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
+  void set_force(const double (&force_N)[3]);
+  void place_shapes(const device::Shapes& shapes);
+  void start_servo(Servo::Function function);
+
+  void set_parameters(const std::vector<device::ParameterChange>& changes);
+  void restore_parameters();
+  void factory_reset();
+  void start_recording(const std::string& path) { scope_.start_recording(path, endpoint().is_virtual); }
+
+  /// Passes the control client of the arm's own virtual board to `action`. Throws NotNow if this arm has not started a
+  /// board.
+  template <class Action>
+  void with_own_board(Action action) {
+    connection_.with_own_board(action);
+  }
+
+ private:
+  inkwell_pose pose() const;
+  device::Device& linked_device();  ///< throws Disconnected while the link is lost
+  void clear_inherited_fault();
+  /// Runs an action that switches the force off, and does not report this as a lost force. Restores the state if the
+  /// board refuses the action.
+  template <class Action>
+  void expecting_force_off(Action action) {
+    poses_.expect_force_off();
+    try {
+      action();
+    } catch (...) {
+      poses_.forget_lost_force();
+      throw;
+    }
+  }
+  void claim();
+  void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
+  void bid_farewell();
+
+  PoseFeed poses_;
+  Connection connection_;
+  ForceOutput force_;
+  ScopeStream scope_;
+
+  std::mutex claim_mutex_;       ///< serializes claims of the arm
+  std::mutex parameters_mutex_;  ///< serializes transactions and the updates that follow them
+
+  Servo servo_;  ///< last: its function uses all other members
+};
+
+}  // namespace inkwell::library

@@ -1,0 +1,58 @@
+// Guards every call of the C interface. No exception leaves the library, and each call returns a result. A canceled
+// thread stops where it waits. A forked child uses no arm of its parent.
+#pragma once
+
+#include <cxxabi.h>
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "host/client/process/cancellation.hpp"
+#include "host/client/process/fork.hpp"
+
+#include "host/bindings/library/arm.hpp"
+#include "host/bindings/library/errors.hpp"
+#include "host/bindings/library/seen_poses.hpp"
+
+struct inkwell_arm {
+  explicit inkwell_arm(const std::string& address) : arm(address) {}
+  inkwell::library::Arm arm;
+  inkwell::library::SeenPoses seen;
+  inkwell::process::Origin origin;
+};
+
+namespace inkwell::library {
+
+/// The result for the current exception. Stores the sentence of the exception as inkwell_error_text() of the calling
+/// thread.
+inkwell_result result_of_exception() noexcept;
+
+template <class Action>
+inkwell_result guarded(Action action) {
+  const process::CancellationGuard guard;
+  try {
+    action();
+    return INKWELL_OK;
+  } catch (const abi::__forced_unwind&) {  // the thread was canceled
+    throw;
+  } catch (...) {
+    return result_of_exception();
+  }
+}
+
+/// Throws BadArgument if the pointer is null.
+template <class Pointer>
+Pointer required(Pointer pointer, const char* what) {
+  if (pointer == nullptr) throw BadArgument(fmt::format("{} is NULL. Pass a valid pointer.", what));
+  return pointer;
+}
+
+/// Throws NotNow in a forked child, which has a copy of the arm without its threads.
+inline Arm& arm_of(inkwell_arm* arm) {
+  const auto& origin = required(arm, "The arm")->origin;
+  if (origin.is_here()) return arm->arm;
+  throw NotNow(fmt::format("The arm was opened by process {}. Open the arm again in this process.", origin.process()));
+}
+
+}  // namespace inkwell::library

@@ -1,0 +1,70 @@
+// The thread that opens the arm, reads its poses, and reopens it after a lost link.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "firmware/control/signal_path/kinematics.hpp"
+#include "host/client/device/open_arm.hpp"
+
+#include "host/bindings/library/pose_feed.hpp"
+#include "host/bindings/library/pose_reader.hpp"
+
+namespace inkwell::library {
+
+class Connection {
+ public:
+  /// Returns once poses arrive. If this arm has started a virtual board, the poses are then referenced. Throws Error.
+  Connection(const std::string& address, PoseFeed& poses);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// The device of the arm; the same object after the link was lost and restored.
+  device::Device& device() const { return *arm_.device; }
+  const device::Endpoint& endpoint() const { return arm_.endpoint; }
+
+  /// Passes the board's control client to `action`; calls are serialized. Throws NotNow if this arm has not started a
+  /// board.
+  template <class Action>
+  void with_own_board(Action action) {
+    const std::lock_guard lock(control_mutex_);
+    action(own_board());
+  }
+
+  control::Arm geometry() const;
+  void set_geometry(const protocol::ParameterSet& parameters);
+
+ private:
+  void run(const std::string& address, std::promise<void> opened);
+  using OnPose = std::function<void(const ReadPose&)>;
+  /// Reads poses until the arm closes. Throws when the link is lost.
+  void read_poses(const OnPose& on_pose);
+  /// Reports that another program drives the arm, or that no program drives it. False if the driver is not known yet.
+  bool report_lost_claim();
+  /// Waits until the arm is connected again and opens it. False if the arm closes before it is connected again.
+  bool reopen();
+  bool try_to_reopen();
+  std::optional<device::Endpoint> find_again() const;
+  bool ends() const;
+  void end();
+  device::ControlClient& own_board();
+
+  PoseFeed& poses_;
+  device::OpenArm arm_;  ///< created and destroyed by the thread; constant between construction and destruction
+  std::mutex control_mutex_;
+  mutable std::mutex geometry_mutex_;
+  control::Arm geometry_{};
+  mutable std::mutex end_mutex_;
+  std::condition_variable end_changed_;
+  bool ends_ = false;
+  bool is_open_ = false;  ///< used by the thread
+  std::thread thread_;
+};
+
+}  // namespace inkwell::library

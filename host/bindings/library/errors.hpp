@@ -1,0 +1,31 @@
+// Errors of the library itself. Errors of the device are in error.hpp and the headers next to it.
+#pragma once
+
+#include "host/client/device/error.hpp"
+
+namespace inkwell::library {
+
+using device::Error;
+
+/// The expected event did not occur in time.
+class TimedOut : public Error {
+ public:
+  using Error::Error;
+};
+/// The function does not accept this value.
+class BadArgument : public Error {
+ public:
+  using Error::Error;
+};
+/// The force was switched off without a call of this program.
+class ForceLost : public Error {
+ public:
+  using Error::Error;
+};
+/// The device does not accept the request in its current state.
+class NotNow : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace inkwell::library

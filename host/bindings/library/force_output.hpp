@@ -1,0 +1,58 @@
+// The thread that sends a program's forces, so that no caller waits for USB.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "host/client/device/device.hpp"
+
+#include "host/bindings/library/force_interval.hpp"
+#include "host/bindings/library/pose_feed.hpp"
+
+namespace inkwell::library {
+
+/// Sends the newest force when the device has received the previous force. USB transfers one force per millisecond, and
+/// an old force is useless. In lock step the force is sent before the next pose is requested.
+class ForceOutput : private TurnPart {
+ public:
+  /// Sends no forces while `poses` reports a loss.
+  ForceOutput(device::Device& device, PoseFeed& poses);
+  ~ForceOutput();
+
+  void set_mode(protocol::ForceMode mode);
+  /// `pose_sequence` is the sequence of the newest pose that the program had read when it computed the force. Throws
+  /// BadArgument if the force is not finite.
+  void send(const double (&force_N)[3], std::uint32_t pose_sequence);
+  /// Stops the force, which then fades out.
+  void let_go();
+  /// No force is sent after this function returns.
+  void stop();
+
+ private:
+  void before_pose() override;
+  void lose_link(const std::string& cause) override;
+  void run();
+  /// Sends the queued force if the device accepts the previous report within `patience`.
+  void send_next(std::chrono::milliseconds patience);
+  /// False after stop().
+  bool wait_for_force();
+  device::ForceRequest take_force();
+  void drop_force();
+
+  device::Device& device_;
+  PoseFeed& poses_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<device::ForceRequest> next_;
+  protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
+  bool stops_ = false;
+  ForceInterval interval_;  ///< used by the sending thread
+  std::thread thread_;      ///< not used in lock step, where the thread that reads poses sends the forces
+};
+
+}  // namespace inkwell::library

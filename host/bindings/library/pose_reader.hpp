@@ -1,0 +1,32 @@
+// Computes the derived values of a pose.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include <inkwell/inkwell.h>
+#include "firmware/control/signal_path/kinematics.hpp"
+#include "host/client/device/device.hpp"
+#include "host/client/kinematics/velocity.hpp"
+
+namespace inkwell::library {
+
+struct ReadPose {
+  inkwell_pose pose;
+  bool is_referenced;
+};
+
+/// Each object serves one arm and one thread.
+class PoseReader {
+ public:
+  inkwell_pose read(const device::Pose& report, const control::Arm& geometry);
+  /// The newest pose that the device has sent. The function waits if no pose has arrived; none on time-out. Older poses
+  /// are skipped, because a servo would answer them too late.
+  std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
+                                      const control::Arm& geometry);
+
+ private:
+  kinematics::VelocityFit velocity_;
+};
+
+}  // namespace inkwell::library

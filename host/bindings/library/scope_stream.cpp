@@ -1,0 +1,188 @@
+#include "host/bindings/library/scope_stream.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/client/process/cancellation.hpp"
+
+#include "host/bindings/library/errors.hpp"
+
+namespace inkwell::library {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Limit for unread samples: five seconds.
+constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
+/// Longest delay of the thread's exit while no samples arrive.
+constexpr auto read_timeout = 20ms;
+
+}  // namespace
+
+ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+  if (poses_.is_in_lock_step())
+    poses_.add(*this);
+  else
+    thread_ = std::thread([this] { run(); });
+}
+
+ScopeStream::~ScopeStream() {
+  {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+    changed_.notify_all();
+  }
+  poses_.remove(*this);
+  if (thread_.joinable()) thread_.join();
+}
+
+void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
+  const std::lock_guard user(user_mutex_);
+  if (recorder_) throw NotNow("A recording is running. Stop it before you select other signals.");
+  if (signals.empty() && !is_selected()) return;
+  poses_.require_poses();
+  device_.select_signals(signals);
+  const std::lock_guard lock(mutex_);
+  ++selection_;
+  signals_ = signals;
+  samples_.clear();
+  rows_kept_ = 0;
+  ended_by_.clear();
+  changed_.notify_all();
+}
+
+bool ScopeStream::is_selected() {
+  const std::lock_guard lock(mutex_);
+  if (signals_.empty()) ended_by_.clear();
+  return !signals_.empty();
+}
+
+void ScopeStream::after_pose() {
+  const std::uint64_t selection = selection_;
+  try {
+    while (auto samples = device_.read_scope(0ms)) keep(std::move(*samples));
+  } catch (const Error& error) {
+    end(selection, error.what());
+  }
+}
+
+void ScopeStream::lose_link(const std::string& cause) { end(selection_, cause); }
+
+void ScopeStream::run() {
+  for (;;) {
+    std::uint64_t selection = 0;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stops_ || !signals_.empty(); });
+      if (stops_) return;
+      selection = selection_;
+    }
+    try {
+      if (auto samples = device_.read_scope(read_timeout)) keep(std::move(*samples));
+    } catch (const Error& error) {
+      end(selection, error.what());
+    }
+  }
+}
+
+/// Ends a selection. After a reconnection the board no longer has the selection.
+void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
+  const std::lock_guard lock(mutex_);
+  if (selection != selection_ || signals_.empty()) return;
+  ++selection_;
+  signals_.clear();
+  samples_.clear();
+  rows_kept_ = 0;
+  ended_by_ = cause;
+  changed_.notify_all();
+}
+
+void ScopeStream::keep(device::ScopeSamples samples) {
+  const std::lock_guard lock(mutex_);
+  if (samples.signals != signals_) return;
+  if (recorder_) recorder_->push(samples);
+  rows_kept_ += samples.count;
+  samples_.push_back(std::move(samples));
+  while (rows_kept_ > rows_maximum) {  // nobody reads: drop the oldest samples and count them as lost
+    samples_[1].lost_before += samples_[0].lost_before + samples_[0].count;
+    rows_kept_ -= samples_[0].count;
+    samples_.pop_front();
+  }
+  changed_.notify_all();
+}
+
+void ScopeStream::wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s) {
+  const std::uint64_t selection = selection_;
+  const auto is_over = [&] { return rows_kept_ > 0 || selection_ != selection; };
+  if (!poses_.is_in_lock_step()) {
+    constexpr double longest_s = 1e6;
+    const process::CancellationPoint point;
+    changed_.wait_for(lock, std::chrono::duration<double>(std::min(timeout_s, longest_s)),
+                      [&] { return stops_ || is_over(); });
+    return;
+  }
+  lock.unlock();
+  poses_.wait([&](const auto&, Loss) { return is_over(); }, timeout_s);
+  lock.lock();
+}
+
+std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::size_t capacity) {
+  poses_.require_link();
+  std::unique_lock lock(mutex_);
+  if (signals_.empty() && !ended_by_.empty())
+    throw device::Disconnected(fmt::format("{} Then select the signals again.", ended_by_));
+  if (signals_.empty()) throw NotNow("No signals are selected. Select some first.");
+  wait_for_samples(lock, checked_timeout_s(timeout_s));
+  if (signals_.empty() && !ended_by_.empty()) throw device::Disconnected(ended_by_);
+  if (samples_.empty() || capacity == 0) return std::nullopt;
+  device::ScopeSamples& oldest = samples_.front();
+  device::ScopeSamples taken;
+  if (oldest.count <= capacity) {
+    taken = std::move(oldest);
+    samples_.pop_front();
+  } else {
+    taken = oldest;
+    const auto values = static_cast<std::ptrdiff_t>(capacity * signals_.size());
+    taken.values.resize(static_cast<std::size_t>(values));
+    taken.count = capacity;
+    oldest.values.erase(oldest.values.begin(), oldest.values.begin() + values);
+    oldest.first_period += static_cast<std::int64_t>(capacity);
+    oldest.count -= capacity;
+    oldest.lost_before = 0;
+  }
+  rows_kept_ -= taken.count;
+  return taken;
+}
+
+void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
+  const std::lock_guard user(user_mutex_);
+  std::vector<protocol::Signal> signals;
+  {
+    const std::lock_guard lock(mutex_);
+    signals = signals_;
+  }
+  poses_.require_poses();
+  if (signals.empty()) throw NotNow("No signals are selected. Select the signals to record first.");
+  if (recorder_) throw NotNow("A recording is already running. Stop it first.");
+  auto recorder = std::make_unique<recording::Recorder>(
+      path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation));
+  const std::lock_guard lock(mutex_);
+  recorder_ = std::move(recorder);
+}
+
+recording::RecorderStatus ScopeStream::stop_recording() {
+  const std::lock_guard user(user_mutex_);
+  if (!recorder_) throw NotNow("No recording is running. Start one first.");
+  std::unique_ptr<recording::Recorder> finished;
+  {
+    const std::lock_guard lock(mutex_);
+    finished = std::move(recorder_);
+  }
+  auto status = finished->stop();
+  if (!status.error.empty()) throw Error(status.error);
+  return status;
+}
+
+}  // namespace inkwell::library

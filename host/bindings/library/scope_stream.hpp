@@ -1,0 +1,68 @@
+// The thread that reads the scope, for callers and for a recording.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/client/device/device.hpp"
+#include "host/client/recording/recorder.hpp"
+
+#include "host/bindings/library/pose_feed.hpp"
+
+namespace inkwell::library {
+
+/// In lock step there is no thread. The samples before a pose are read together with the pose.
+class ScopeStream : private TurnPart {
+ public:
+  ScopeStream(device::Device& device, PoseFeed& poses);
+  ~ScopeStream();
+
+  /// Throws NotNow during a recording.
+  void select(const std::vector<protocol::Signal>& signals);
+  /// At most `capacity` received samples; none on time-out. Throws NotNow if no signals are selected, and Disconnected
+  /// if a lost link has ended the selection.
+  std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
+
+  /// Throws NotNow if no signals are selected or a recording is running.
+  void start_recording(const std::string& path, bool is_simulation);
+  /// Throws NotNow if no recording is running, and Error if the file could not be written.
+  recording::RecorderStatus stop_recording();
+
+ private:
+  void after_pose() override;
+  void lose_link(const std::string& cause) override;
+  void run();
+  void keep(device::ScopeSamples samples);
+  void end(std::uint64_t selection, const std::string& cause);
+  /// Requires the mutex, and unlocks the mutex during the wait.
+  void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
+  /// If no signals are selected, the call also clears the reason why the last selection ended.
+  bool is_selected();
+
+  device::Device& device_;
+  PoseFeed& poses_;
+
+  std::mutex user_mutex_;  ///< serializes select, start and stop; locked before `mutex_`
+
+  std::mutex mutex_;  ///< guards the following members; not held during device or file access
+  std::condition_variable changed_;
+  std::atomic<std::uint64_t> selection_ = 0;  ///< number of selections made and ended; may be read without the mutex
+  std::vector<protocol::Signal> signals_;
+  std::string ended_by_;                           ///< reason why the selection ended; empty if the program ended it
+  std::deque<device::ScopeSamples> samples_;       ///< unread samples
+  std::atomic<std::size_t> rows_kept_ = 0;         ///< may be read without the mutex
+  std::unique_ptr<recording::Recorder> recorder_;  ///< changing it also requires `user_mutex_`
+  bool stops_ = false;
+
+  std::thread thread_;
+};
+
+}  // namespace inkwell::library

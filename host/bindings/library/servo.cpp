@@ -1,0 +1,122 @@
+#include "host/bindings/library/servo.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "host/client/process/cancellation.hpp"
+
+#include "host/bindings/library/errors.hpp"
+
+namespace inkwell::library {
+
+Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go)
+    : poses_(poses), output_(std::move(output)), let_go_(std::move(let_go)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+Servo::~Servo() {
+  request_end();
+  {
+    const std::lock_guard lock(mutex_);
+    closes_ = true;
+    changed_.notify_all();
+  }
+  thread_.join();
+}
+
+void Servo::start(Function function) {
+  const std::lock_guard lock(mutex_);
+  if (runs_) throw NotNow("A servo is already running on this arm. Stop it first.");
+  runs_ = true;
+  ++started_;
+  is_to_end_ = false;
+  ended_by_ = nullptr;
+  known_interruptions_ = poses_.interruptions();
+  function_ = std::move(function);
+  poses_.begin_answer(thread_.get_id(), Turns::Answer::servo);  // until the servo waits for its first pose
+  changed_.notify_all();
+}
+
+void Servo::request_end() {
+  is_to_end_ = true;
+  poses_.wake();
+  poses_.end_answer(thread_.get_id());  // a call that does not return must not prevent the board from removing the
+                                        // force
+}
+
+void Servo::stop() {
+  std::uint64_t meant = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!runs_) return;
+    meant = started_;
+    is_to_end_ = true;
+  }
+  poses_.wake();
+  if (is_caller()) return;
+  std::unique_lock lock(mutex_);
+  const process::CancellationPoint point;
+  changed_.wait(lock, [&] { return !runs_ || started_ != meant; });
+}
+
+bool Servo::is_running() const {
+  const std::lock_guard lock(mutex_);
+  return runs_;
+}
+
+void Servo::throw_what_ended_it() const {
+  std::exception_ptr ended_by;
+  {
+    const std::lock_guard lock(mutex_);
+    ended_by = ended_by_;
+  }
+  if (ended_by) std::rethrow_exception(ended_by);
+}
+
+void Servo::run() {
+  process::never_cancel_this_thread();
+  for (;;) {
+    Function function;
+    std::uint64_t known_interruptions = 0;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return closes_ || function_; });
+      if (closes_) return;
+      function = std::exchange(function_, nullptr);
+      known_interruptions = known_interruptions_;
+    }
+    std::exception_ptr ended_by;
+    try {
+      call(function, known_interruptions);
+    } catch (...) {  // loss of poses or force, another driver, or an exception of the function
+      ended_by = std::current_exception();
+    }
+    if (!origin_.is_here()) return;
+    let_go_();
+    poses_.end_answer(thread_.get_id());
+    const std::lock_guard lock(mutex_);
+    runs_ = false;
+    ended_by_ = ended_by;
+    changed_.notify_all();
+  }
+}
+
+void Servo::call(const Function& function, std::uint64_t known_interruptions) {
+  std::uint32_t seen = poses_.last().pose.sequence;
+  for (bool goes_on = true; goes_on;) {
+    const auto pose = poses_.wait_uninterrupted(
+        known_interruptions, [&](const auto& newest) { return is_to_end_ || newest.sequence != seen; });
+    if (is_to_end_) return;
+    seen = pose.sequence;
+    double force_N[3]{};
+    goes_on = function(pose, force_N);
+    if (!origin_.is_here()) return;  // the function has forked, and this is the child
+    // A force that is not finite counts as 0. Without this replacement, the previous force would stay active until its
+    // expiry.
+    for (double& value : force_N)
+      if (!std::isfinite(value)) value = 0.0;
+    output_(force_N, seen);
+  }
+}
+
+}  // namespace inkwell::library

@@ -1,0 +1,62 @@
+// The thread that calls a program's servo function at each pose, until poses or force are lost.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "host/client/process/fork.hpp"
+
+#include "host/bindings/library/pose_feed.hpp"
+
+namespace inkwell::library {
+
+class Servo {
+ public:
+  /// Writes the force on the hand, which is preset to 0. Returning false or throwing stops the servo.
+  using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
+  /// Receives each force, and the sequence of the pose to which the force belongs. An exception of this function stops
+  /// the servo.
+  using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
+
+  /// `let_go` is called when a servo has stopped.
+  Servo(const PoseFeed& poses, Output output, std::function<void()> let_go);
+  /// Waits until a running call returns.
+  ~Servo();
+
+  /// Throws NotNow if a servo is running.
+  void start(Function function);
+  /// Requests a stop after the running call, if any.
+  void request_end();
+  /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
+  void stop();
+  bool is_running() const;
+  /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. Does not throw if the
+  /// program or the function stopped the servo.
+  void throw_what_ended_it() const;
+  bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }
+
+ private:
+  void run();
+  void call(const Function& function, std::uint64_t known_interruptions);
+
+  const PoseFeed& poses_;
+  const Output output_;
+  const std::function<void()> let_go_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  Function function_;                      ///< function of the running servo
+  std::uint64_t known_interruptions_ = 0;  ///< count of interruptions when the servo was started
+  std::exception_ptr ended_by_;
+  bool runs_ = false, closes_ = false;
+  std::uint64_t started_ = 0;  ///< number of servos started so far
+  std::atomic<bool> is_to_end_ = false;
+  const process::Origin origin_;
+  std::thread thread_;
+};
+
+}  // namespace inkwell::library

@@ -1,0 +1,429 @@
+// libinkwell for Octave and MATLAB, from one source. The .m files in this folder call inkwell_mex(COMMAND, ...).
+//
+// Build commands:
+//   mkoctfile --mex inkwell_mex.cpp -Ihost/bindings/library/include -Lbuild/pc -linkwell     Octave
+//   mex inkwell_mex.cpp -Ihost/bindings/library/include -Lbuild/pc -linkwell                 MATLAB
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <mex.h>
+#include <inkwell/inkwell.hpp>
+
+namespace {
+
+using inkwell::require;
+using Arguments = std::vector<const mxArray*>;
+
+std::map<int, inkwell_arm*> arms;  ///< open arms by their number in the interpreter
+int newest = 0;
+
+struct Wrong : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+const mxArray* argument(const Arguments& arguments, std::size_t index) {
+  if (index >= arguments.size()) throw Wrong("An argument is missing. Read the help of the function.");
+  return arguments[index];
+}
+
+std::string text(const mxArray* value) {
+  char* characters = mxIsChar(value) ? mxArrayToString(value) : nullptr;
+  if (characters == nullptr) throw Wrong("An argument is not a name. Give the name as text, 'like this'.");
+  const std::string copy = characters;
+  mxFree(characters);
+  return copy;
+}
+
+std::vector<std::string> texts(const mxArray* value) {
+  if (!mxIsCell(value)) return {text(value)};
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < mxGetNumberOfElements(value); ++i) {
+    const mxArray* cell = mxGetCell(value, static_cast<mwIndex>(i));
+    if (cell == nullptr) throw Wrong("An entry of the name list is not a name. Give all names as text.");
+    all.push_back(text(cell));
+  }
+  return all;
+}
+
+std::vector<const char*> pointers(const std::vector<std::string>& names) {
+  std::vector<const char*> pointers;
+  for (const auto& name : names) pointers.push_back(name.c_str());
+  return pointers;
+}
+
+double number(const mxArray* value) {
+  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 1)
+    throw Wrong("An argument is not a number. Give a number.");
+  return mxGetScalar(value);
+}
+
+inkwell::Vector vector(const mxArray* value) {
+  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 3)
+    throw Wrong("An argument is not a vector. Three numbers are required, [x y z].");
+  const double* numbers = mxGetPr(value);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::map<int, inkwell_arm*>::iterator find(const Arguments& arguments) {
+  const double wanted = number(argument(arguments, 0));
+  const auto found = wanted >= 1 && wanted <= newest ? arms.find(static_cast<int>(wanted)) : arms.end();
+  if (found == arms.end() || found->first != wanted) throw Wrong("This arm is not open. Open one with inkwell_open.");
+  return found;
+}
+
+void close_all() {
+  for (const auto& [_, arm] : arms) inkwell_close(arm);
+  arms.clear();
+}
+
+mxArray* column(const double* values, std::size_t count) {
+  mxArray* array = mxCreateDoubleMatrix(static_cast<mwSize>(count), 1, mxREAL);
+  for (std::size_t i = 0; i < count; ++i) mxGetPr(array)[i] = values[i];
+  return array;
+}
+
+// ---- commands: arguments after the command name, results in the order of the .m file -------------------------
+
+using Answers = std::vector<mxArray*>;
+
+Answers open(const Arguments& arguments) {
+  const std::string address = arguments.empty() ? std::string() : text(arguments[0]);
+  inkwell_arm* arm = nullptr;
+  require(inkwell_open(address.c_str(), &arm));
+  arms[++newest] = arm;
+  return {mxCreateDoubleScalar(newest)};
+}
+
+Answers close(const Arguments& arguments) {
+  const auto found = find(arguments);
+  inkwell_close(found->second);
+  arms.erase(found);
+  return {};
+}
+
+Answers information(const Arguments& arguments) {
+  inkwell_information device_information;
+  char board[INKWELL_BOARD_NAME_SIZE];
+  require(inkwell_get_information(find(arguments)->second, &device_information));
+  require(inkwell_get_board_name(find(arguments)->second, board));
+  const char* names[] = {"product", "serial_number", "board", "firmware_version", "is_virtual"};
+  mxArray* values[] = {mxCreateString(device_information.product), mxCreateString(device_information.serial_number),
+                       mxCreateString(board), mxCreateString(device_information.firmware_version),
+                       mxCreateLogicalScalar(device_information.is_virtual != 0)};
+  mxArray* all = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(all, 0, names[i], values[i]);
+  return {all};
+}
+
+mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
+  static const char* const states[] = {"starting", "unreferenced", "ready", "active", "fault"};
+  const char* names[] = {"time_s",
+                         "state",
+                         "fault_text",
+                         "is_referenced",
+                         "position_m",
+                         "velocity_m_s",
+                         "rotation",
+                         "gimbal_rad",
+                         "joint_rad",
+                         "force_N",
+                         "limited_by_force",
+                         "limited_by_current",
+                         "limited_by_change",
+                         "limited_by_energy",
+                         "limited_by_heat",
+                         "limited_by_speed",
+                         "button_1",
+                         "button_2",
+                         "in_inkwell"};
+  mxArray* structure = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  mxArray* rotation = mxCreateDoubleMatrix(3, 3, mxREAL);
+  for (int row = 0; row < 3; ++row)
+    for (int each = 0; each < 3; ++each) mxGetPr(rotation)[3 * each + row] = pose.rotation[3 * row + each];
+  mxArray* values[] = {mxCreateDoubleScalar(pose.time_s),
+                       mxCreateString(pose.state >= 0 && pose.state < 5 ? states[pose.state] : "unknown"),
+                       mxCreateString(inkwell_fault_text(pose.fault)),
+                       mxCreateLogicalScalar(is_referenced),
+                       column(pose.position_m, 3),
+                       column(pose.velocity_m_s, 3),
+                       rotation,
+                       column(pose.gimbal_rad, 3),
+                       column(pose.joint_rad, 3),
+                       column(pose.force_N, 3),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_FORCE) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CURRENT) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CHANGE) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_ENERGY) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_HEAT) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_SPEED) != 0),
+                       mxCreateLogicalScalar(pose.button_1 != 0),
+                       mxCreateLogicalScalar(pose.button_2 != 0),
+                       mxCreateLogicalScalar(pose.in_inkwell != 0)};
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(structure, 0, names[i], values[i]);
+  return structure;
+}
+
+Answers pose(const Arguments& arguments) {
+  inkwell_pose pose;
+  // Read before and after the pose: if both values are true, the encoders were referenced during the pose.
+  int was_referenced, is_referenced;
+  require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
+  require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
+  require(inkwell_is_referenced(find(arguments)->second, &is_referenced));
+  return {struct_of(pose, was_referenced != 0 && is_referenced != 0)};
+}
+
+/// While no poses arrive, returns the last pose and raises no error.
+Answers last_pose(const Arguments& arguments) {
+  inkwell_pose pose{};
+  int is_referenced = 0;
+  inkwell_get_pose(find(arguments)->second, &pose);
+  inkwell_is_referenced(find(arguments)->second, &is_referenced);
+  return {struct_of(pose, is_referenced != 0)};
+}
+
+Answers sleep(const Arguments& arguments) {
+  require(inkwell_sleep(find(arguments)->second, number(argument(arguments, 1))));
+  return {};
+}
+
+Answers enable(const Arguments& arguments) {
+  const bool on = number(argument(arguments, 1)) != 0.0;
+  inkwell_arm* arm = find(arguments)->second;
+  require(on ? inkwell_enable_force(arm, 5.0) : inkwell_disable_force(arm));
+  return {};
+}
+
+Answers stop(const Arguments& arguments) {
+  require(inkwell_stop(find(arguments)->second));
+  return {};
+}
+
+Answers take_over(const Arguments& arguments) {
+  require(inkwell_take_over(find(arguments)->second));
+  return {};
+}
+
+Answers driver(const Arguments& arguments) {
+  inkwell_driver driver;
+  require(inkwell_get_driver(find(arguments)->second, &driver));
+  const char* names[] = {"is_driven", "is_this_arm", "program", "process_id", "driven_s"};
+  mxArray* answer = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  mxSetField(answer, 0, names[0], mxCreateLogicalScalar(driver.is_driven != 0));
+  mxSetField(answer, 0, names[1], mxCreateLogicalScalar(driver.is_this_arm != 0));
+  mxSetField(answer, 0, names[2], mxCreateString(driver.program));
+  mxSetField(answer, 0, names[3], mxCreateDoubleScalar(driver.process_id));
+  mxSetField(answer, 0, names[4], mxCreateDoubleScalar(driver.driven_s));
+  return {answer};
+}
+
+Answers clear_fault(const Arguments& arguments) {
+  require(inkwell_clear_fault(find(arguments)->second));
+  return {};
+}
+
+Answers force(const Arguments& arguments) {
+  require(inkwell_set_force(find(arguments)->second, vector(argument(arguments, 1)).data()));
+  return {};
+}
+
+Answers get(const Arguments& arguments) {
+  double value = 0;
+  require(inkwell_get_parameter(find(arguments)->second, text(argument(arguments, 1)).c_str(), &value));
+  return {mxCreateDoubleScalar(value)};
+}
+
+Answers set(const Arguments& arguments) {
+  const auto names = texts(argument(arguments, 1));
+  const mxArray* values = argument(arguments, 2);
+  if (!mxIsDouble(values) || mxIsComplex(values) || mxGetNumberOfElements(values) != names.size())
+    throw Wrong("The numbers of names and values differ. Give as many values as names.");
+  require(inkwell_set_parameters(find(arguments)->second, pointers(names).data(), mxGetPr(values), names.size()));
+  return {};
+}
+
+Answers store(const Arguments& arguments) {
+  require(inkwell_store_parameters(find(arguments)->second));
+  return {};
+}
+
+Answers restore(const Arguments& arguments) {
+  require(inkwell_restore_parameters(find(arguments)->second));
+  return {};
+}
+
+Answers factory_reset(const Arguments& arguments) {
+  require(inkwell_factory_reset(find(arguments)->second));
+  return {};
+}
+
+Answers store_state(const Arguments& arguments) {
+  inkwell_store store;
+  require(inkwell_get_store(find(arguments)->second, &store));
+  static const char* const contents[] = {"nothing", "parameters", "factory reset", "other schema"};
+  const char* names[] = {"contents", "not_stored", "stores_left", "records_written"};
+  mxArray* values[] = {mxCreateString(store.contents >= 0 && store.contents < 4 ? contents[store.contents] : "unknown"),
+                       mxCreateDoubleScalar(store.not_stored), mxCreateDoubleScalar(store.stores_left),
+                       mxCreateDoubleScalar(store.records_written)};
+  mxArray* structure = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(structure, 0, names[i], values[i]);
+  return {structure};
+}
+
+Answers self_test(const Arguments& arguments) {
+  inkwell_arm* const arm = find(arguments)->second;
+  std::size_t count = 0;
+  require(inkwell_get_self_test(arm, nullptr, 0, &count));
+  std::vector<inkwell_test_item> items(count);
+  const bool only_last = mxGetScalar(arguments.at(1)) != 0;
+  require((only_last ? inkwell_get_self_test : inkwell_self_test)(arm, items.data(), items.size(), &count));
+  static const char* const results[] = {"not done", "passed", "failed", "moved", "no part", "broken off"};
+  const char* names[] = {"name", "result", "figure", "unit", "takes_force", "meaning", "remedy"};
+  mxArray* table =
+      mxCreateStructMatrix(static_cast<mwSize>(items.size()), 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const inkwell_test_item& item = items[i];
+    const bool is_known = item.result >= 0 && static_cast<std::size_t>(item.result) < std::size(results);
+    mxArray* values[] = {mxCreateString(item.name),
+                         mxCreateString(is_known ? results[item.result] : "unknown"),
+                         mxCreateDoubleScalar(item.figure),
+                         mxCreateString(item.unit),
+                         mxCreateLogicalScalar(item.takes_force != 0),
+                         mxCreateString(item.meaning),
+                         mxCreateString(item.remedy)};
+    for (std::size_t j = 0; j < std::size(names); ++j) mxSetField(table, static_cast<mwIndex>(i), names[j], values[j]);
+  }
+  return {table};
+}
+
+Answers parameters(const Arguments&) {
+  const char* names[] = {"name", "unit", "help", "minimum", "maximum", "default_value"};
+  mxArray* table = mxCreateStructMatrix(static_cast<mwSize>(inkwell_parameter_count()), 1,
+                                        static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < inkwell_parameter_count(); ++i) {
+    const inkwell_parameter& row = *inkwell_parameter_at(i);
+    mxArray* values[] = {mxCreateString(row.name),          mxCreateString(row.unit),
+                         mxCreateString(row.help),          mxCreateDoubleScalar(row.minimum),
+                         mxCreateDoubleScalar(row.maximum), mxCreateDoubleScalar(row.default_value)};
+    for (std::size_t j = 0; j < std::size(names); ++j) mxSetField(table, static_cast<mwIndex>(i), names[j], values[j]);
+  }
+  return {table};
+}
+
+Answers signals(const Arguments&) {
+  mxArray* names = mxCreateCellMatrix(static_cast<mwSize>(inkwell_signal_count()), 1);
+  for (std::size_t i = 0; i < inkwell_signal_count(); ++i)
+    mxSetCell(names, static_cast<mwIndex>(i), mxCreateString(inkwell_signal_at(i)->name));
+  return {names};
+}
+
+Answers select(const Arguments& arguments) {
+  const auto names = texts(argument(arguments, 1));
+  require(inkwell_select_signals(find(arguments)->second, pointers(names).data(), names.size()));
+  return {};
+}
+
+/// Reads this number of samples of the selected signals. Returns the values, the control periods and the number of
+/// lost samples.
+Answers read(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  const auto columns = static_cast<std::size_t>(number(argument(arguments, 1)));
+  const auto wanted = static_cast<std::size_t>(number(argument(arguments, 2)));
+  std::vector<float> values(wanted * columns);
+  std::vector<std::int64_t> periods(wanted);
+  std::size_t rows = 0;
+  std::uint64_t lost = 0;
+  while (rows < wanted) {
+    std::size_t count = 0;
+    std::uint64_t lost_before = 0;
+    require(inkwell_read_samples(arm, 10.0, values.data() + rows * columns, periods.data() + rows, wanted - rows,
+                                 &count, &lost_before));
+    if (count == 0) throw Wrong("No samples arrived within 10 s. Reset the board, or let a paused virtual board run.");
+    rows += count;
+    lost += lost_before;
+  }
+  mxArray* matrix = mxCreateDoubleMatrix(static_cast<mwSize>(rows), static_cast<mwSize>(columns), mxREAL);
+  mxArray* numbers = mxCreateDoubleMatrix(static_cast<mwSize>(rows), 1, mxREAL);
+  for (std::size_t row = 0; row < rows; ++row) {
+    mxGetPr(numbers)[row] = static_cast<double>(periods[row]);
+    for (std::size_t i = 0; i < columns; ++i) mxGetPr(matrix)[i * rows + row] = values[row * columns + i];
+  }
+  return {matrix, numbers, mxCreateDoubleScalar(static_cast<double>(lost))};
+}
+
+Answers hand(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  if (arguments.size() < 2) {
+    require(inkwell_release_virtual_hand(arm));
+  } else {
+    require(inkwell_move_virtual_hand(arm, vector(arguments[1]).data(), number(argument(arguments, 2))));
+  }
+  return {};
+}
+
+const std::map<std::string, Answers (*)(const Arguments&)> commands{
+    {"open", open},
+    {"close", close},
+    {"pose", pose},
+    {"last_pose", last_pose},
+    {"sleep", sleep},
+    {"enable", enable},
+    {"stop", stop},
+    {"take_over", take_over},
+    {"driver", driver},
+    {"clear_fault", clear_fault},
+    {"force", force},
+    {"get", get},
+    {"set", set},
+    {"store", store},
+    {"restore", restore},
+    {"factory_reset", factory_reset},
+    {"self_test", self_test},
+    {"store_state", store_state},
+    {"select", select},
+    {"parameters", parameters},
+    {"signals", signals},
+    {"read", read},
+    {"hand", hand},
+    {"information", information},
+};
+
+Answers run(const Arguments& arguments) {
+  const auto command = commands.find(text(argument(arguments, 0)));
+  if (command == commands.end())
+    throw Wrong("There is no such command. Use the functions whose names begin with inkwell_.");
+  return command->second(Arguments(arguments.begin() + 1, arguments.end()));
+}
+
+/// Error identifier, by which programs distinguish errors.
+const char* identifier_of(inkwell_result result) {
+  switch (result) {
+    case INKWELL_DISCONNECTED: return "inkwell:disconnected";
+    case INKWELL_FORCE_LOST: return "inkwell:force_lost";
+    default: return "inkwell:refused";
+  }
+}
+
+}  // namespace
+
+void mexFunction(int answer_count, mxArray* answers[], int argument_count, const mxArray* arguments[]) {
+  static char sentence[1024];  // static, because mexErrMsgIdAndTxt() does not return and runs no destructors
+  sentence[0] = '\0';
+  const char* identifier = identifier_of(INKWELL_FAILED);
+  mexAtExit(close_all);
+  try {
+    const Answers answers_given = run(Arguments(arguments, arguments + argument_count));
+    for (std::size_t i = 0; i < answers_given.size() && (i == 0 || i < static_cast<std::size_t>(answer_count)); ++i)
+      answers[i] = answers_given[i];
+  } catch (const inkwell::Failure& error) {
+    std::snprintf(sentence, sizeof sentence, "%s", error.what());
+    identifier = identifier_of(error.result);
+  } catch (const std::exception& error) {
+    std::snprintf(sentence, sizeof sentence, "%s", error.what());
+  }
+  if (sentence[0] != '\0') mexErrMsgIdAndTxt(identifier, "%s", sentence);
+}

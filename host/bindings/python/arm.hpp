@@ -1,0 +1,176 @@
+// An open arm for the interpreter. Calls wait without the interpreter's lock, react to Ctrl-C, and never use a closed
+// arm.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/client/process/fork.hpp"
+
+#include "host/bindings/python/failure.hpp"
+
+namespace inkwell::python {
+
+class Arm {
+ public:
+  explicit Arm(const std::string& address);
+  ~Arm();
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+
+  void close();
+  bool is_closed() const;
+
+  Pose pose();
+  Pose wait_for_pose(double timeout_s);
+  void sleep(double duration_s);
+  inkwell_information information();
+  std::string board_name();
+  bool is_referenced();
+
+  void enable_force(double timeout_s);
+  void disable_force();
+  void stop();
+  void take_over();
+  inkwell_driver driver();
+  void clear_fault();
+  void set_force_mode(inkwell_force_mode mode);
+  void set_force(const std::array<double, 3>& force_N);
+  void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
+
+  void start_servo(py::function servo);
+  /// Raises the servo's exception, or another error that has ended the servo.
+  void stop_servo();
+  bool servo_is_running();
+  /// Raises once the reason why the servo has ended, unless the program or the servo function has ended the servo.
+  void check_servo();
+
+  double parameter(const std::string& name);
+  void set_parameters(const std::vector<std::pair<std::string, double>>& changes);
+  double stored_parameter(const std::string& name);
+  void store_parameters();
+  void restore_parameters();
+  void factory_reset();
+  inkwell_store store();
+  std::vector<inkwell_test_item> self_test();
+  std::vector<inkwell_test_item> last_self_test();
+
+  void move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m);
+  void release_virtual_hand();
+  void press_virtual_buttons(bool button_1, bool button_2);
+
+  void select_signals(const std::vector<std::string>& names);
+  /// Returns (values, periods, lost): at most `rows` rows with one value for each signal, and no rows after a time-out.
+  /// With `fill` the function returns `rows` rows, or raises TimedOut if no row arrives for `timeout_s`.
+  py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
+  void start_recording(const std::string& path);
+  /// (samples, lost)
+  std::pair<std::uint64_t, std::uint64_t> stop_recording();
+
+ private:
+  std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);
+
+  /// The arm stays open while a Use exists. The constructor raises Refused if the arm is closed or belongs to the
+  /// parent process.
+  class Use {
+   public:
+    explicit Use(Arm& arm);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    operator inkwell_arm*() const { return arm_.arm_; }
+
+   private:
+    Arm& arm_;
+  };
+  struct Servo {
+    py::function function;
+    std::exception_ptr raised;
+    bool is_told = false;  ///< true once another reason for the end was raised
+  };
+  /// Reason why a servo has ended.
+  struct Ending {
+    std::exception_ptr raised;
+    inkwell_result result = INKWELL_OK;
+    std::string sentence;
+    Pose last_pose{};
+    void raise_it() const;
+  };
+
+  static int call_servo(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user) noexcept;
+  /// Reason why the stopped servo has ended; each reason is returned once.
+  Ending take_ending();
+  /// Calls the library without the interpreter's lock and raises its errors.
+  template <class Call>
+  void call(Call library_call);
+  /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
+  /// durations of the attempts add up to the time-out. The time-out therefore counts board time if the library counts
+  /// board time.
+  template <class Attempt, class GoesOn>
+  void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
+  template <class Attempt>
+  void call_patiently(double timeout_s, Attempt attempt) {
+    call_patiently(timeout_s, attempt, [](inkwell_result result) { return result == INKWELL_TIMED_OUT; });
+  }
+
+  inkwell_arm* arm_ = nullptr;
+  mutable std::mutex mutex_;
+  std::condition_variable unused_;
+  int uses_ = 0;
+  std::atomic<bool> closed_ = false;
+  const process::Origin origin_;
+  std::mutex servo_mutex_;
+  std::unique_ptr<Servo> servo_;  ///< guarded by servo_mutex_; its content by the interpreter's lock
+
+  std::mutex scope_mutex_;  ///< the signals do not change while samples are read
+  std::size_t signal_count_ = 0;
+};
+
+template <class Call>
+void Arm::call(Call library_call) {
+  inkwell_result result;
+  std::string sentence;
+  Pose last_pose{};
+  {
+    const process::CancellationGuard guard;
+    const py::gil_scoped_release unlocked;
+    result = library_call();
+    if (result != INKWELL_OK) sentence = inkwell_error_text();
+    if (result == INKWELL_DISCONNECTED && arm_ != nullptr) inkwell_get_pose(arm_, &last_pose);
+  }
+  if (result != INKWELL_OK) raise(result, sentence, result == INKWELL_DISCONNECTED ? &last_pose : nullptr);
+}
+
+template <class Attempt, class GoesOn>
+void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
+  constexpr double attempt_s = 0.05;
+  if (!(timeout_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The time-out is no time. Give seconds, from 0 on.");
+  // The attempts are counted, because the library waits for board time.
+  for (double left_s = timeout_s;; left_s -= attempt_s) {
+    const bool is_last = left_s <= attempt_s;
+    inkwell_result result;
+    std::string sentence;
+    Pose last_pose{};
+    {
+      const Use arm(*this);
+      const process::CancellationGuard guard;
+      const py::gil_scoped_release unlocked;
+      result = attempt(static_cast<inkwell_arm*>(arm), is_last ? left_s : attempt_s);
+      if (result != INKWELL_OK) sentence = inkwell_error_text();
+      if (result == INKWELL_DISCONNECTED) inkwell_get_pose(arm, &last_pose);
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (result == INKWELL_OK) return;
+    if (is_last || !goes_on(result)) raise(result, sentence, result == INKWELL_DISCONNECTED ? &last_pose : nullptr);
+  }
+}
+
+}  // namespace inkwell::python

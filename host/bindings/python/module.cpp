@@ -1,0 +1,310 @@
+// The native module under the package's Python files: the library's structs with numpy arrays, and an arm.
+#include <string>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "host/bindings/python/arm.hpp"
+
+namespace inkwell::python {
+namespace {
+
+/// A numeric member as a read-only array without a copy. The array keeps the struct alive.
+template <class Struct, std::size_t size>
+py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_t> shape = {size}) {
+  return [member, shape](const py::object& self) {
+    py::array_t<double> array(shape, self.cast<const Struct&>().*member, self);
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+  };
+}
+
+/// A text member, or a flag that is an int in C.
+template <class Struct, std::size_t size>
+py::cpp_function text_of(char (Struct::*member)[size]) {
+  return [member](const Struct& self) { return std::string(self.*member); };
+}
+template <class Struct>
+py::cpp_function flag_of(int Struct::*member) {
+  return [member](const Struct& self) { return self.*member != 0; };
+}
+
+template <inkwell_force_source source>
+bool feels(const inkwell_pose& pose) {
+  return (pose.force_sources & source) != 0;
+}
+
+template <inkwell_limit limit>
+bool is_limited(const inkwell_pose& pose) {
+  return (pose.limits & limit) != 0;
+}
+
+std::string describe(const inkwell_pose& pose) {
+  return py::str("<inkwell.Pose {:.3f} s, {}: probe at {:.4f} {:.4f} {:.4f} m>")
+      .format(pose.time_s, py::cast(pose.state).attr("name"), pose.position_m[0], pose.position_m[1],
+              pose.position_m[2]);
+}
+
+inkwell_surface surface_of(const py::handle& shape) {
+  return {shape.attr("stiffness_N_per_m").cast<double>(), shape.attr("damping_Ns_per_m").cast<double>(),
+          shape.attr("static_friction").cast<double>(), shape.attr("dynamic_friction").cast<double>(),
+          shape.attr("life_s").cast<double>()};
+}
+
+void put(const py::handle& vector, double (&to)[3]) {
+  const auto values = vector.cast<Vector>();
+  for (std::size_t i = 0; i < 3; ++i) to[i] = values[i];
+}
+
+/// Places shapes from the classes of inkwell/shapes.py.
+void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
+  std::vector<Plane> flat;
+  for (const auto& plane : planes) {
+    Plane next{};
+    put(plane.attr("point_m"), next.point_m);
+    put(plane.attr("normal"), next.normal);
+    next.surface = surface_of(plane);
+    flat.push_back(next);
+  }
+  Sphere round{};
+  if (!sphere.is_none()) {
+    put(sphere.attr("centre_m"), round.centre_m);
+    round.radius_m = sphere.attr("radius_m").cast<double>();
+    round.surface = surface_of(sphere);
+  }
+  arm.place_shapes(flat, sphere.is_none() ? nullptr : &round);
+}
+
+std::vector<inkwell_device> list_devices() {
+  std::vector<inkwell_device> devices;
+  std::size_t count = 0;
+  do {  // repeats if a device was plugged in between the calls
+    devices.resize(count);
+    call([&] { return inkwell_list_devices(devices.data(), devices.size(), &count); });
+  } while (count > devices.size());
+  devices.resize(count);
+  return devices;
+}
+
+py::list parameters() {
+  py::list rows;
+  for (std::size_t i = 0; i < inkwell_parameter_count(); ++i) {
+    const auto& row = *inkwell_parameter_at(i);
+    rows.append(py::make_tuple(row.name, row.unit, row.help, row.minimum, row.maximum, row.default_value));
+  }
+  return rows;
+}
+
+/// List of (code, name).
+py::list faults() {
+  py::list rows;
+  for (int code = 0; inkwell_fault_name(code) != nullptr; ++code)
+    rows.append(py::make_tuple(code, inkwell_fault_name(code)));
+  return rows;
+}
+
+py::list signals() {
+  py::list rows;
+  for (std::size_t i = 0; i < inkwell_signal_count(); ++i) {
+    const auto& row = *inkwell_signal_at(i);
+    rows.append(py::make_tuple(row.name, row.unit, row.help));
+  }
+  return rows;
+}
+
+void define_structs(py::module_& module) {
+  py::enum_<inkwell_state>(module, "State", "State of the arm.")
+      .value("STARTING", INKWELL_STARTING)
+      .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus must rest in the inkwell once")
+      .value("READY", INKWELL_READY, "the pose is valid, the force is off")
+      .value("ACTIVE", INKWELL_ACTIVE, "the pose is valid, the force is on")
+      .value("FAULT", INKWELL_FAULT, "the force is off, and Pose.fault_text has the cause");
+  py::enum_<inkwell_force_mode>(module, "ForceMode", "Effect of a program's forces on the board's walls.")
+      .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are active too")
+      .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only the forces of programs are active");
+
+  py::class_<inkwell_pose>(module, "Pose",
+                           "Position and state of the stylus, once per millisecond. The arrays are read-only.")
+      .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
+      .def_readonly("sequence", &inkwell_pose::sequence,
+                    "counts milliseconds; a gap is a missed pose. It wraps at 2**32, after 49 days")
+      .def_readonly("state", &inkwell_pose::state)
+      .def_readonly("fault", &inkwell_pose::fault, "one of inkwell.Fault")
+      .def_property_readonly(
+          "fault_text", [](const inkwell_pose& pose) { return std::string(inkwell_fault_text(pose.fault)); },
+          "cause and remedy of the fault")
+      .def_property_readonly("position_m", array_of(&inkwell_pose::position_m),
+                             "position of the probe in the workspace axes, m; shape (3,)")
+      .def_property_readonly("velocity_m_s", array_of(&inkwell_pose::velocity_m_s),
+                             "velocity of the probe over the last 8 ms, m/s; shape (3,)")
+      .def_property_readonly("rotation", array_of(&inkwell_pose::rotation, {3, 3}),
+                             "rotation of the stylus; the columns are its x, y and z axes; shape (3, 3)")
+      .def_property_readonly("gimbal_rad", array_of(&inkwell_pose::gimbal_rad), "yaw, pitch and roll, rad; shape (3,)")
+      .def_property_readonly("joint_rad", array_of(&inkwell_pose::joint_rad), "joint angles, rad; shape (3,)")
+      .def_property_readonly("force_N", array_of(&inkwell_pose::force_N),
+                             "total force that the board requests from the motors, N; shape (3,)")
+      .def_property_readonly("feels_walls", &feels<INKWELL_WALLS>, "the hand feels the walls of the board's box")
+      .def_property_readonly("feels_shapes", &feels<INKWELL_SHAPES>, "the hand feels shapes that a program placed")
+      .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "the hand feels forces of a program")
+      .def_property_readonly("limited_by_force", &is_limited<INKWELL_LIMIT_FORCE>,
+                             "the force is limited to force_limit_N, or is rising to it")
+      .def_property_readonly("limited_by_change", &is_limited<INKWELL_LIMIT_CHANGE>,
+                             "the force changes at the rate force_change_N_per_s")
+      .def_property_readonly("limited_by_energy", &is_limited<INKWELL_LIMIT_ENERGY>,
+                             "the energy reserve is used up; the force along the motion is scaled down")
+      .def_property_readonly("limited_by_heat", &is_limited<INKWELL_LIMIT_HEAT>,
+                             "a hot motor is at its reduced current limit; all motors are scaled down together")
+      .def_property_readonly("limited_by_speed", &is_limited<INKWELL_LIMIT_SPEED>,
+                             "the probe is close to the speed limit; the force along the motion is scaled down")
+      .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
+                             "a motor is at its current limit; all motors are scaled down together")
+      .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
+      .def_property_readonly("button_2", flag_of(&inkwell_pose::button_2), "pressed")
+      .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")
+      .def_readonly("supply_V", &inkwell_pose::supply_V, "supply of the motors, V")
+      .def("__repr__", &describe);
+
+  py::class_<inkwell_device>(module, "Device", "An arm that can be opened.")
+      .def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
+      .def_property_readonly("serial_number", text_of(&inkwell_device::serial_number),
+                             "empty if it is not known before the device is opened")
+      .def_property_readonly("product", text_of(&inkwell_device::product))
+      .def_property_readonly("is_virtual", flag_of(&inkwell_device::is_virtual), "True for a simulation")
+      .def("__repr__", [](const inkwell_device& device) {
+        return std::string(
+            py::str("<inkwell.Device {!r}{}>").format(device.address, device.is_virtual != 0 ? ", a simulation" : ""));
+      });
+
+  using Information = inkwell_information;
+  py::class_<Information>(module, "Information", "Identity and counters of an arm.")
+      .def_property_readonly("serial_number", text_of(&Information::serial_number))
+      .def_property_readonly("product", text_of(&Information::product))
+      .def_property_readonly("firmware_version", text_of(&Information::firmware_version))
+      .def_property_readonly("is_virtual", flag_of(&Information::is_virtual), "True for a simulation")
+      .def_readonly("servo_rate_Hz", &Information::servo_rate_Hz, "rate of the board's control interrupt, Hz")
+      .def_readonly("servo_cycles_longest", &Information::servo_cycles_longest,
+                    "longest control interrupt since the board started, processor cycles")
+      .def_readonly("force_reports", &Information::force_reports, "forces of programs since the board started")
+      .def_readonly("force_reports_lost", &Information::force_reports_lost)
+      .def_readonly("force_reports_late", &Information::force_reports_late)
+      .def_readonly("force_reports_refused", &Information::force_reports_refused)
+      .def_property_readonly("motor_heat", array_of(&Information::motor_heat),
+                             "1 is the heat at continuous current; shape (3,)");
+}
+
+void define_store(py::module_& module) {
+  py::enum_<inkwell_stored>(module, "Stored", "Contents of the board's parameter store.")
+      .value("NOTHING", INKWELL_STORED_NOTHING)
+      .value("PARAMETERS", INKWELL_STORED_PARAMETERS)
+      .value("FACTORY_RESET", INKWELL_STORED_FACTORY_RESET, "the stored parameters were erased")
+      .value("OTHER_SCHEMA", INKWELL_STORED_OTHER_SCHEMA,
+             "records of another firmware, which this firmware cannot read");
+  py::class_<inkwell_store>(module, "Store", "State of the board's parameter store.")
+      .def_readonly("contents", &inkwell_store::contents)
+      .def_readonly("not_stored", &inkwell_store::not_stored, "parameters that are lost at power loss")
+      .def_readonly("stores_left", &inkwell_store::stores_left,
+                    "stores that fit before the board's next start, which frees space")
+      .def_readonly("records_written", &inkwell_store::records_written, "records since the board was made")
+      .def_property_readonly(
+          "sector_erases",
+          [](const inkwell_store& store) { return py::make_tuple(store.sector_erases[0], store.sector_erases[1]); },
+          "erases of each of the two sectors since the board was made");
+}
+
+void define_self_test(py::module_& module) {
+  py::enum_<inkwell_test>(module, "Test", "Result of a self-test item.")
+      .value("NOT_DONE", INKWELL_TEST_NOT_DONE, "not checked, or not checkable while another item fails")
+      .value("PASSED", INKWELL_TEST_PASSED)
+      .value("FAILED", INKWELL_TEST_FAILED)
+      .value("MOVED", INKWELL_TEST_MOVED, "not done: the arm moved too fast")
+      .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 is not used")
+      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault interrupted the test");
+  py::class_<inkwell_test_item>(module, "TestItem", "An item of the board's self-test.")
+      .def_readonly("name", &inkwell_test_item::name)
+      .def_readonly("result", &inkwell_test_item::result)
+      .def_readonly("figure", &inkwell_test_item::figure, "0 if the item has no figure, or was not checked")
+      .def_readonly("unit", &inkwell_test_item::unit, "unit of the figure; empty if the item has no figure")
+      .def_property_readonly("takes_force", [](const inkwell_test_item& item) { return item.takes_force != 0; })
+      .def_readonly("meaning", &inkwell_test_item::meaning, "condition that the test checks")
+      .def_readonly("remedy", &inkwell_test_item::remedy, "what to do if the item fails")
+      .def("__repr__", [](const inkwell_test_item& item) {
+        return std::string("<TestItem ") + item.name + ": " + py::str(py::cast(item.result)).cast<std::string>() + ">";
+      });
+}
+
+void define_driver(py::module_& module) {
+  using Driver = inkwell_driver;
+  py::class_<Driver>(module, "Driver", "The program that drives an arm.")
+      .def_property_readonly("is_driven", flag_of(&Driver::is_driven), "False: no program drives the arm")
+      .def_property_readonly("is_this_arm", flag_of(&Driver::is_this_arm),
+                             "True: the arm is driven through this object")
+      .def_property_readonly("program", text_of(&Driver::program), "name of the program")
+      .def_readonly("process_id", &Driver::process_id, "process number on the driver's computer")
+      .def_readonly("driven_s", &Driver::driven_s, "board time since it claimed the arm, s")
+      .def("__repr__", [](const Driver& driver) {
+        return driver.is_driven != 0
+                   ? "<Driver " + std::string(driver.program) + " (process " + std::to_string(driver.process_id) + ")>"
+                   : std::string("<Driver none>");
+      });
+}
+
+void define_arm(py::module_& module) {
+  py::class_<Arm>(module, "Arm")
+      .def(py::init<const std::string&>())
+      .def("close", &Arm::close)
+      .def("is_closed", &Arm::is_closed)
+      .def("pose", &Arm::pose)
+      .def("wait_for_pose", &Arm::wait_for_pose)
+      .def("sleep", &Arm::sleep)
+      .def("is_referenced", &Arm::is_referenced)
+      .def("information", &Arm::information)
+      .def("board_name", &Arm::board_name)
+      .def("enable_force", &Arm::enable_force)
+      .def("disable_force", &Arm::disable_force)
+      .def("stop", &Arm::stop)
+      .def("take_over", &Arm::take_over)
+      .def("driver", &Arm::driver)
+      .def("clear_fault", &Arm::clear_fault)
+      .def("set_force_mode", &Arm::set_force_mode)
+      .def("set_force", &Arm::set_force)
+      .def("place_shapes", &place_shapes)
+      .def("start_servo", &Arm::start_servo)
+      .def("stop_servo", &Arm::stop_servo)
+      .def("servo_is_running", &Arm::servo_is_running)
+      .def("check_servo", &Arm::check_servo)
+      .def("parameter", &Arm::parameter)
+      .def("set_parameters", &Arm::set_parameters)
+      .def("stored_parameter", &Arm::stored_parameter)
+      .def("store_parameters", &Arm::store_parameters)
+      .def("restore_parameters", &Arm::restore_parameters)
+      .def("factory_reset", &Arm::factory_reset)
+      .def("store", &Arm::store)
+      .def("self_test", &Arm::self_test)
+      .def("last_self_test", &Arm::last_self_test)
+      .def("move_virtual_hand", &Arm::move_virtual_hand)
+      .def("release_virtual_hand", &Arm::release_virtual_hand)
+      .def("press_virtual_buttons", &Arm::press_virtual_buttons)
+      .def("select_signals", &Arm::select_signals)
+      .def("read_scope", &Arm::read_scope)
+      .def("start_recording", &Arm::start_recording)
+      .def("stop_recording", &Arm::stop_recording);
+}
+
+}  // namespace
+}  // namespace inkwell::python
+
+PYBIND11_MODULE(_native, module) {
+  module.doc() = "Bindings of libinkwell for the Python files of the package.";
+  inkwell::python::define_structs(module);
+  inkwell::python::define_store(module);
+  inkwell::python::define_self_test(module);
+  inkwell::python::define_driver(module);
+  inkwell::python::define_arm(module);
+  module.def("version", &inkwell_version);
+  module.def("devices", &inkwell::python::list_devices,
+             "Lists the arms on this computer's USB, and the virtual board that INKWELL_DEVICE names.");
+  module.def("faults", &inkwell::python::faults);
+  module.def("parameters", &inkwell::python::parameters);
+  module.def("signals", &inkwell::python::signals);
+}

@@ -1,0 +1,47 @@
+// A time limit for the behavior of the board.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "host/client/device/wide_reports.hpp"
+
+namespace inkwell::device {
+
+/// The limit counts board time, so that the speed of a virtual board and the load of the computer do not matter. Wall
+/// time counts only while the board is silent, paused or disconnected.
+class BoardTimeout {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  BoardTimeout(double limit_s, Clock::duration silence)
+      : limit_periods_(std::llround(limit_s * protocol::servo_rate_Hz)), silence_(silence) {}
+
+  /// Whether the limit is exceeded. `now_periods` is the newest known board time, if any. The first call starts the
+  /// limit.
+  bool is_over(std::optional<std::int64_t> now_periods, Clock::time_point now = Clock::now()) {
+    const std::int64_t newest = now_periods.value_or(unknown);
+    if (!is_started_ || newest != newest_periods_) heard_at_ = now;
+    if (began_periods_ == unknown) began_periods_ = newest;
+    newest_periods_ = newest;
+    is_started_ = true;
+    const bool has_passed = newest != unknown && newest - began_periods_ > limit_periods_;
+    return has_passed || now - heard_at_ > silence_;
+  }
+  bool is_over(const std::optional<Pose>& newest) {
+    return is_over(newest ? std::optional(newest->time_periods) : std::nullopt);
+  }
+
+ private:
+  static constexpr std::int64_t unknown = INT64_MIN;
+
+  std::int64_t limit_periods_;
+  Clock::duration silence_;
+  bool is_started_ = false;
+  std::int64_t began_periods_ = unknown, newest_periods_ = unknown;
+  Clock::time_point heard_at_{};
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,35 @@
+// Converts board time to the clock of the USB host, so that a computer can align the data of several devices.
+#pragma once
+
+#include <optional>
+
+#include "host/client/device/wide_reports.hpp"
+
+namespace inkwell::device {
+
+class BusClock {
+ public:
+  /// `cycles_per_period`: processor cycles per control period, from the InformationReport.
+  explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
+
+  /// Call this regularly with the newest bus frame, for instance once per second.
+  void note(const BusFrame& frame);
+
+  /// Time of a control period in seconds of bus frames, counted from the start of the bus. None before the first frame.
+  /// Before the second frame the nominal rate is used.
+  std::optional<double> host_time_s(std::int64_t time_periods) const;
+
+ private:
+  struct Moment {
+    std::int64_t sequence;
+    std::int64_t periods;
+    double period_share;  ///< elapsed fraction of the current period, 0 to 1
+  };
+  static double periods_between(const Moment& from, const Moment& to);
+
+  double cycles_per_period_;
+  std::optional<Moment> oldest_, newest_;
+  double periods_per_frame_ = static_cast<double>(protocol::servo_rate_Hz) / protocol::pose_rate_Hz;
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,75 @@
+// Events of a device: the rows of the log in a session and in recordings.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/client/device/wide_reports.hpp"
+#include "protocol/parameters.hpp"
+
+namespace inkwell::device {
+
+enum class EventKind : std::uint8_t {
+  mark,        ///< set by the user
+  connection,  ///< a device was connected or disconnected
+  force,       ///< the force was switched on or off
+  fault,       ///< the device entered or left the fault state
+  parameter,   ///< a parameter changed, or a change was refused
+  loss,        ///< samples or poses were lost during transfer
+};
+inline constexpr std::size_t event_kind_count = static_cast<std::size_t>(EventKind::loss) + 1;  // the last entry
+
+/// "parameter", as in recordings.
+std::string_view name_of(EventKind kind);
+/// None if no kind has this name.
+std::optional<EventKind> find_event_kind(std::string_view name);
+
+struct Event {
+  EventKind kind;
+  std::string text;       ///< one line
+  std::string clock_utc;  ///< computer time of the event, in the format of clock_utc_now()
+  /// Control period of the device; none if no device was connected.
+  std::optional<std::int64_t> at_periods;
+};
+
+/// "2026-11-23T22:15:34.123Z"
+std::string clock_utc_now();
+/// An event with the current time.
+Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods);
+
+/// A line of a log: clock, seconds, kind, text. A dash replaces an unknown clock or time.
+std::string log_line(std::string_view clock_utc, std::optional<double> time_s, EventKind kind, std::string_view text);
+/// Uses the board time of the event.
+std::string line_of(const Event& event);
+
+/// The events between a pose and the previous pose, if any: force on or off, fault raised or cleared.
+/// `noticed_at_periods`: more accurate time of the current fault, if known.
+std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
+                                  std::optional<std::int64_t> noticed_at_periods);
+
+/// "wall_stiffness_N_per_m = 600.0, was 800.0", one event per changed parameter; `whose` is appended to the text.
+std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
+                                    std::optional<std::int64_t> at_periods, std::string_view whose = {});
+
+/// The newest events. Each event has a number, counted from the start of the log.
+class EventLog {
+ public:
+  static constexpr std::size_t kept_maximum = 5000;
+
+  void add(Event event);
+  void add(std::vector<Event> events);
+  std::uint64_t begin() const { return end_ - events_.size(); }
+  std::uint64_t end() const { return end_; }
+  /// `number` is at least begin() and less than end().
+  const Event& operator[](std::uint64_t number) const { return events_[number - begin()]; }
+
+ private:
+  std::deque<Event> events_;
+  std::uint64_t end_ = 0;
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,166 @@
+#include "host/client/device/parameter_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "host/client/device/nearest_name.hpp"
+#include "protocol/plain_text.hpp"
+
+namespace inkwell::device {
+namespace {
+
+using protocol::Parameter;
+using protocol::ParameterKind;
+
+std::string range_text(Parameter parameter) {
+  const auto& row = info(parameter);
+  return fmt::format("{} to {}{}{}", format_value(parameter, row.minimum), format_value(parameter, row.maximum),
+                     row.unit.empty() ? "" : " ", row.unit);
+}
+
+}  // namespace
+
+std::string format_value(Parameter parameter, float value) {
+  std::string text = fmt::format("{}", value);
+  const bool is_real = info(parameter).kind == ParameterKind::real;
+  if (is_real && text.find_first_of(".en") == std::string::npos) text += ".0";
+  if (!is_real && text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+std::string parameter_suggestion(std::string_view name) { return suggestion(protocol::known_parameters(), name); }
+
+Parameter parameter_named(std::string_view name) {
+  if (const auto parameter = protocol::find_parameter(name)) return *parameter;
+  throw UnknownName(fmt::format("There is no parameter {}.{} `inkwell parameters` lists them all.", name,
+                                parameter_suggestion(name)));
+}
+
+void check_value(Parameter parameter, float value) {
+  const auto& row = info(parameter);
+  if (!std::isfinite(value) || value < row.minimum || value > row.maximum)
+    throw Error(
+        fmt::format("{} = {} is outside its range. Give a number from {}.", row.name, value, range_text(parameter)));
+  if (row.kind != ParameterKind::real && value != std::round(value))
+    throw Error(fmt::format("{} = {} must be a whole number. Give a whole number from {}.", row.name, value,
+                            range_text(parameter)));
+}
+
+std::optional<float> parse_number(std::string_view text) {
+  float value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+float parse_value(Parameter parameter, std::string_view number) {
+  const auto value = parse_number(number);
+  if (!value) {
+    const bool has_comma = number.find(',') != std::string_view::npos;
+    throw Error(fmt::format("`{}` is not a number. Give {} a number from {}{}.", number, info(parameter).name,
+                            range_text(parameter), has_comma ? ", with a decimal point and without commas" : ""));
+  }
+  check_value(parameter, *value);
+  return *value;
+}
+
+ParameterChange parse_change(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos)
+    throw Error(fmt::format("`{}` is not of the form NAME=VALUE. Write for example wall_stiffness_N_per_m=900.", text));
+  const Parameter parameter = parameter_named(text.substr(0, equals));
+  return {parameter, parse_value(parameter, text.substr(equals + 1))};
+}
+
+ParameterFile parse_parameters(std::string_view toml_text, const std::string& file_name) {
+  toml::table document;
+  try {
+    document = toml::parse(toml_text, file_name);
+  } catch (const toml::parse_error& error) {
+    throw Error(
+        fmt::format("{}, line {}: {}. Correct that line.", file_name, error.source().begin.line, error.description()));
+  }
+  const toml::table* section = document["parameters"].as_table();
+  if (section == nullptr)
+    throw Error(fmt::format(
+        "{} has no [parameters] section. Create a parameter file with `inkwell parameters save FILE`.", file_name));
+
+  ParameterFile file;
+  for (const auto& [key, node] : *section) {
+    const auto parameter = protocol::find_parameter(key.str());
+    if (!parameter) {
+      file.unknown.push_back(protocol::plain_text(key.str()));
+      continue;
+    }
+    const auto number = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!number)
+      throw Error(fmt::format("{}, line {}: {} is not a number. Give a number from {}.", file_name,
+                              node.source().begin.line, key.str(), range_text(*parameter)));
+    const auto value = static_cast<float>(*number);
+    try {
+      check_value(*parameter, value);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}, line {}: {}", file_name, node.source().begin.line, error.what()));
+    }
+    file.changes.emplace_back(*parameter, value);
+  }
+  std::sort(file.changes.begin(), file.changes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return file;
+}
+
+ParameterFile load_parameters(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!std::filesystem::is_regular_file(file) || !stream || !(text << stream.rdbuf()))
+    throw Error(fmt::format("The file {} cannot be read. Check its name and your permission.", file.string()));
+  return parse_parameters(text.str(), file.string());
+}
+
+std::string format_parameters(const protocol::ParameterSet& parameters) {
+  std::string text = fmt::format(
+      "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` sends them to the "
+      "device.\n\nprotocol_version = {}\n\n[parameters]\n",
+      protocol::protocol_version);
+  std::string_view group;
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
+    const auto parameter = static_cast<Parameter>(i);
+    const auto& row = info(parameter);
+    if (row.group != group) text += fmt::format("\n# ---- {} ----\n", row.group);
+    group = row.group;
+    const std::string entry = fmt::format("{} = {}", row.name, format_value(parameter, parameters.values[i]));
+    text += fmt::format("{:<44} # {}: {}\n", entry, range_text(parameter), row.help);
+  }
+  return text;
+}
+
+void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters) {
+  std::filesystem::path unfinished = file;
+  unfinished += ".unfinished";
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  stream << format_parameters(parameters);
+  stream.close();
+  std::error_code code;
+  if (!stream) {
+    std::filesystem::remove(unfinished, code);
+    throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the free space.",
+                            file.string()));
+  }
+  std::filesystem::rename(unfinished, file, code);
+  if (code) throw Error(fmt::format("The file {} cannot be replaced: {}.", file.string(), code.message()));
+}
+
+std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device) {
+  std::vector<ParameterDifference> differences;
+  for (const auto& [parameter, value] : file.changes)
+    if (device[parameter] != value) differences.push_back({parameter, value, device[parameter]});
+  return differences;
+}
+
+}  // namespace inkwell::device

@@ -1,0 +1,102 @@
+#include "host/client/device/socket.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "host/client/device/error.hpp"
+
+namespace inkwell::device {
+
+namespace {
+
+/// A signal interrupts connect(), but the connection attempt continues.
+bool has_connected(int descriptor, const addrinfo& address) {
+  if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
+  if (errno != EINTR) return false;
+  pollfd connection{descriptor, POLLOUT, 0};
+  while (poll(&connection, 1, -1) < 0 && errno == EINTR) {
+  }
+  int reason = 0;
+  socklen_t size = sizeof reason;
+  getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &reason, &size);
+  errno = reason;
+  return reason == 0;
+}
+
+/// On failure the descriptor is not open and errno is set.
+local::Descriptor connect_to_port(const SocketAddress& server) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (const int code = getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &hints, &found); code != 0)
+    throw Error(fmt::format("The host name {} is not known ({}). Check the spelling or give an address.", server.host,
+                            gai_strerror(code)));
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
+  int reason = 0;
+  for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
+    local::Descriptor descriptor(socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol));
+    if (descriptor.is_open() && has_connected(descriptor.number(), *address)) {
+      const int yes = 1;  // requests are small and each is awaited, so low latency matters more than packing
+      setsockopt(descriptor.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+      return descriptor;
+    }
+    reason = errno;
+  }
+  errno = reason;
+  return local::Descriptor();
+}
+
+}  // namespace
+
+Socket::Socket(const SocketAddress& server)
+    : descriptor_(server.is_unix() ? local::connect_to(server.path) : connect_to_port(server)), peer_(server.text()) {
+  if (!descriptor_.is_open())
+    throw Error(fmt::format("No program answers at {} ({}). Start the virtual board, or check the {} that it printed.",
+                            peer_, std::strerror(errno), server.is_unix() ? "path" : "port"));
+  own_ = process::OwnDescriptor(descriptor_.number());
+}
+
+void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) {
+  const auto microseconds = std::chrono::microseconds(limit.value_or(std::chrono::milliseconds(0))).count();
+  const timeval wait{microseconds / 1'000'000, microseconds % 1'000'000};  // 0 means no limit
+  setsockopt(descriptor_.number(), SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+}
+
+void Socket::send(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(descriptor_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) throw Disconnected(fmt::format("The connection to {} was lost. Start the board again.", peer_));
+    bytes = bytes.subspan(static_cast<std::size_t>(sent));
+  }
+}
+
+std::size_t Socket::receive_some(std::span<std::byte> bytes) {
+  for (;;) {
+    const ssize_t received = recv(descriptor_.number(), bytes.data(), bytes.size(), 0);
+    if (received > 0) return static_cast<std::size_t>(received);
+    if (received < 0 && errno == EINTR) continue;
+    if (received < 0 && errno == EAGAIN)
+      throw Error(fmt::format(
+          "The program at {} does not answer. Check that virtual-board printed this port for this connection.", peer_));
+    throw Disconnected(fmt::format("The program at {} closed the connection. Start the board again.", peer_));
+  }
+}
+
+void Socket::receive(std::span<std::byte> bytes) {
+  while (!bytes.empty()) bytes = bytes.subspan(receive_some(bytes));
+}
+
+void Socket::shut_down() { shutdown(descriptor_.number(), SHUT_RDWR); }
+
+}  // namespace inkwell::device

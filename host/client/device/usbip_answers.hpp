@@ -1,0 +1,81 @@
+// Parses the answers of a USB/IP server. The caller supplies the bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "host/client/device/error.hpp"
+#include "protocol/usbip/messages.hpp"
+
+namespace inkwell::device {
+
+/// Fills the span with the next bytes from the server. Throws Error if the bytes do not arrive.
+using ReceiveBytes = std::function<void(std::span<std::byte>)>;
+
+template <class Message>
+Message receive_message(const ReceiveBytes& receive) {
+  Message message;
+  receive(std::as_writable_bytes(std::span(&message, 1)));
+  return message;
+}
+
+struct UsbipDevice {
+  std::string path;  ///< device path on the server
+  std::string bus_id;
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+};
+
+/// A longer list is refused, so that a server cannot make this program receive indefinitely.
+inline constexpr std::uint32_t listed_devices_maximum = 256;
+/// Receives the device list. Throws Error if the server is not a USB/IP server.
+std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive);
+
+/// Receives the answer to an import request: the device id for transfers, or none if the device is unavailable. Throws
+/// the errors of receive_device_list().
+std::optional<std::uint32_t> receive_import(const ReceiveBytes& receive);
+
+struct UsbipCompletion {
+  std::int32_t status = 0;      ///< 0 or a negative errno
+  std::uint32_t length = 0;     ///< transferred bytes
+  std::vector<std::byte> data;  ///< for an IN transfer
+};
+using OnUsbipCompletion = std::function<void(UsbipCompletion)>;
+
+struct UsbipTransfer {
+  usbip::Direction direction;
+  std::uint32_t length;
+  OnUsbipCompletion on_completion;
+};
+
+/// The unanswered transfers. Not thread-safe.
+class OpenTransfers {
+ public:
+  void add(std::uint32_t sequence, UsbipTransfer transfer) { transfers_.emplace(sequence, std::move(transfer)); }
+  bool contains(std::uint32_t sequence) const { return transfers_.contains(sequence); }
+  /// The server may already have answered the transfer, so the transfer stays open until the unlink is answered.
+  void unlink(std::uint32_t unlink_sequence, std::uint32_t sequence) { unlinks_.emplace(unlink_sequence, sequence); }
+
+  /// The number of data bytes that follow an answer. Throws Disconnected if the answer belongs to no open transfer.
+  std::size_t data_length_of(const usbip::ReturnSubmit& answer) const;
+  /// A transfer that an answer has finished.
+  struct Ended {
+    OnUsbipCompletion on_completion;
+    UsbipCompletion completion;
+  };
+  std::optional<Ended> take(const usbip::ReturnSubmit& answer, std::vector<std::byte> data);
+  /// Removes and returns all open transfers.
+  std::vector<UsbipTransfer> take_all();
+
+ private:
+  std::unordered_map<std::uint32_t, UsbipTransfer> transfers_;
+  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< unlink sequence to transfer sequence
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,44 @@
+// Metadata of a recording: device, firmware, arm, parameters and columns.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/client/device/device.hpp"
+#include "protocol/parameters.hpp"
+#include "protocol/signals.hpp"
+#include "protocol/simulation.hpp"
+
+namespace inkwell::recording {
+
+/// Increases when the layout of the files changes.
+inline constexpr int format_version = 1;
+inline constexpr char format_name[] = "inkwell recording";
+
+struct Information {
+  std::string created_utc;  ///< ISO 8601
+  std::string firmware_version;
+  std::uint16_t protocol_version = protocol::protocol_version;
+  std::string serial_number;
+  std::string arm;  ///< name of the arm, if known
+  bool simulation = false;
+  /// The device's protocol::ForceLawReport: rows of parameters and signals in addition to the tables. Null if unknown.
+  std::shared_ptr<const std::vector<std::byte>> force_law;
+  protocol::ParameterSet parameters{};
+  std::vector<protocol::Signal> signals;
+  /// Control periods from one sample to the next: 1 for the scope, more for a black box.
+  std::uint32_t step_periods = 1;
+  /// Simulated quantities in addition to the signals. A device does not send simulated quantities, so a replay ignores
+  /// them.
+  std::vector<protocol::SimulatedQuantity> simulated;
+};
+
+/// Metadata for a recording that starts now. If `arm` is empty and the parameters match the default arm, its name is
+/// used.
+Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
+                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
+
+}  // namespace inkwell::recording

@@ -1,0 +1,42 @@
+// A second recording, aligned with the time of a base recording.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "host/client/recording/recording.hpp"
+
+namespace inkwell::recording {
+
+class Overlay {
+ public:
+  /// Aligns both recordings at the first mark with this text. If the text is empty, aligns the starts of the
+  /// recordings. Throws device::Error with a sentence if a recording has no such mark, or no samples.
+  Overlay(Recording over, const Recording& base, std::string_view mark = {});
+
+  const Recording& recording() const { return over_; }
+  /// Start of the overlaid recording, relative to the first sample of the base.
+  double begins_s() const { return static_cast<double>(shift_periods_) / protocol::servo_rate_Hz; }
+  /// Values at the control periods of a block of the base recording; NaN for missing values.
+  device::ScopeSamples compared_with(const device::ScopeSamples& of_base) const;
+
+ private:
+  Recording over_;
+  std::int64_t base_begins_periods_;  ///< first control period of the base
+  std::int64_t shift_periods_ = 0;    ///< start of the overlaid recording, in periods of the base
+};
+
+/// Distinct names for two recordings: file names without folder and extension. If the file names are the same, folders
+/// or extensions are included.
+std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
+                                                   const std::filesystem::path& other);
+
+/// Mark texts that both recordings contain, without duplicates. Common marks can align the recordings.
+std::vector<std::string> common_marks(const Recording& a, const Recording& b);
+
+}  // namespace inkwell::recording

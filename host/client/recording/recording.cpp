@@ -1,0 +1,253 @@
+#include "host/client/recording/recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "host/client/device/wide_counter.hpp"
+#include "protocol/plain_text.hpp"
+
+#include "host/client/recording/formats.hpp"
+
+namespace inkwell::recording {
+
+Recording Recording::without_samples(Information information) {
+  Recording recording;
+  recording.columns.resize(information.signals.size());
+  recording.simulated_columns.resize(information.simulated.size());
+  recording.information = std::move(information);
+  return recording;
+}
+
+std::uint64_t Recording::lost() const {
+  if (periods.size() < 2) return 0;
+  const std::int64_t step = information.step_periods;
+  if (step == 1) {
+    const auto passed = static_cast<std::uint64_t>(periods.back() - periods.front()) + 1;
+    return passed - std::min<std::uint64_t>(passed, periods.size());
+  }
+  std::int64_t count = 0;
+  for (std::size_t i = 1; i < size(); ++i) count += (periods[i] - periods[i - 1] - 1) / step;
+  return static_cast<std::uint64_t>(count);
+}
+
+std::size_t Recording::sample_at(double elapsed) const {
+  // The tolerance of 1 % of a period covers rounding errors, so that a time computed from a sample finds this sample.
+  const double rounding_s = 0.01 / protocol::servo_rate_Hz;
+  std::size_t first = 0, end = size();  // search range of the result
+  while (first < end) {
+    const std::size_t middle = first + (end - first) / 2;
+    if (elapsed_s(middle) < elapsed - rounding_s)
+      first = middle + 1;
+    else
+      end = middle;
+  }
+  return first;
+}
+
+std::vector<Quantity> Recording::quantities() const {
+  std::vector<Quantity> all(information.signals.begin(), information.signals.end());
+  all.insert(all.end(), information.simulated.begin(), information.simulated.end());
+  return all;
+}
+
+const std::vector<float>& Recording::column(Quantity quantity) const {
+  const auto recorded = quantities();
+  const auto place = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), quantity) - recorded.begin());
+  if (place < columns.size()) return columns[place];
+  if (place < recorded.size()) return simulated_columns[place - columns.size()];
+  std::vector<std::string_view> names;
+  for (const auto each : recorded) names.push_back(name_of(each));
+  throw device::Error(
+      fmt::format("The recording does not contain {}. It contains {}.", name_of(quantity), fmt::join(names, ", ")));
+}
+
+std::size_t Recording::end_of_stretch(std::size_t begin, std::size_t end) const {
+  std::size_t last = begin + 1;
+  while (last < end && periods[last] == periods[last - 1] + 1) ++last;
+  return last;
+}
+
+device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) const {
+  device::ScopeSamples samples{
+      .signals = information.signals, .first_period = periods[begin], .count = end - begin, .values = {}};
+  if (begin > 0) samples.lost_before = static_cast<std::uint64_t>(periods[begin] - periods[begin - 1] - 1);
+  samples.values.reserve(samples.count * samples.signals.size());
+  for (std::size_t i = begin; i < end; ++i)
+    for (const auto& column : columns) samples.values.push_back(column[i]);
+  return samples;
+}
+
+device::ScopeSamples Recording::held_sample(std::size_t sample) const {
+  const bool is_last = sample + 1 == size();
+  device::ScopeSamples held = samples(sample, sample + 1);
+  if (!is_last)
+    held.count = static_cast<std::size_t>(
+        std::min<std::int64_t>(information.step_periods, periods[sample + 1] - periods[sample]));
+  if (sample > 0) held.lost_before -= std::min<std::uint64_t>(held.lost_before, information.step_periods - 1);
+  const std::vector<float> values = held.values;
+  for (std::size_t i = 1; i < held.count; ++i) held.values.insert(held.values.end(), values.begin(), values.end());
+  return held;
+}
+
+void Recording::append(const device::ScopeSamples& samples) {
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    periods.push_back(samples.first_period + static_cast<std::int64_t>(i));
+    for (std::size_t j = 0; j < columns.size(); ++j) columns[j].push_back(samples.values[i * columns.size() + j]);
+  }
+}
+
+void Recording::keep(std::size_t begin, std::size_t end) {
+  const auto cut = [&](auto& values) {
+    values.resize(std::min(end, values.size()));
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(begin, values.size())));
+  };
+  cut(periods);
+  for (auto& column : columns) cut(column);
+  for (auto& column : simulated_columns) cut(column);
+}
+
+bool can_be_period(std::int64_t written) {
+  constexpr std::int64_t longest_s = 1'000'000'000;
+  return written >= 0 && written <= longest_s * protocol::servo_rate_Hz;
+}
+
+std::int64_t period_after(std::int64_t before, std::int64_t written) {
+  return written < before ? device::WideCounter::at_or_after(before, static_cast<std::uint32_t>(written)) : written;
+}
+
+std::uint32_t step_periods_of(double written) {
+  return written >= 1 && written <= protocol::servo_rate_Hz ? static_cast<std::uint32_t>(written) : 1;
+}
+
+namespace {
+
+Recording read_either(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    throw device::Error(fmt::format("{} cannot be read. Give the name of a recording that exists.", file.string()));
+  std::array<char, 8> start{};
+  stream.read(start.data(), start.size());
+  constexpr std::array hdf5_signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  if (start == hdf5_signature) return read_hdf5(file);
+  if (start[0] == '#') {
+    stream.clear();  // clears the end-of-file state of a shorter file
+    stream.seekg(0);
+    return read_csv(stream, file.string());
+  }
+  throw device::Error(fmt::format("{} is not a recording: it is neither HDF5 nor a CSV file that starts with \"# {}\".",
+                                  file.string(), format_name));
+}
+
+/// Converts all texts of the file to plain text, which is safe to print, draw and copy.
+void make_plain(Recording& recording) {
+  auto& about = recording.information;
+  for (std::string* text : {&about.created_utc, &about.firmware_version, &about.serial_number, &about.arm})
+    *text = protocol::plain_text(*text);
+  for (Mark& mark : recording.marks) {
+    mark.text = protocol::plain_text(mark.text);
+    mark.clock_utc = protocol::plain_text(mark.clock_utc);
+  }
+  for (std::string& remark : recording.remarks) remark = protocol::plain_text(remark);
+}
+
+}  // namespace
+
+std::string log_text(const Recording& recording) {
+  std::string text;
+  for (const Mark& mark : recording.marks)
+    text += device::log_line(
+        mark.clock_utc, recording.periods.empty() ? std::nullopt : std::optional(recording.elapsed_s_at(mark.period)),
+        mark.kind, mark.text);
+  return text;
+}
+
+Recording read(const std::filesystem::path& file) {
+  Recording recording;
+  try {
+    recording = read_either(file);
+  } catch (const std::bad_alloc&) {
+    throw device::Error(
+        fmt::format("{} needs more memory than is free on this computer. Close other programs, or read the recording "
+                    "on another computer.",
+                    file.string()));
+  }
+  make_plain(recording);
+  if (!recording.periods.empty())
+    for (Mark& mark : recording.marks) mark.period = period_after(recording.periods.front(), mark.period);
+  // Events of the device arrive shortly after the user's notes.
+  std::ranges::stable_sort(recording.marks, {}, &Mark::period);
+  recording.name = protocol::plain_text(file.stem().string());
+  return recording;
+}
+
+void check_can_be_created(const std::filesystem::path& file, Existing existing) {
+  const auto ending = file.extension();
+  if (ending != ".h5" && ending != ".hdf5" && ending != ".csv")
+    throw device::Error(fmt::format("{} must end in .h5 or .csv, which selects the format.", file.string()));
+  if (existing == Existing::stays && std::filesystem::exists(file))
+    throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
+  const auto folder = std::filesystem::absolute(file).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw device::Error(
+        fmt::format("The folder {} does not exist. Create the folder, or choose another location.", folder.string()));
+}
+
+namespace {
+
+/// Creates a new file. If the creation fails, no file remains.
+std::unique_ptr<Writer> create_new(const std::filesystem::path& file, const Information& information,
+                                   const std::string& name) {
+  try {
+    return file.extension() == ".csv" ? create_csv(file, information, name) : create_hdf5(file, information, name);
+  } catch (const device::Error&) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    throw;
+  }
+}
+
+void write_all(Writer& writer, const Recording& recording) {
+  constexpr std::size_t block_samples = 4096;
+  std::vector<float> simulated;
+  for (std::size_t begin = 0; begin < recording.size();) {
+    const std::size_t end = recording.end_of_stretch(begin, std::min(recording.size(), begin + block_samples));
+    simulated.clear();
+    for (std::size_t i = begin; i < end; ++i)
+      for (const auto& column : recording.simulated_columns) simulated.push_back(column[i]);
+    writer.append(recording.samples(begin, end), simulated);
+    begin = end;
+  }
+  for (const auto& mark : recording.marks) writer.mark(mark);
+  writer.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
+  check_can_be_created(file);
+  return create_new(file, information, file.string());
+}
+
+void save(const Recording& recording, const std::filesystem::path& file) {
+  check_can_be_created(file, Existing::is_replaced);
+  // The extension stays last, because it determines the format.
+  const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
+  std::error_code error;
+  std::filesystem::remove(part, error);
+  try {
+    write_all(*create_new(part, recording.information, file.string()), recording);
+  } catch (const device::Error&) {
+    std::filesystem::remove(part, error);
+    throw;
+  }
+  std::filesystem::rename(part, file, error);
+  if (error)
+    throw device::Error(
+        fmt::format("{} cannot be written: {}. Its content is in {}.", file.string(), error.message(), part.string()));
+}
+
+}  // namespace inkwell::recording

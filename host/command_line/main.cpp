@@ -1,3 +1,0 @@
-#include "program.hpp"
-
-int main(int argument_count, char** arguments) { return inkwell::command_line::run(argument_count, arguments); }

@@ -1,0 +1,195 @@
+#include "host/companion/command_line/commands.hpp"
+
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "host/lab/campaign/cases.hpp"
+#include "host/lab/campaign/page.hpp"
+#include "host/lab/campaign/result.hpp"
+#include "host/lab/campaign/run.hpp"
+
+#include "host/companion/command_line/help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using campaign::Case;
+
+struct CampaignOptions {
+  std::vector<unsigned> numbers;
+  std::string folder = "campaign-results";
+  std::string page = "docs/campaign.md";
+  unsigned jobs = 1;
+  bool only_numbers = false;
+};
+
+int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Case& c : campaign::all_cases()) {
+    if (options.json)
+      json.push_back({{"number", c.number},
+                      {"fault", c.fault.name()},
+                      {"situation", campaign::name_of(c.situation)},
+                      {"phase", c.phase}});
+    else if (command.only_numbers)
+      fmt::print("{}\n", c.number);
+    else
+      fmt::print("{:5} {}\n", c.number, c.name());
+  }
+  if (options.json) fmt::print("{}\n", json.dump(1));
+  return 0;
+}
+
+/// Creates a folder. `option`: command-line option for the folder.
+void make_folder(const std::filesystem::path& folder, std::string_view option) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (!std::filesystem::is_directory(folder))
+    throw device::Error(fmt::format("The folder {} cannot be created: {}. Choose another folder with {}.",
+                                    folder.string(), code.message(), option));
+}
+
+/// Called before the cases run, so that an invalid folder is reported immediately.
+void make_folder_of_page(const CampaignOptions& command) {
+  make_folder(campaign::folder_of_details(command.page), "--page");
+}
+
+/// Runs each case on a separate board, with `jobs` boards in parallel. Returns exit code 1 if a case could not be run.
+int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
+  make_folder(command.folder, "--out");
+  const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
+  std::atomic<std::size_t> next{0}, failed{0};
+  std::mutex printing;
+  std::string trouble;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < cases.size();) try {
+        const auto result = campaign::run_case(cases[i], board);
+        campaign::save(result, command.folder);
+        const std::lock_guard lock(printing);
+        if (!result.error.empty()) ++failed;
+        const std::string off = result.off_after_s
+                                    ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
+                                    : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
+        const std::string place = result.place.empty() ? "" : " at " + result.place;
+        const std::string text = campaign::fault_text(result);
+        fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
+                   result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
+                                                      result.peak_force_N, result.recovery)
+                                        : result.error);
+        std::fflush(stdout);
+      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
+        const std::lock_guard lock(printing);
+        trouble = error.what();
+        next = cases.size();
+      }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned i = 0; i < command.jobs; ++i) workers.emplace_back(work);
+  for (auto& worker : workers) worker.join();
+  if (!trouble.empty()) throw device::Error(trouble);
+  return failed > 0 ? 1 : 0;
+}
+
+int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
+  const auto all = campaign::all_cases();
+  std::vector<Case> cases;
+  for (const unsigned number : command.numbers) {
+    if (number < 1 || number > all.size())
+      throw UsageError(
+          fmt::format("There is no case {}. Give a number from 1 to {}; `inkwell campaign list` shows all cases.",
+                      number, all.size()));
+    cases.push_back(all[number - 1]);
+  }
+  return run_cases(options, command, cases);
+}
+
+int merge_results(const CampaignOptions& command) {
+  const auto results = campaign::load_all(command.folder);
+  if (!results.empty()) make_folder_of_page(command);
+  campaign::write_page(results, command.page);
+  fmt::print("{} of {} cases: {}\n", results.size(), campaign::all_cases().size(), command.page);
+  return 0;
+}
+
+int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
+  make_folder(command.folder, "--out");
+  make_folder_of_page(command);
+  campaign::load_all(command.folder);  // reports unreadable files before hours of cases instead of after them
+  std::vector<Case> missing;
+  for (const Case& c : campaign::all_cases())
+    if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);
+  const int exit_code = run_cases(options, command, missing);
+  merge_results(command);
+  return exit_code;
+}
+
+void add_folder(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--out", options.folder, "Folder for the results, with one file per case")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+void add_page(CLI::App& command, CampaignOptions& options) {
+  command
+      .add_option("--page", options.page, "Summary page to write; a folder with its name gets the details and plots")
+      ->type_name("FILE")
+      ->capture_default_str();
+}
+
+void add_jobs(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--jobs", options.jobs, "Number of cases to run in parallel")
+      ->check(whole_number_within(1, 256))
+      ->type_name("NUMBER")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_campaign_command(const Place& place) {
+  const auto options = std::make_shared<CampaignOptions>();
+  auto* command = place.program.add_subcommand(
+      "campaign",
+      "Runs every fault in every situation on virtual boards, and writes the results as pages\n"
+      "Without a subcommand, runs the cases that have no result yet, then writes the pages.");
+  command->require_subcommand(0, 1);
+  add_folder(*command, *options);
+  add_jobs(*command, *options);
+  add_page(*command, *options);
+  add_examples(*command,
+               "inkwell campaign --jobs 8\n"
+               "inkwell campaign list --numbers | parallel -S one,two inkwell campaign run {} --out /shared/results\n"
+               "inkwell campaign merge /shared/results --page docs/campaign.md");
+  command->callback([place, command, options] {
+    if (command->get_subcommands().empty())
+      place.action = [&device = place.device, options] { return run_missing(device, *options); };
+  });
+
+  auto* listed = command->add_subcommand("list", "Lists the cases with their numbers");
+  listed->add_flag("--numbers", options->only_numbers, "Print only the numbers, for GNU parallel and batch systems");
+  add_examples(*listed, "inkwell campaign list\ninkwell campaign list --numbers");
+  listed->callback(
+      [place, options] { place.action = [&device = place.device, options] { return list_cases(device, *options); }; });
+
+  auto* runs = command->add_subcommand("run", "Runs cases by number and writes one result file per case");
+  runs->add_option("case", options->numbers, "Case numbers")->required()->type_name("NUMBER");
+  add_folder(*runs, *options);
+  add_jobs(*runs, *options);
+  add_examples(*runs, "inkwell campaign run 17 --out results\ninkwell campaign run 17 18 19 --jobs 3 --out results");
+  runs->callback(
+      [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
+
+  auto* merges = command->add_subcommand("merge", "Writes the pages from the existing results");
+  merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
+  add_page(*merges, *options);
+  add_examples(*merges, "inkwell campaign merge results --page docs/campaign.md");
+  merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });
+}
+
+}  // namespace inkwell::command_line

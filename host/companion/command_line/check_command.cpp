@@ -1,0 +1,13 @@
+#include "host/companion/command_line/guide_commands.hpp"
+#include "host/companion/command_line/help.hpp"
+
+namespace inkwell::command_line {
+
+void add_check_command(const Place& place) {
+  auto* command = place.program.add_subcommand("check", "Guides that check the wiring and the arm description");
+  command->require_subcommand(1);
+  add_examples(*command, "inkwell check connection\ninkwell check directions");
+  add_guides(*command, place, "check");
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,67 @@
+// The commands of the `inkwell` program. Each command registers its options and an action.
+#pragma once
+
+// To add a command:
+// (1) Add a line to INKWELL_COMMANDS.
+// (2) Define add_NAME_command() in NAME_command.cpp in this folder. The help text needs examples with units.
+// (3) Add the command and its subcommands to the list in tests/system/bad_input_test.cpp.
+//
+// Manual pages, completion and the command page are generated from the help texts.
+
+#include <functional>
+
+#include "host/companion/window/window_options.hpp"
+
+#include "host/companion/command_line/connection.hpp"
+
+namespace inkwell::command_line {
+
+/// The action of the chosen command; returns the exit code.
+using Action = std::function<int()>;
+/// Opens the window. Replays the recording, unless the file name is empty. Returns the exit code.
+using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
+
+/// Arguments of the functions that add commands.
+struct Place {
+  CLI::App& program;
+  const DeviceOptions& device;
+  Action& action;  ///< set when the command is chosen
+  OpenWindow open_window;
+};
+
+/// The commands, in the order of the program's help.
+#define INKWELL_COMMANDS(X) \
+  X(info)                   \
+  X(devices)                \
+  X(fault)                  \
+  X(self_test)              \
+  X(force)                  \
+  X(watch)                  \
+  X(parameters)             \
+  X(signals)                \
+  X(reference)              \
+  X(experiment)             \
+  X(campaign)               \
+  X(soak)                   \
+  X(calibrate)              \
+  X(tune)                   \
+  X(check)                  \
+  X(measure)                \
+  X(record)                 \
+  X(replay)                 \
+  X(plot)                   \
+  X(run)                    \
+  X(flash)
+
+#define X(name) void add_##name##_command(const Place& place);
+INKWELL_COMMANDS(X)
+#undef X
+
+/// Adds the window options. Returns the function for commands that open the window.
+OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
+
+/// Throws UsageError if a window option was given with a command that opens no window. Otherwise the program would
+/// ignore the option, including an invalid value.
+void refuse_window_options_in_vain(const CLI::App& program);
+
+}  // namespace inkwell::command_line

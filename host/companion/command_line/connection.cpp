@@ -1,0 +1,95 @@
+#include "host/companion/command_line/connection.hpp"
+
+#include "boards/arms/description.hpp"
+#include "boards/known/boards.hpp"
+
+#include "host/companion/command_line/help.hpp"
+
+namespace inkwell::command_line {
+
+void DeviceOptions::add_to(CLI::App& app) {
+  auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
+  const char* group = "Virtual board (with --virtual)";
+  app.add_option("--board", board, "Driver board to simulate, with its firmware: " + inkwell::board::names_of_boards())
+      ->type_name("NAME")
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--elf", elf, "Firmware image (ELF). Default: the image installed with this program")
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--arm", arm, "Arm description (TOML) to simulate; its parameters are sent to the firmware")
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--flash", flash,
+                 "File for the flash memory, created if missing. --arm overrides its stored parameters")
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--mode", mode,
+                 "exact: interrupts at any instruction; fast: interrupts only between instruction blocks")
+      ->check(CLI::IsMember({"exact", "fast"}))
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--seed", seed, "Seed of the noise and of the serial number")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_flag("--real-time", real_time, "Run in real time")->needs(is_virtual_flag)->group(group);
+  auto* server =
+      app.add_option("--usbip", usbip,
+                     "HOST:PORT or unix:PATH of a USB/IP server, such as a running virtual board; not with\n--virtual")
+          ->type_name("ADDRESS")
+          ->check(not_empty())
+          ->excludes(is_virtual_flag);
+  app.add_option("--serial", serial_number, "Use the arm on USB with this serial number; not with --virtual or --usbip")
+      ->type_name("NUMBER")
+      ->check(not_empty())
+      ->excludes(is_virtual_flag)
+      ->excludes(server);
+  app.add_flag("--take-over", take_over,
+               "Take the arm over from the program that drives it; that program's force fades");
+  app.add_flag("--json", json, "Print JSON for programs instead of text");
+}
+
+device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardPace pace) const {
+  device::VirtualBoardOptions wanted;
+  wanted.elf = elf;
+  wanted.board = board;
+  wanted.arm = arm;
+  wanted.flash = flash;
+  wanted.mode = mode.empty()      ? default_mode
+                : mode == "exact" ? device::SimulationMode::exact
+                                  : device::SimulationMode::fast;
+  wanted.seed = seed;
+  wanted.real_time = real_time || pace == BoardPace::real_time;
+  wanted.paused = pace == BoardPace::as_asked;
+  wanted.lock_step = pace == BoardPace::lock_step;
+  wanted.strict = is_strict;
+  return wanted;
+}
+
+device::Address DeviceOptions::address() const {
+  if (is_virtual) return {.kind = device::Address::Kind::own_board, .arm = arm};
+  if (usbip.empty()) return {.kind = device::Address::Kind::usb, .serial_number = serial_number};
+  try {
+    return device::parse_server(usbip);
+  } catch (const device::BadAddress& error) {
+    throw UsageError(error.what());
+  }
+}
+
+device::OpenArm connect(const DeviceOptions& options, BoardPace pace, device::SimulationMode default_mode) {
+  auto arm = device::open_arm(options.address(), options.virtual_board(default_mode, pace),
+                              pace == BoardPace::lock_step ? &device::one_thread() : nullptr);
+  if (options.take_over) arm.device->take_over();
+  return arm;
+}
+
+std::string arm_name(const DeviceOptions& options) {
+  return options.arm.empty() ? std::string() : arms::read(options.arm).name;
+}
+
+}  // namespace inkwell::command_line

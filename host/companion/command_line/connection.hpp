@@ -1,0 +1,87 @@
+// Device options, and the connection to the selected device.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "host/client/device/nearest_name.hpp"
+#include "host/client/device/open_arm.hpp"
+
+namespace inkwell::command_line {
+
+/// A mistake in the command line; the exit code is 2.
+class UsageError : public device::Error {
+ public:
+  using Error::Error;
+};
+
+/// Pace of a virtual board's time. --real-time has priority.
+enum class BoardPace : std::uint8_t {
+  as_it_can,
+  real_time,  ///< synchronized with wall time
+  lock_step,  ///< only while the command, in one thread, waits for a pose or a request
+  as_asked,   ///< stopped from the first instruction on, except when OpenArm::control lets it pass
+};
+
+struct DeviceOptions {
+  bool is_virtual = false;
+  std::string board;  ///< empty: the board of the ELF
+  std::filesystem::path elf;
+  std::filesystem::path arm;
+  std::filesystem::path flash;
+  std::string mode;  ///< empty: the default of the command
+  std::uint64_t seed = 1;
+  bool real_time = false;
+  std::string usbip;  ///< HOST:PORT or unix:PATH
+  std::string serial_number;
+  bool take_over = false;
+  bool json = false;
+  bool is_strict = false;  ///< a virtual board exits when the firmware violates a rule of the chip
+
+  void add_to(CLI::App& app);
+  /// Throws UsageError.
+  device::Address address() const;
+  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
+};
+
+/// Opens the selected device. With --take-over, takes over the arm. With --arm, a virtual board receives the parameters
+/// of the arm description.
+device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
+                        device::SimulationMode default_mode = device::SimulationMode::fast);
+
+/// A parsed value. If the parser opened the device, `connection` is the open device.
+template <class Value>
+struct Typed {
+  Value value;
+  std::optional<device::OpenArm> connection;
+};
+
+/// Parses with `read()`. Reports a mistake without opening the device. An unknown name requires the device, because the
+/// name may belong to the device's force law.
+template <class Read>
+Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
+                                             BoardPace pace = BoardPace::as_it_can) {
+  try {
+    return {read(), std::nullopt};
+  } catch (const device::UnknownName& unknown) {
+    try {
+      auto connection = connect(options, pace);
+      return {read(), std::move(connection)};
+    } catch (const device::Error&) {
+      throw UsageError(unknown.what());
+    }
+  } catch (const device::Error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+/// Name of the arm in the --arm description. Empty without --arm, because a board does not store an arm name.
+std::string arm_name(const DeviceOptions& options);
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,117 @@
+// Runs an HDAPI or libhdPhantom program with the drop-in libraries.
+#include "host/companion/command_line/commands.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "host/client/installation/places.hpp"
+
+#include "host/companion/command_line/help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+constexpr int killed_by = 128;  // as shells report a signal
+constexpr int passed_on[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
+
+volatile std::sig_atomic_t program_process = 0, early_signal = 0;
+
+/// Forwards signals from other processes to the program. Signals from the terminal reach the program directly.
+void pass_on(int signal, siginfo_t* information, void*) {
+  if (information->si_code == SI_KERNEL) return;
+  if (program_process == 0)
+    early_signal = signal;
+  else
+    kill(program_process, signal);
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
+  fmt::print(stderr, "inkwell: the program uses the arm {} ({}){}.\n", endpoint.serial_number, address,
+             endpoint.is_virtual ? ", a simulation" : "");
+}
+
+int run(const DeviceOptions& options, std::vector<std::string> words) {
+  if (words.empty())
+    throw UsageError("The program is missing. Give its name: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
+  if (words.front().starts_with('-'))
+    throw UsageError(fmt::format("There is no option {}. `inkwell run --help` lists the options.", words.front()));
+  const auto libraries = installation::dropins();
+  if (!std::filesystem::exists(libraries / "libHD.so"))
+    throw device::Error(fmt::format(
+        "The libraries in {} are missing. Build them with tools/build, or install Inkwell again.", libraries.string()));
+
+  auto connection = connect(options, BoardPace::real_time);
+  const auto address = device::address_of(connection.endpoint);
+  say_which_device(connection.endpoint, address);
+  connection.device.reset();  // from now on the program uses the arm
+
+  const std::string others = environment("LD_LIBRARY_PATH");
+  setenv("LD_LIBRARY_PATH", (libraries.string() + (others.empty() ? "" : ":" + others)).c_str(), 1);
+  setenv("INKWELL_DEVICE", address.c_str(), 1);
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  struct sigaction action {};
+  action.sa_sigaction = pass_on;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;
+  for (const int signal : passed_on) sigaction(signal, &action, nullptr);
+  pid_t process = 0;
+  if (const int code = posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ); code != 0)
+    throw device::Error(fmt::format("{} cannot be started: {}. Check its name and whether it is executable.", words[0],
+                                    std::strerror(code)));
+  program_process = process;
+  if (early_signal != 0) kill(process, early_signal);
+
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFSIGNALED(status) ? killed_by + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+void add_run_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
+      "run",
+      "Runs a program for the Omni's libraries (HDAPI, CHAI3D) on this arm\n"
+      "\n"
+      "Replaces the Omni's libraries with libHD.so and libhdPhantom.so of this arm, and sets INKWELL_DEVICE. With\n"
+      "--virtual, a virtual board runs as long as the program. Options precede PROGRAM; words after it are its "
+      "arguments.\n"
+      "The exit code is that of the program, or 128 plus the number of the signal that terminated the program.");
+  const auto own = std::make_shared<DeviceOptions>();
+  command->fallthrough(false);
+  own->add_to(*command);
+  command->prefix_command();
+  // After "--" CLI11 passes the remaining words to the parser of the main program.
+  command->preparse_callback([&parser = place.program](std::size_t) { parser.prefix_command(); });
+  add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
+  command->callback([place, own, command] {
+    const bool marked = command->remaining().empty();
+    place.action = [&given = place.device, own, words = (marked ? place.program : *command).remaining()] {
+      const bool before = given.is_virtual || !given.usbip.empty() || !given.serial_number.empty();
+      return run(before ? given : *own, words);
+    };
+  });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,35 @@
+#include "host/companion/command_line/commands.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "protocol/signals.hpp"
+
+#include "host/companion/command_line/help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using nlohmann::ordered_json;
+
+int list_signals(const DeviceOptions& options) {
+  ordered_json json = ordered_json::array();
+  for (const auto& row : protocol::known_signals())
+    if (options.json)
+      json.push_back({{"name", row.name}, {"unit", row.unit}, {"help", row.help}});
+    else
+      fmt::print("{:<24} {:<7} {}\n", row.name, row.unit, row.help);
+  if (options.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
+}  // namespace
+
+void add_signals_command(const Place& place) {
+  auto* command =
+      place.program.add_subcommand("signals", "Lists all signals that can be recorded, with unit; needs no device");
+  add_examples(*command, "inkwell signals");
+  command->callback([place] { place.action = [&options = place.device] { return list_signals(options); }; });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,97 @@
+#include "host/companion/window/bars/banner.hpp"
+
+#include <fmt/format.h>
+
+#include "host/client/device/fault_text.hpp"
+#include "host/companion/window/device_desk/motor_heat_view.hpp"
+#include "host/companion/window/frame/widgets.hpp"
+
+namespace inkwell::window {
+
+using protocol::State;
+
+namespace {
+
+constexpr float banner_margin_points = 12.0f;
+constexpr float button_points = 118.0f;
+
+float banner_text_width(float width, const Style& style, const Banner& banner) {
+  return width - style.points(44 + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points
+                                                                        : banner_margin_points));
+}
+
+/// Returns a banner that offers an optional update if the firmware versions differ.
+std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpdater::Sight& firmware) {
+  const std::string& version = view.status.information->firmware_version;
+  if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||
+      protocol::force_is_on(view.state()))
+    return std::nullopt;
+  return Banner{
+      fmt::format("The board runs firmware {}, and this companion contains firmware {}.", version, firmware.version),
+      "Both firmware versions use the same protocol, so the update is optional. The update keeps the stored "
+      "parameters.",
+      BannerAction::update_firmware, "Update"};
+}
+
+}  // namespace
+
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware) {
+  if (view.pose && view.pose->state == State::fault) {
+    const auto& test = view.status.self_test;
+    const auto [cause, remedy] =
+        test ? device::fault_text(view.pose->fault, *test) : device::fault_text(view.pose->fault);
+    return Banner{cause, remedy, BannerAction::clear_fault, "Clear fault"};
+  }
+  if (!view.connected() || !view.status.information) return std::nullopt;
+  if (is_replay && protocol::force_is_on(view.state()))
+    return Banner{
+        "The window shows a recording, but the force of the arm is on.",
+        "Another program has switched the force on. STOP switches the force off. Close the replay to see the arm.",
+        BannerAction::none};
+  if (view.status.command_problem)
+    return Banner{*view.status.command_problem,
+                  "STOP switches the force off, even while another program drives the arm.", BannerAction::take_over,
+                  "Take over"};
+  const MotorHeatView heat = motor_heat_view(view.status.information->report);
+  if (heat.level == HeatLevel::cool) return firmware_banner(view, firmware);
+  return Banner{fmt::format("Motor {} is {}: motor heat {:.0f} %.", heat.motor,
+                            heat.level == HeatLevel::hot ? "hot" : "warm", 100.0f * heat.hottest),
+                heat_advice(heat), BannerAction::none};
+}
+
+float banner_height(float width, const Style& style, const Banner& banner) {
+  const float room = banner_text_width(width, style, banner);
+  const auto taken = [room](ImFont* font, const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e4f, room, text.c_str()).y;
+  };
+  return taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy) + style.points(26);
+}
+
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
+  const Palette& palette = *style.palette;
+  const Colour colour = banner.is_fault() ? palette.danger : palette.caution;
+  begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may cover the scene
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
+  list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
+  list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(colour));
+  list.PopClipRect();
+  warning_sign({place.x + style.points(18), place.y + style.points(10)}, colour, style);
+  ImGui::SetCursorPos({style.points(44), style.points(9)});
+  ImGui::BeginGroup();
+  ImGui::PushTextWrapPos(style.points(44) + banner_text_width(size.x, style, banner));
+  text(style.fonts.strong, palette.text, banner.what);
+  text(palette.text_quiet, banner.remedy);
+  ImGui::PopTextWrapPos();
+  ImGui::EndGroup();
+  bool pressed = false;
+  if (banner.action != BannerAction::none) {
+    ImGui::SetCursorPos({size.x - style.points(button_points + banner_margin_points), style.points(14)});
+    pressed = coloured_button(banner.button.c_str(), colour, banner.is_fault() ? palette.on_danger : palette.on_caution,
+                              {style.points(button_points), style.points(34)});
+  }
+  end_pane();
+  return pressed;
+}
+
+}  // namespace inkwell::window

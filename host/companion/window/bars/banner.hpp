@@ -1,0 +1,30 @@
+// The banner below the status bar.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host/companion/window/bars/firmware_updater.hpp"
+#include "host/companion/window/device_desk/device_desk.hpp"
+#include "host/companion/window/frame/style.hpp"
+
+namespace inkwell::window {
+
+/// The banner reports a fault, force during a replay, a different driver, a hot motor, or different firmware.
+enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
+
+struct Banner {
+  std::string what;
+  std::string remedy;
+  BannerAction action;  ///< action of the banner's button
+  std::string button{};
+
+  bool is_fault() const { return action == BannerAction::clear_fault; }
+};
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
+float banner_height(float width, const Style& style, const Banner& banner);
+/// Returns true if the button was pressed.
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
+
+}  // namespace inkwell::window

@@ -1,0 +1,40 @@
+// The bar at the top: device, gauges, force button and stop button.
+#pragma once
+
+#include <cstdint>
+
+#include "host/companion/window/device_desk/device_desk.hpp"
+#include "host/companion/window/frame/style.hpp"
+
+namespace inkwell::window {
+
+struct StatusBarInput {
+  bool scope_is_shown;
+  bool is_replay;  ///< true during a replay, when the force cannot be switched on
+};
+
+struct StatusBarOutcome {
+  bool switch_force_on = false;
+  bool stop = false;
+  bool clear_fault = false;
+  bool toggle_theme = false;
+  bool toggle_scope = false;
+  bool help = false;
+};
+
+class StatusBar {
+ public:
+  /// Returns the height of the bar. The gauges wrap in a narrow window or with large text.
+  float height(float width, const Style& style) const;
+  StatusBarOutcome draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, const StatusBarInput& input);
+
+ private:
+  void draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk);
+  void draw_device_list(const Style& style, DeviceDesk& desk);
+  void draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
+                    StatusBarOutcome& outcome) const;
+  /// Draws the state of the two stylus buttons and of the inkwell switch.
+  void draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const;
+};
+
+}  // namespace inkwell::window

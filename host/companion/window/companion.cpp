@@ -1,0 +1,308 @@
+#include "host/companion/window/companion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <nlohmann/json.hpp>
+
+#include "host/companion/window/bars/connection_card.hpp"
+#include "host/companion/window/bars/return_card.hpp"
+#include "host/companion/window/frame/imgui_versions.hpp"
+#include "host/companion/window/frame/keyboard.hpp"
+#include "host/companion/window/frame/picture_digest.hpp"
+#include "host/companion/window/frame/widgets.hpp"
+
+namespace inkwell::window {
+
+Companion::Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem)
+    : flat_colours_(options.flat_colours),
+      may_start_virtual_board_(options.start_virtual_board != nullptr),
+      problem_(std::move(problem)),
+      settings_(settings),
+      style_{&palette(settings.theme), load_fonts(scale), scale},
+      desk_(options.list_devices, options.serial_number),
+      updater_(options.firmware, options.board),
+      scope_pane_(settings.scope),
+      column_({.desk = desk_,
+               .parameters_file = settings_.parameters_file,
+               .parameters_to_send = options.parameters_file,
+               .control = options.virtual_board_control,
+               .simulated_arm = options.simulated_arm,
+               .replay = [this](const std::filesystem::path& recording) { replay_bar_.open(recording); },
+               .starts_with_replay = !options.replay.recording.empty(),
+               .replayed = [this] { return replay_bar_.recording(); },
+               .seek = [this](double position_s) { replay_bar_.seek(position_s); }}) {
+  if (options.virtual_board_control) hand_.emplace(*options.virtual_board_control);
+  use_theme(settings.theme);
+  if (!options.replay.recording.empty()) replay_bar_.open(options.replay.recording);
+  if (!options.replay.over.empty()) replay_bar_.lay_over(options.replay.over, options.replay.align);
+}
+
+WindowSettings Companion::settings() const {
+  WindowSettings now = settings_;
+  now.scope = scope_pane_.settings();
+  return now;
+}
+
+void Companion::use_theme(Theme theme) {
+  settings_.theme = theme;
+  style_.palette = &palette(theme);
+  apply_theme(*style_.palette, style_.scale);
+}
+
+void Companion::stop() {
+  column_.cancel();
+  desk_.session().send(protocol::Command::stop);
+}
+
+void Companion::key(const KeyEvent& event) {
+  if (is_next_part(event)) keyboard_.go_on((event.modifiers & shift_modifier) != 0);
+  if (event.action == GLFW_REPEAT) return;
+  const int key = event.key;
+  const bool down = event.action == GLFW_PRESS;
+  const bool types = ImGui::GetIO().WantTextInput;
+  if (down && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_F12 || (key == GLFW_KEY_SPACE && !types))) stop();
+  if (down && key == GLFW_KEY_F1) key_help_.open();
+  if (down && key >= GLFW_KEY_F2 && key < GLFW_KEY_F12 && !is_dialog_open())
+    keyboard_.go_to(column_.show(static_cast<std::size_t>(key - GLFW_KEY_F2)));
+  if (!hand_ || (down && types)) return;
+  if (key == GLFW_KEY_1) button_1_ = down;
+  if (key == GLFW_KEY_2) button_2_ = down;
+  if (key == GLFW_KEY_1 || key == GLFW_KEY_2) hand_->press_buttons(button_1_, button_2_);
+}
+
+void Companion::take_keyboard_shortcuts(double now_s) {
+  const ImGuiIO& io = ImGui::GetIO();
+  keyboard_.begin_frame();
+  keep_modified_arrows();
+  if (io.WantTextInput) return;
+  if (io.InputQueueCharacters.contains('?')) key_help_.open();
+  if (!io.KeyCtrl) return;
+  // Key repetition is ignored, because each step may move a motor.
+  const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(key_index(key), false); };
+  if (is_tapped(ImGuiKey_Z)) {
+    if (io.KeyShift) {
+      editor_.redo(now_s);
+    } else {
+      editor_.undo(now_s);
+    }
+  }
+  if (is_tapped(ImGuiKey_Y)) editor_.redo(now_s);
+}
+
+void Companion::lay_out(ImVec2 size, double now_s) {
+  arrived_ = desk_.newest_pose();
+  follow_device(now_s);
+  replay_bar_.follow(now_s, scope_pane_);
+  take_keyboard_shortcuts(now_s);
+  pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
+
+  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
+  const float height_of_banner = banner ? banner_height(size.x, style_, *banner) : 0.0f;
+  const WindowLayout layout =
+      layout_of(size,
+                {.status_height = status_bar_.height(size.x, style_),
+                 .banner_height = height_of_banner,
+                 .banner_room = banner_room(height_of_banner),
+                 .replay_height = replay_bar_.is_open() ? style_.points(replay_bar_points) : 0.0f},
+                settings_, style_.scale);
+  StatusBarOutcome outcome = draw_bars(layout, banner);
+  if (draw_scene(layout, now_s)) outcome.switch_force_on = true;
+  draw_column(layout, size, now_s);
+  draw_scope(layout);
+  key_help_.draw(style_);
+  move_borders(layout, size);
+  keyboard_.end_frame(style_);
+  judge_motion();
+  carry_out(outcome);  // the changes become visible in the next frame
+  if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
+}
+
+void Companion::follow_device(double now_s) {
+  if (desk_.has_choice()) {
+    column_.cancel();  // trial values must be restored on the old device
+    desk_.follow_choice();
+  }
+  follow_parameters(desk_.refresh(), now_s);
+  const auto samples = desk_.take_scope();
+  column_.follow({editor_, samples, now_s});
+  const PaneStream stream = column_.stream(scope_pane_.signals());
+  desk_.select_signals(stream.signals);
+  if (!stream.feeds_scope || replay_bar_.is_open()) return;
+  for (const device::ScopeSamples& each : samples) scope_pane_.receive(each);
+}
+
+void Companion::follow_parameters(const DeviceView& view, double now_s) {
+  if (!view.connected() || !view.parameters) {
+    editor_.disconnected();
+    seen_revision_ = 0;
+  } else if (view.parameters_revision != seen_revision_) {
+    seen_revision_ = view.parameters_revision;
+    editor_.device_holds(*view.parameters);
+  }
+  const std::string refusal = view.refusal.value_or("");
+  if (!refusal.empty() && refusal != seen_refusal_) editor_.refused();
+  seen_refusal_ = refusal;
+  editor_.forget_unconfirmed(now_s);
+  returned_.follow(view, now_s);
+}
+
+float Companion::banner_room(float banner_height) {
+  if (!ImGui::IsAnyMouseDown()) banner_room_ = banner_height;
+  return banner_room_;
+}
+
+StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {
+  StatusBarOutcome outcome =
+      status_bar_.draw(layout.status.place, layout.status.size, style_, desk_,
+                       {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
+  if (!banner || !draw_banner(layout.banner.place, layout.banner.size, style_, *banner)) return outcome;
+  outcome.clear_fault = banner->action == BannerAction::clear_fault;
+  if (banner->action == BannerAction::update_firmware) update_firmware();
+  if (banner->action == BannerAction::take_over) desk_.session().take_over();
+  return outcome;
+}
+
+void Companion::carry_out(const StatusBarOutcome& outcome) {
+  if (outcome.stop) stop();
+  if (outcome.switch_force_on) desk_.session().send(protocol::Command::enable_force);
+  if (outcome.clear_fault) desk_.session().send(protocol::Command::clear_fault);
+  if (outcome.help) key_help_.open();
+  if (outcome.toggle_scope) settings_.scope_is_shown = !settings_.scope_is_shown;
+  if (outcome.toggle_theme) use_theme(settings_.theme == Theme::dark ? Theme::light : Theme::dark);
+}
+
+bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
+  const bool replays = replay_bar_.is_open();
+  scene_ = layout.scene;
+  const bool asks_for_force =
+      scene_pane_.draw(scene_.place, scene_.size,
+                       {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays,
+                        !returned_.waits_for_user()});
+  if (replays) {
+    replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
+  } else {
+    draw_card(layout);
+    if (!has_card() && returned_.is_shown()) draw_returned_values(layout, now_s);
+  }
+  return asks_for_force;
+}
+
+void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
+  const ReturnChoice choice = draw_return_card(layout.scene.place, layout.scene.size, style_, returned_,
+                                               protocol::force_is_on(desk_.view().state()));
+  if (choice == ReturnChoice::send) editor_.apply("old values", returned_.changes_back(), now_s);
+  if (choice == ReturnChoice::keep) returned_.dismiss();
+}
+
+bool Companion::has_card() const {
+  const DeviceView& view = desk_.view();
+  return !view.connected() || has_firmware_card(updater_.sight(), view);
+}
+
+void Companion::draw_card(const WindowLayout& layout) {
+  const DeviceView& view = desk_.view();
+  updater_.search_boot_loader(!view.connected());
+  updater_.meet(view.status.board_name);
+  const auto firmware = updater_.sight();
+  if (!has_card()) return;
+  const auto outcome =
+      draw_connection_card(layout.middle_of_scene(), style_, view, firmware, {may_start_virtual_board_, problem_});
+  wants_virtual_board_ = outcome.starts_virtual_board;
+  if (outcome.chosen_serial_number) desk_.choose(*outcome.chosen_serial_number);
+  if (outcome.firmware.dismiss) updater_.dismiss();
+  if (outcome.firmware.update) update_firmware();
+}
+
+void Companion::update_firmware() {
+  column_.cancel();
+  updater_.begin(desk_.wanted_serial_number());
+}
+
+void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {
+  column_.draw(layout.column.place, layout.column.size,
+               {.style = style_,
+                .editor = shown_parameters(),
+                .is_replay = replay_bar_.is_open(),
+                .scope_signals = scope_pane_.signals(),
+                .now_s = now_s});
+  const auto [place, size] = layout.column_splitter;
+  drag_column_splitter(splitter("tuning splitter", place, size, true, style_), window, style_.scale, settings_);
+}
+
+void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
+  constexpr float step_points = 20.0f;
+  const KeySteps steps = key_steps(with_alt);
+  drag_column_splitter(step_points * static_cast<float>(steps.right), window, style_.scale, settings_);
+  if (settings_.scope_is_shown)
+    drag_scope_splitter(-step_points * static_cast<float>(steps.up), layout, style_.scale, settings_);
+}
+
+void Companion::draw_scope(const WindowLayout& layout) {
+  if (!settings_.scope_is_shown) return;
+  const auto [place, size] = layout.scope_splitter;
+  drag_scope_splitter(splitter("scope splitter", place, size, false, style_), layout, style_.scale, settings_);
+  scope_pane_.draw(layout.scope.place, layout.scope.size, style_);
+}
+
+void Companion::judge_motion() {
+  const bool scene_moves = differs_visibly(drawn_pose_, pose_);
+  const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
+  is_moving_ = scene_moves || is_updating || column_.is_moving() || replay_bar_.is_playing() ||
+               (settings_.scope_is_shown && scope_pane_.take_motion());
+  if (scene_moves) drawn_pose_ = pose_;
+}
+
+bool Companion::needs_frame() const {
+  return column_.is_moving() || (!replay_bar_.is_open() && differs_visibly(drawn_pose_, desk_.newest_pose()));
+}
+
+std::uint64_t Companion::canvas_digest() const {
+  PictureDigest digest;
+  if (drawn_pose_) {
+    const device::Pose& pose = *drawn_pose_;
+    for (const auto& vector : {pose.position_m, pose.gimbal_rad, pose.force_N, pose.joint_rad})
+      digest.add_bytes(vector, sizeof pose.position_m);
+    digest.add(pose.state);
+    digest.add(pose.fault);
+    digest.add(pose.switches);
+    digest.add(pose.is_referenced);
+  }
+  const auto parameters = shown_parameters().shown();
+  digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
+  digest.add(*style_.palette);
+  scene_pane_.add_to(digest);
+  return digest.value();
+}
+
+Box Companion::canvas() const {
+  return {scene_.place.x, scene_.place.y, scene_.place.x + scene_.size.x, scene_.place.y + scene_.size.y};
+}
+
+void Companion::paint(const Canvas& canvas) {
+  const auto pixels = [&canvas](float units) { return static_cast<int>(std::lround(units * canvas.pixels_per_unit)); };
+  const int height = pixels(scene_.size.y);
+  scene_pane_.draw_scene(
+      {pixels(scene_.place.x), canvas.height_pixels - pixels(scene_.place.y) - height, pixels(scene_.size.x), height},
+      {*style_.palette, flat_colours_, canvas.smooth && !flat_colours_, canvas.is_as_before, std::nullopt});
+}
+
+nlohmann::json Companion::inspect() const {
+  const DeviceView& view = desk_.view();
+  nlohmann::json known{{"connected", view.connected()}, {"state", protocol::info(view.state()).name}};
+  if (view.pose) known["pose_at_periods"] = view.pose->time_periods;
+  if (arrived_) known["arrived_at_periods"] = arrived_->time_periods;
+  if (view.status.applied_at_periods) known["applied_at_periods"] = *view.status.applied_at_periods;
+  return known;
+}
+
+std::optional<double> Companion::pose_age_s() const {
+  const auto newest = desk_.newest_pose();
+  const auto& drawn = desk_.view().pose;
+  if (!newest || !drawn || replay_bar_.is_open()) return std::nullopt;
+  return device::board_time_s(newest->time_periods - drawn->time_periods);
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,112 @@
+// The companion's window with all panes.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host/companion/window/bars/banner.hpp"
+#include "host/companion/window/bars/firmware_updater.hpp"
+#include "host/companion/window/bars/key_help.hpp"
+#include "host/companion/window/bars/replay_bar.hpp"
+#include "host/companion/window/bars/status_bar.hpp"
+#include "host/companion/window/device_desk/device_desk.hpp"
+#include "host/companion/window/device_desk/parameter_editor.hpp"
+#include "host/companion/window/device_desk/returned_values.hpp"
+#include "host/companion/window/frame/frame_loop.hpp"
+#include "host/companion/window/frame/keyboard.hpp"
+#include "host/companion/window/frame/style.hpp"
+#include "host/companion/window/panes/pane_column.hpp"
+#include "host/companion/window/scene/mouse_hand.hpp"
+#include "host/companion/window/scene/scene_pane.hpp"
+#include "host/companion/window/scope/scope_pane.hpp"
+#include "host/companion/window/window_layout.hpp"
+#include "host/companion/window/window_options.hpp"
+#include "host/companion/window/window_settings.hpp"
+
+namespace inkwell::window {
+
+class Companion final : public FrameContent {
+ public:
+  /// `problem`: error of the last start of a virtual board; empty: no error.
+  Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
+
+  /// Handles the keys. Escape, F12 and the space bar switch the force off immediately. The space bar has no effect in
+  /// text fields.
+  void key(const KeyEvent& event) override;
+  bool needs_frame() const override;
+  void lay_out(ImVec2 size, double now_s) override;
+  bool is_moving() const override { return is_moving_; }
+  /// True once the user requests a virtual board. The window restarts with the virtual board.
+  bool is_over() const override { return wants_virtual_board_; }
+  Box canvas() const override;
+  std::uint64_t canvas_digest() const override;
+  Colour ground() const override { return style_.palette->pane; }
+  void paint(const Canvas& canvas) override;
+  nlohmann::json inspect() const override;
+  std::optional<double> pose_age_s() const override;
+
+  /// Returns the settings to save.
+  WindowSettings settings() const;
+
+ private:
+  void follow_device(double now_s);
+  void follow_parameters(const DeviceView& view, double now_s);
+  void take_keyboard_shortcuts(double now_s);
+  /// Moves the splitters while Alt and an arrow key are pressed.
+  void move_borders(const WindowLayout& layout, ImVec2 window);
+
+  /// Returns the height that the layout reserves for the banner. The height does not change while a mouse button is
+  /// down, because a dragged item must not move.
+  float banner_room(float banner_height);
+  StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
+  /// Returns true if the user switches the force on.
+  bool draw_scene(const WindowLayout& layout, double now_s);
+  void draw_returned_values(const WindowLayout& layout, double now_s);
+  void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
+  void draw_scope(const WindowLayout& layout);
+  void judge_motion();
+
+  /// True if the connection card is shown.
+  bool has_card() const;
+  void draw_card(const WindowLayout& layout);
+  void update_firmware();
+  void carry_out(const StatusBarOutcome& outcome);
+  void use_theme(Theme theme);
+  void stop();
+
+  /// Returns the parameters of the replayed recording. Without a replay, returns the parameters of the device.
+  ParameterEditor& shown_parameters() { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
+  const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
+
+  bool flat_colours_;
+  bool may_start_virtual_board_;
+  bool wants_virtual_board_ = false;
+  std::string problem_;
+  WindowSettings settings_;
+  Style style_;
+  DeviceDesk desk_;
+  std::optional<MouseHand> hand_;
+  ParameterEditor editor_;
+  ReturnedValues returned_;
+  StatusBar status_bar_;
+  ReplayBar replay_bar_;
+  KeyHelp key_help_;
+  KeyboardTour keyboard_;
+  FirmwareUpdater updater_;
+  ScenePane scene_pane_;
+  ScopePane scope_pane_;
+  PaneColumn column_;
+
+  std::uint64_t seen_revision_ = 0;
+  std::string seen_refusal_;
+  float banner_room_ = 0.0f;                ///< value of the previous frame
+  Rectangle scene_;                         ///< position in the last layout
+  std::optional<device::Pose> arrived_;     ///< the device's newest pose at the start of the frame
+  std::optional<device::Pose> pose_;        ///< displayed pose, from the device or from the recording
+  std::optional<device::Pose> drawn_pose_;  ///< last pose that differed visibly from the previous pose
+  bool is_moving_ = true;
+  bool button_1_ = false;
+  bool button_2_ = false;
+};
+
+}  // namespace inkwell::window

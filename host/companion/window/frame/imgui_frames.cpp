@@ -1,0 +1,95 @@
+#include "host/companion/window/frame/imgui_frames.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include "host/companion/window/frame/imgui_versions.hpp"
+#include "host/companion/window/frame/picture_digest.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+Box box_of(const ImVec4& rectangle) { return {rectangle.x, rectangle.y, rectangle.z, rectangle.w}; }
+
+DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
+  if (command.ElemCount == 0) return {};
+  const std::span indices(list.IdxBuffer.Data + command.IdxOffset, command.ElemCount);
+  const auto [first, last] = std::ranges::minmax(indices);
+  const std::span corners(list.VtxBuffer.Data + command.VtxOffset + first, static_cast<std::size_t>(last - first) + 1);
+  PictureDigest digest;
+  digest.add_bytes(corners.data(), corners.size_bytes());
+  // Indices are relative to the first corner, because the number of previous corners may change.
+  std::uint64_t order = 0;
+  for (const ImDrawIdx index : indices) order = order * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(index - first);
+  digest.add(order);
+  digest.add_bytes(&command.ClipRect, sizeof command.ClipRect);
+  Box box{corners[0].pos.x, corners[0].pos.y, corners[0].pos.x, corners[0].pos.y};
+  for (const ImDrawVert& corner : corners)
+    box = {std::min(box.left, corner.pos.x), std::min(box.top, corner.pos.y), std::max(box.right, corner.pos.x),
+           std::max(box.bottom, corner.pos.y)};
+  return {common(box, box_of(command.ClipRect)), digest.value()};
+}
+
+}  // namespace
+
+ImGuiFrames::Context::Context() {
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed, and the program has a separate settings file
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+}
+
+ImGuiFrames::Context::~Context() { ImGui::DestroyContext(); }
+
+ImGuiFrames::ImGuiFrames(GLFWwindow* window) : keys_(window) { ImGui_ImplOpenGL3_Init("#version 330 core"); }
+
+ImGuiFrames::~ImGuiFrames() { ImGui_ImplOpenGL3_Shutdown(); }
+
+void ImGuiFrames::begin() {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  keys_.begin_frame();
+  ImGui::NewFrame();
+}
+
+ImVec2 ImGuiFrames::size() const { return ImGui::GetIO().DisplaySize; }
+void ImGuiFrames::end() { ImGui::Render(); }
+
+std::vector<DrawnPane> ImGuiFrames::panes() const {
+  const ImDrawData& data = *ImGui::GetDrawData();
+  std::vector<DrawnPane> panes;
+  for (const ImDrawList* list : lists_of(data)) {
+    DrawnPane& pane = panes.emplace_back(DrawnPane{list, {}});
+    for (const ImDrawCmd& command : list->CmdBuffer) pane.parts.push_back(part_of(*list, command));
+  }
+  return panes;
+}
+
+void ImGuiFrames::draw(const Box& box) const {
+  // Clips all commands to the box. Lists without content in the box are not uploaded.
+  const ImDrawData& data = *ImGui::GetDrawData();
+  std::vector<ImDrawList*> lists;
+  std::vector<ImVec4> rectangles;
+  for (ImDrawList* list : lists_of(data)) {
+    const auto is_in_box = [&box](const ImDrawCmd& each) { return !common(box_of(each.ClipRect), box).is_empty(); };
+    if (std::none_of(list->CmdBuffer.begin(), list->CmdBuffer.end(), is_in_box)) continue;
+    lists.push_back(list);
+    for (ImDrawCmd& command : list->CmdBuffer) {
+      rectangles.push_back(command.ClipRect);
+      const Box part = common(box_of(command.ClipRect), box);
+      command.ClipRect = {part.left, part.top, part.right, part.bottom};
+    }
+  }
+  ImDrawData in_box = data;
+  set_lists(in_box, lists);
+  ImGui_ImplOpenGL3_RenderDrawData(&in_box);
+  auto before = rectangles.begin();
+  for (ImDrawList* list : lists)
+    for (ImDrawCmd& command : list->CmdBuffer) command.ClipRect = *before++;
+}
+
+}  // namespace inkwell::window

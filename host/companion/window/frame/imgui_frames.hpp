@@ -1,0 +1,42 @@
+// ImGui with its two back ends.
+#pragma once
+
+#include <vector>
+
+#include <imgui.h>
+
+#include "host/companion/window/frame/key_feed.hpp"
+#include "host/companion/window/frame/picture_changes.hpp"
+
+struct GLFWwindow;
+
+namespace inkwell::window {
+
+class ImGuiFrames {
+ public:
+  explicit ImGuiFrames(GLFWwindow* window);
+  ~ImGuiFrames();
+  ImGuiFrames(const ImGuiFrames&) = delete;
+  ImGuiFrames& operator=(const ImGuiFrames&) = delete;
+
+  /// Passes a key event of the window to ImGui, except for the keys that stop the force.
+  void take_key(const KeyEvent& event) { keys_.take(event); }
+
+  void begin();
+  ImVec2 size() const;  ///< of the window, in screen coordinates
+  void end();
+  /// Returns the panes of the finished frame.
+  std::vector<DrawnPane> panes() const;
+  /// Draws the part of the frame inside the box into the framebuffer.
+  void draw(const Box& box) const;
+
+ private:
+  struct Context {
+    Context();
+    ~Context();
+  };
+  Context context_;
+  KeyFeed keys_;
+};
+
+}  // namespace inkwell::window

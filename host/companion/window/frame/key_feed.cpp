@@ -1,0 +1,90 @@
+#include "host/companion/window/frame/key_feed.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+
+#include "host/companion/window/frame/imgui_versions.hpp"
+#include "host/companion/window/frame/key_letters.hpp"
+
+namespace inkwell::window {
+
+static_assert(space_bar == GLFW_KEY_SPACE && escape_key == GLFW_KEY_ESCAPE && tab_key == GLFW_KEY_TAB &&
+              key_release == GLFW_RELEASE && shift_modifier == GLFW_MOD_SHIFT && control_modifier == GLFW_MOD_CONTROL);
+
+namespace {
+
+bool can_cancel() {
+  return ImGui::IsAnyItemActive() || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+#if INKWELL_IMGUI_HAS_KEY_EVENTS
+
+// This back end queues key events and follows the keyboard layout, so no set-up is necessary.
+void set_up_keys() {}
+void note_tap(KeyTaps&, int) {}
+void apply_keys(KeyTaps&) {}
+
+#else
+
+// Called for every frame, because the user may change the layout at any time.
+void follow_keyboard_layout(ImGuiIO& io) {
+  const KeyLetters keys = key_letters([](int key) { return glfwGetKeyName(key, 0); });
+  for (const auto& [letter, shortcut] :
+       {std::pair{'a', ImGuiKey_A}, std::pair{'c', ImGuiKey_C}, std::pair{'v', ImGuiKey_V}, std::pair{'x', ImGuiKey_X},
+        std::pair{'y', ImGuiKey_Y}, std::pair{'z', ImGuiKey_Z}})
+    io.KeyMap[shortcut] = keys[static_cast<std::size_t>(letter - 'a')];
+}
+
+void set_up_keys() {
+  // This ImGui version activates controls only with the space bar.
+  ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
+}
+
+void note_tap(KeyTaps& taps, int key) {
+  taps.note(key);
+  // The modifier keys are also recorded, because the user may release the keys before the next frame.
+  const bool* down = ImGui::GetIO().KeysDown;
+  for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
+                             GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
+    if (down[modifier] && modifier != key) taps.note(modifier);
+}
+
+void apply_keys(KeyTaps& taps) {
+  ImGuiIO& io = ImGui::GetIO();
+  follow_keyboard_layout(io);
+  taps.apply(io.KeysDown);
+  io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
+  io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+  io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
+}
+
+#endif
+
+}  // namespace
+
+KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
+  // Hides the window's callback from the back end. Otherwise the back end would receive every key.
+  const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
+  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  glfwSetKeyCallback(window_, callback);
+  set_up_keys();
+}
+
+KeyFeed::~KeyFeed() {
+  const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
+  ImGui_ImplGlfw_Shutdown();
+  glfwSetKeyCallback(window_, callback);
+}
+
+void KeyFeed::take(const KeyEvent& event) {
+  if (!is_for_imgui(event, can_cancel())) return;
+  if (event.action == GLFW_PRESS) note_tap(taps_, event.key);
+  ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.modifiers);
+}
+
+void KeyFeed::begin_frame() { apply_keys(taps_); }
+
+}  // namespace inkwell::window

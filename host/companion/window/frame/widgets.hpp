@@ -1,0 +1,57 @@
+// Additional widgets, and ImGui widgets with names for inspections.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "host/companion/window/frame/style.hpp"
+
+namespace inkwell::window {
+
+void text(Colour colour, std::string_view content);
+void text(ImFont* font, Colour colour, std::string_view content);
+void wrapped_text(Colour colour, std::string_view content);
+/// Draws right-aligned text. `width` is the distance from the cursor to the right end of the text.
+void right_text(Colour colour, std::string_view content, float width);
+
+/// Returns the text, shortened with an ellipsis if necessary. Default: the current font.
+std::string fitted(std::string_view content, float width, ImFont* font = nullptr);
+
+/// Draws a triangle with an exclamation mark and returns its width.
+float warning_sign(ImVec2 corner, Colour colour, const Style& style);
+
+/// Prevents the up and down arrow keys from moving the focus away from the last item.
+void keep_vertical_arrows();
+
+/// True while a dialog dims the rest of the window.
+bool is_dialog_open();
+
+/// Puts the next item on the same line if this width is available, and on a new line otherwise.
+void same_line_if_room(float width);
+
+/// Shows a tooltip while the mouse hovers over the last item.
+void help_on_hover(std::string_view title, std::string_view help, const Style& style);
+
+/// An ImGui button. This widget and all following widgets have names for inspections.
+bool button(const char* label, ImVec2 size = {0, 0});
+/// A button without a background, except while the mouse hovers over the button.
+bool quiet_button(const char* label, const Style& style);
+/// A button in a custom color, such as the stop button.
+bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size);
+/// A button with a visible on/off state.
+bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
+
+/// Calls ImGui::BeginCombo() with this width. An ellipsis shortens long text.
+bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags = 0);
+
+/// Begins a window that fills a rectangle and cannot be moved or closed. The window has no background, because the
+/// cleared framebuffer already has the pane color.
+bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+/// Begins a pane in front of the other panes.
+bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+void end_pane();
+
+/// Draws a handle between two panes. Returns the drag distance to the right or down, in points.
+float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical, const Style& style);
+
+}  // namespace inkwell::window

@@ -1,0 +1,42 @@
+// Search for faults, conversion of input fields to a request, and texts about faults.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/client/device/control_client.hpp"
+#include "host/client/device/session.hpp"
+#include "protocol/injection_request.hpp"
+
+namespace inkwell::window {
+
+/// Returns the reason why no fault can be injected, and the remedy; empty if faults can be injected.
+std::string_view obstacle(const device::SessionStatus& status, bool knows_control_port);
+
+/// Returns a title such as "Bridge legs".
+std::string_view title_of(protocol::InjectionPart part);
+
+/// True if each word of the search occurs in the fault's name, part or help. The search ignores case. An empty search
+/// matches every fault.
+bool is_found(const protocol::InjectionInfo& row, std::string_view search);
+
+/// Returns the names of all wires into which faults can be injected.
+std::vector<std::string_view> wires();
+
+/// Contents of the input fields. An empty field selects the default of the board.
+struct TypedFault {
+  protocol::InjectedFault fault;
+  std::string of, amount, after_s, for_s;
+};
+
+/// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks the request.
+protocol::InjectionRequest request_of(const TypedFault& typed);
+
+/// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.
+std::string place_and_amount(const device::PutInFault& put_in);
+
+/// Returns a text such as "0.05 ms", "12.4 ms" or "1.35 s".
+std::string duration_text(double duration_s);
+
+}  // namespace inkwell::window

@@ -1,0 +1,144 @@
+#include "host/companion/window/panes/fault_form.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "host/companion/window/frame/imgui_versions.hpp"
+#include "host/companion/window/frame/inspection.hpp"
+#include "host/companion/window/frame/widgets.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+using protocol::InjectionPlace;
+
+constexpr float amount_unit_points = 46.0f;
+constexpr float label_part = 0.34f;  // of a field's row
+
+/// Returns the label of the location field; null if the fault has only one location.
+const char* place_label(InjectionPlace place) {
+  switch (place) {
+    case InjectionPlace::none: return nullptr;
+    case InjectionPlace::motor: return "Motor";
+    case InjectionPlace::leg: return "Leg";
+    case InjectionPlace::wire: return "Wire";
+    case InjectionPlace::wires: return "Wires";
+    case InjectionPlace::exception: return "Exception";
+    case InjectionPlace::converter: return "Converter";
+    case InjectionPlace::address: return "Address";
+  }
+  return nullptr;
+}
+
+const char* place_hint(InjectionPlace place) {
+  switch (place) {
+    case InjectionPlace::wires: return "wire+wire";
+    case InjectionPlace::exception: return "16 is interrupt 0";
+    case InjectionPlace::address: return "from the seed";
+    default: return "name or number";
+  }
+}
+
+bool is_enter_down() {
+  return ImGui::IsKeyDown(key_index(ImGuiKey_Enter)) || ImGui::IsKeyDown(key_index(key_keypad_enter));
+}
+
+}  // namespace
+
+bool FaultForm::draw(const Style& style) {
+  const auto& row = info(typed_.fault);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(5)});
+  wrapped_text(style.palette->text_quiet, protocol::help_of(row));
+  bool entered = draw_place(style);
+  if (row.has_amount()) {
+    entered |= draw_number("Amount", "amount", fmt::format("{}", row.otherwise), row.unit,
+                           "An empty field uses the amount that is shown in gray.", typed_.amount, style);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + label_part * ImGui::GetContentRegionAvail().x);
+    text(style.fonts.caption, style.palette->text_quiet, fmt::format("{} to {}", row.minimum, row.maximum));
+  }
+  entered |= draw_number("Starts after", "after", "immediately", "s",
+                         "Delay between Inject and the start of the fault, in board time.", typed_.after_s, style);
+  entered |= draw_number("Duration", "duration", "until healed", "s",
+                         "Time until the fault heals automatically, in board time.", typed_.for_s, style);
+  if (entered) take_keyboard();  // back to the first field, for the next fault
+  if (coloured_button("Inject", style.palette->accent, style.palette->pane, {-1, 0})) entered = true;
+  ImGui::Dummy({0, style.points(4)});
+  ImGui::PopStyleVar();
+  return entered;
+}
+
+bool FaultForm::draw_field(const Field& field, std::string& typed, const Style& style) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+  ImGui::AlignTextToFramePadding();
+  text(style.palette->text_quiet, field.label);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(left + label_part * width);
+  ImGui::SetNextItemWidth((1.0f - label_part) * width - field.right_room);
+  // Waits until Enter is released. Otherwise the input field would process the key press.
+  if (takes_keyboard_ && !is_enter_down()) {
+    takes_keyboard_ = false;
+    ImGui::SetKeyboardFocusHere();
+  }
+  const bool entered = ImGui::InputTextWithHint(fmt::format("##{}", field.name).c_str(), field.hint.c_str(), &typed,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  note_item(field.name);
+  return entered;
+}
+
+bool FaultForm::draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,
+                            std::string_view help, std::string& typed, const Style& style) {
+  const bool entered = draw_field({label, name, hint, style.points(amount_unit_points)}, typed, style);
+  help_on_hover(label, help, style);
+  ImGui::SameLine(0, style.points(6));
+  text(style.fonts.caption, style.palette->text_quiet, unit);
+  return entered;
+}
+
+bool FaultForm::draw_place(const Style& style) {
+  const InjectionPlace place = info(typed_.fault).place;
+  const char* label = place_label(place);
+  if (label == nullptr) return false;
+  const bool is_wire = place == InjectionPlace::wire || place == InjectionPlace::wires;
+  const float arrow = is_wire ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0.0f;
+  const bool entered = draw_field({label, "place", place_hint(place), arrow}, typed_.of, style);
+  if (is_wire) draw_wires(style);
+  if (const auto names = protocol::names_of_places(place); !names.empty()) draw_names(names, style);
+  return entered;
+}
+
+void FaultForm::draw_names(std::span<const std::string_view> names, const Style& style) {
+  const float indent = label_part * ImGui::GetContentRegionAvail().x;
+  const auto count = static_cast<float>(names.size());
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+  const float width = (ImGui::GetContentRegionAvail().x - (count - 1.0f) * gap) / count;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{0, ImGui::GetStyle().FramePadding.y});
+  for (const std::string_view name : names) {
+    if (name != names.front()) ImGui::SameLine();
+    if (toggle_button(std::string(name).c_str(), typed_.of == name, style, {width, 0})) typed_.of = name;
+  }
+  ImGui::PopStyleVar();
+}
+
+void FaultForm::draw_wires(const Style& style) {
+  ImGui::SameLine();
+  if (ImGui::ArrowButton("##wires", ImGuiDir_Down)) ImGui::OpenPopup("wires");
+  note_item("wires");
+  help_on_hover("Wires", "Lists the wires of the board. For any other pin, type its name, such as PA0.", style);
+  ImGui::SetNextWindowSizeConstraints({style.points(180), 0}, {style.points(260), style.points(320)});
+  if (!ImGui::BeginPopup("wires")) return;
+  for (const std::string_view name : wires()) {
+    if (ImGui::Selectable(std::string(name).c_str(), typed_.of == name)) {
+      // Appends the second wire after a plus sign.
+      const bool is_second = info(typed_.fault).place == InjectionPlace::wires && !typed_.of.empty() &&
+                             typed_.of.find('+') == std::string::npos;
+      typed_.of = is_second ? fmt::format("{}+{}", typed_.of, name) : std::string(name);
+    }
+    note_item(name);
+  }
+  ImGui::EndPopup();
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,35 @@
+// The right column: tabs and the selected pane.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "host/companion/window/panes/pane.hpp"
+
+namespace inkwell::window {
+
+class PaneColumn {
+ public:
+  explicit PaneColumn(const PaneSurroundings& around);
+
+  void follow(const PaneNews& news);
+  void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
+  void cancel();
+  /// Shows the pane of this tab if the tab exists. Tabs are counted from 0. Returns the name of the pane that should
+  /// receive the keyboard focus; empty if the pane has set the focus.
+  std::string show(std::size_t tab);
+
+  /// Returns the stream of the first pane with a reservation. Without a reservation, the stream contains the
+  /// signals of the scope and of the shown pane, up to the size limit of a selection.
+  PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
+  bool is_moving() const;
+
+ private:
+  /// Returns the height of the tabs.
+  float draw_tabs(ImVec2 place, float width, const Style& style);
+
+  std::vector<std::unique_ptr<Pane>> panes_;
+  std::size_t shown_ = 0;
+};
+
+}  // namespace inkwell::window

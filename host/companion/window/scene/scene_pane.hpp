@@ -1,0 +1,81 @@
+// The pane shows arm, sphere and walls, and handles the mouse.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "host/companion/window/device_desk/parameter_editor.hpp"
+#include "host/companion/window/frame/picture_digest.hpp"
+#include "host/companion/window/frame/style.hpp"
+#include "host/companion/window/scene/camera.hpp"
+#include "host/companion/window/scene/mouse_hand.hpp"
+#include "host/companion/window/scene/scene_look.hpp"
+#include "host/companion/window/scene/scene_model.hpp"
+#include "host/companion/window/scene/scene_solids.hpp"
+
+namespace inkwell::window {
+
+struct ScenePaneInput {
+  const Style& style;
+  const std::optional<device::Pose>& pose;
+  ParameterEditor& editor;
+  MouseHand* hand;  ///< null without a virtual board
+  double now_s;
+  bool is_replay = false;    ///< pose and parameters are from a recording
+  bool offers_force = true;  ///< false while the user must answer a question first
+};
+
+class Renderer;
+
+class ScenePane {
+ public:
+  /// Requires an initialized OpenGL context.
+  ScenePane();
+  ~ScenePane();
+
+  /// Handles the mouse and draws the labels in front of the picture of draw_scene(). Returns true if the user switches
+  /// the force on.
+  bool draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
+  void draw_scene(const Viewport& viewport, SceneLook look) const;
+  /// Adds the state of mouse and simulated hand to the digest.
+  void add_to(PictureDigest& digest) const;
+  void reset_view() { view_is_to_be_reset_ = true; }
+
+ private:
+  enum class Drag : std::uint8_t { none, orbit, pan, hand, wall };
+
+  void handle_mouse(const ScenePaneInput& input);
+  /// Shift with the arrow keys rotates the view, Ctrl+Shift moves the view, and Ctrl moves the simulated hand.
+  void handle_keys(const ScenePaneInput& input);
+  void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
+  void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);
+  void end_drag(const ScenePaneInput& input);
+  std::optional<int> wall_under(glm::vec2 mouse, float reach) const;
+  glm::vec3 wall_handle(int wall) const;
+
+  void note_handles() const;
+  void draw_proxy_label(ImDrawList& list, const Style& style) const;
+  void draw_labels(const ScenePaneInput& input) const;
+  void draw_axes(ImDrawList& list, const Style& style) const;
+  void draw_tools(const ScenePaneInput& input);
+  /// Draws the button that switches the force on. Returns true if the button was pressed.
+  bool draw_force_offer(const ScenePaneInput& input) const;
+  void draw_replay_frame(const Style& style) const;
+  ImVec2 on_screen(glm::vec3 workspace_point_m) const;
+
+  std::unique_ptr<Renderer> renderer_;
+  SceneModel scene_{};
+  std::optional<HandView> hand_view_;
+  Camera camera_;
+  bool view_is_to_be_reset_ = true;  // in the next frame, to show the whole box
+  glm::vec2 origin_{0.0f};           // of the pane, in screen coordinates
+  glm::vec2 size_{1.0f};
+  Drag drag_ = Drag::none;
+  glm::vec3 grabbed_{0.0f};  // target of the hand in view space
+  int dragged_wall_ = 0;
+  float wall_grab_offset_m_ = 0.0f;
+  std::optional<int> marked_wall_;
+  bool over_probe_ = false;
+};
+
+}  // namespace inkwell::window

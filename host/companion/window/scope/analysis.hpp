@@ -1,0 +1,37 @@
+// Statistics and spectrum of a section of a signal.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/companion/window/scope/signal_history.hpp"
+
+namespace inkwell::window {
+
+/// Statistics without the lost samples. If no sample remains, `count` is 0 and all other members are NaN.
+struct Statistics {
+  std::uint64_t count;
+  double minimum;
+  double maximum;
+  double mean;
+  double root_mean_square;
+  double standard_deviation;
+};
+
+Statistics statistics(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
+
+/// Amplitude spectrum in the signal's unit: amplitudes[i] at the frequency i * resolution_Hz.
+struct Spectrum {
+  double resolution_Hz = 0.0;
+  std::vector<double> amplitudes;
+};
+
+/// Returns the spectrum of the newest samples in [first, last). The mean is removed, and a Hann window is applied. The
+/// number of samples is a power of two, at most 32768. The spectrum is empty for fewer than 16 samples or if a sample
+/// was lost.
+Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
+
+/// True if the newest samples exceed the previous range of the signal by more than typical noise.
+bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
+
+}  // namespace inkwell::window

@@ -1,0 +1,32 @@
+// Number format of the scope, and the legend above a plot.
+#pragma once
+
+#include <string>
+
+#include "host/companion/window/frame/style.hpp"
+#include "host/companion/window/scope/scope_layout.hpp"
+
+#include "host/companion/window/scope/plot_view.hpp"
+
+namespace inkwell::window {
+
+/// Formats a number with four digits; returns a dash for NaN.
+std::string formatted(double value);
+
+/// Returns the name without the unit: "force_N" -> "force".
+std::string short_name(const ScopeSignal& signal);
+
+/// Returns the common unit of all signals on the y axis; empty if the units differ.
+std::string common_unit(const ScopePlot& plot);
+
+Colour line_colour(const Style& style, std::size_t index);
+/// Returns the color of a signal in an overlaid recording.
+Colour laid_over_colour(const Style& style, std::size_t index);
+
+/// Returns the width of the complete legend.
+float legend_width(const ScopePlot& plot, const Style& style);
+
+/// Draws the legend above a plot, shortened to `width`.
+void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFrame& frame);
+
+}  // namespace inkwell::window

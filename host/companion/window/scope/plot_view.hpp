@@ -1,0 +1,55 @@
+// Views of the plots in the scope. Each plot type has a view class.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "host/companion/window/plot/plot.hpp"
+#include "host/companion/window/scope/scope_layout.hpp"
+#include "host/companion/window/scope/timeline.hpp"
+
+#include "host/companion/window/scope/cursors.hpp"
+
+namespace inkwell::window {
+
+/// Data of a frame for all plots of the scope.
+struct ScopeFrame {
+  const Style& style;
+  Timeline& timeline;  ///< the mouse moves its displayed section
+  Stretch stretch;     ///< displayed section
+  Cursors& cursors;
+  bool with_statistics;
+  std::uint64_t judged_end;  ///< end of the history in the previous frame
+  bool& has_motion;          ///< set to true if a signal leaves its range, but not for scrolling
+};
+
+/// View of a plot. The state persists between frames.
+class PlotView {
+ public:
+  explicit PlotView(ScopePlot plot) : plot_(std::move(plot)) {}
+  virtual ~PlotView() = default;
+  PlotView(const PlotView&) = delete;
+  PlotView& operator=(const PlotView&) = delete;
+
+  const ScopePlot& plot() const { return plot_; }
+
+  /// Returns the height of the statistics above the plot.
+  virtual float numbers_height(const ScopeFrame&) const { return 0.0f; }
+  /// Draws the plot into the area and determines the axis ranges. The last ImGui item must cover the area.
+  virtual void draw(PlotArea area, ScopeFrame& frame) = 0;
+
+ protected:
+  const ScopePlot plot_;
+};
+
+std::unique_ptr<PlotView> view_of(const ScopePlot& plot);
+
+std::unique_ptr<PlotView> time_view(const ScopePlot& plot);
+std::unique_ptr<PlotView> spectrum_view(const ScopePlot& plot);
+std::unique_ptr<PlotView> xy_view(const ScopePlot& plot);
+
+/// Update period of the displayed statistics and spectra.
+inline constexpr double computed_every_s = 0.2;
+
+}  // namespace inkwell::window

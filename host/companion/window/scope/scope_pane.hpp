@@ -1,0 +1,67 @@
+// The scope: time, xy and spectrum plots of signals.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "host/companion/window/frame/style.hpp"
+#include "host/companion/window/scope/scope_settings.hpp"
+#include "host/companion/window/scope/timeline.hpp"
+
+namespace inkwell::window {
+
+class Cursors;
+class LayoutMenu;
+class SignalList;
+class PlotView;
+struct PlotArea;
+struct ScopeFrame;
+
+class ScopePane {
+ public:
+  explicit ScopePane(const ScopeSettings& settings);
+  ~ScopePane();
+
+  void draw(ImVec2 place, ImVec2 size, const Style& style);
+  /// Adds samples from the device or a recording. A paused scope discards received samples. `over`: samples of an
+  /// overlaid recording for the same periods; null: no overlay.
+  void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
+    timeline_.receive(samples, over);
+  }
+  /// Clears the history. Call before samples that do not directly follow the previous samples.
+  void restart() { timeline_.restart(); }
+  double span_s() const { return timeline_.span_s(); }
+
+  /// Returns the signals that the plots and the trigger need.
+  std::vector<protocol::Signal> signals() const;
+  /// Returns the settings to save.
+  ScopeSettings settings() const;
+  /// True if a signal exceeded its previous range since the last call. Scrolling does not count as motion.
+  bool take_motion() { return std::exchange(has_motion_, false); }
+
+ private:
+  /// Creates the views of new plots. Unchanged plots retain their views.
+  void follow_layout();
+  /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
+  void take_keys();
+  void draw_controls(const Style& style);
+  void draw_plots(ScopeFrame& frame);
+  /// Adds a signal that the user drops onto the plot.
+  void take_dropped_signal(ScopePlot& plot);
+  void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
+  /// Returns true if the user removes the plot.
+  bool draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame);
+
+  Timeline timeline_;
+  ScopeLayout layout_;
+  std::vector<std::unique_ptr<PlotView>> views_;  ///< views of the layout's plots, in the same order
+  std::unique_ptr<LayoutMenu> layout_menu_;
+  std::unique_ptr<Cursors> cursors_;
+  std::unique_ptr<SignalList> signal_list_;
+  bool with_statistics_ = false;
+  bool has_motion_ = false;
+  std::uint64_t judged_end_ = 0;  ///< end of the history in the previous frame
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,188 @@
+#include "host/companion/window/scope/signal_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr int bits_per_level = 4;
+constexpr std::size_t branching = std::size_t{1} << bits_per_level;
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+
+// Returns the smaller number and ignores NaN (a lost sample). The compiler does not inline the slower functions fmin()
+// and fmax().
+float smaller(float a, float b) { return b < a || a != a ? b : a; }
+float larger(float a, float b) { return b > a || a != a ? b : a; }
+Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), larger(a.maximum, b.maximum)}; }
+
+}  // namespace
+
+SignalSeries::SignalSeries(std::size_t capacity, std::uint64_t first)
+    : capacity_(capacity), first_(first), end_(first), samples_(std::make_unique_for_overwrite<float[]>(capacity)) {
+  for (std::size_t blocks = capacity / branching; blocks >= branching; blocks /= branching)
+    levels_.push_back({std::make_unique_for_overwrite<Extremes[]>(blocks), blocks - 1});
+}
+
+void SignalSeries::append(float value) {
+  samples_[end_ & (capacity_ - 1)] = value;
+  ++end_;
+  // A complete block contains sixteen blocks of the level below.
+  std::uint64_t completed = end_;
+  for (std::size_t k = 0; k < levels_.size() && (completed & (branching - 1)) == 0; ++k) {
+    const std::uint64_t first = completed - branching;
+    Extremes sum{nothing, nothing};
+    for (std::uint64_t i = first; i < completed; ++i) {
+      if ((i + 1) << (bits_per_level * static_cast<int>(k)) <= first_) continue;  // before the first appended sample
+      if (k == 0) {
+        const float sample = (*this)[i];
+        sum = merge(sum, {sample, sample});
+      } else {
+        sum = merge(sum, levels_[k - 1].blocks[i & levels_[k - 1].mask]);
+      }
+    }
+    completed >>= bits_per_level;
+    levels_[k].blocks[(completed - 1) & levels_[k].mask] = sum;
+  }
+}
+
+Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
+  Extremes result{nothing, nothing};
+  first = std::max(first, begin());
+  last = std::min(last, end_);
+  while (first < last) {
+    // Selects the largest complete block that starts at `first`.
+    std::size_t level = 0;
+    int shift = 0;
+    while (level < levels_.size() && (first & ((std::uint64_t{branching} << shift) - 1)) == 0 &&
+           first + (std::uint64_t{branching} << shift) <= last) {
+      shift += bits_per_level;
+      ++level;
+    }
+    if (level == 0) {
+      // Reads single samples up to the start of the next block.
+      const std::uint64_t stop = std::min(last, (first | (branching - 1)) + 1);
+      for (; first < stop; ++first) {
+        const float sample = (*this)[first];
+        result = merge(result, {sample, sample});
+      }
+      continue;
+    }
+    const Level& blocks = levels_[level - 1];
+    result = merge(result, blocks.blocks[(first >> shift) & blocks.mask]);
+    first += std::uint64_t{1} << shift;
+  }
+  return result;
+}
+
+void SignalLane::restart(std::vector<protocol::Signal> signals, std::uint64_t first) {
+  signals_ = std::move(signals);
+  series_.clear();
+  for (std::size_t i = 0; i < signals_.size(); ++i) series_.emplace_back(capacity_, first);
+  derived_.clear();
+  derive(std::exchange(formulas_, {}));
+}
+
+void SignalLane::derive(const std::vector<ScopeSignal>& formulas) {
+  if (formulas == formulas_) return;
+  formulas_ = formulas;
+  std::erase_if(derived_,
+                [&](const Derived& each) { return std::ranges::find(formulas, each.signal) == formulas.end(); });
+  for (const ScopeSignal& formula : formulas) {
+    if (find(formula) != nullptr) continue;
+    auto derived = derived_of(formula);
+    if (!derived) continue;
+    advance(*derived, end());
+    derived_.push_back(std::move(*derived));
+  }
+}
+
+std::optional<SignalLane::Derived> SignalLane::derived_of(const ScopeSignal& formula) const {
+  Derived derived{formula, FormulaValues(*formula.formula()), {}, SignalSeries(capacity_, begin())};
+  for (const protocol::Signal input : derived.values.inputs()) {
+    const auto found = std::ranges::find(signals_, input);
+    if (found == signals_.end()) return std::nullopt;
+    derived.inputs.push_back(static_cast<std::size_t>(found - signals_.begin()));
+  }
+  return derived;
+}
+
+void SignalLane::advance(Derived& derived, std::uint64_t until) {
+  inputs_.resize(derived.inputs.size());
+  for (std::uint64_t at = derived.series.end(); at < until; ++at) {
+    for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i] = series_[derived.inputs[i]][at];
+    derived.series.append(derived.values.next(inputs_));
+  }
+}
+
+void SignalLane::append(std::span<const float> values) {
+  const std::size_t width = signals_.size();
+  if (width == 0) return;
+  const std::size_t count = values.size() / width;
+  for (std::size_t j = 0; j < width; ++j)
+    for (std::size_t i = 0; i < count; ++i) series_[j].append(values[i * width + j]);
+  for (Derived& each : derived_) advance(each, end());
+}
+
+void SignalLane::append_lost(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i)
+    for (auto& series : series_) series.append(nothing);
+  for (Derived& each : derived_) advance(each, end());
+}
+
+const SignalSeries* SignalLane::find(const ScopeSignal& signal) const {
+  if (signal.formula() != nullptr) {
+    const auto found = std::ranges::find(derived_, signal, &Derived::signal);
+    return found == derived_.end() ? nullptr : &found->series;
+  }
+  const auto found = std::ranges::find(signals_, signal.of_device());
+  return found == signals_.end() ? nullptr : &series_[static_cast<std::size_t>(found - signals_.begin())];
+}
+
+void SignalHistory::clear() {
+  shown_.restart({}, 0);
+  over_.restart({}, 0);
+}
+
+void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
+  shown_.derive(formulas);
+  over_.derive(formulas);
+}
+
+void SignalHistory::append(const device::ScopeSamples& samples, const device::ScopeSamples* over) {
+  if (samples.count == 0) return;
+  if (samples.signals != shown_.signals() || samples.lost_before > capacity_) {
+    shown_.restart(samples.signals, 0);
+    over_.restart({}, 0);
+  } else {
+    shown_.append_lost(samples.lost_before);
+    over_.append_lost(samples.lost_before);
+  }
+  const std::vector<protocol::Signal> over_signals = over == nullptr ? std::vector<protocol::Signal>{} : over->signals;
+  if (over_signals != over_.signals()) over_.restart(over_signals, shown_.end());
+  shown_.append({samples.values.data(), samples.count * samples.signals.size()});
+  if (over != nullptr) over_.append(over->values);
+}
+
+std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns) {
+  std::vector<Extremes> result(columns, {nothing, nothing});
+  const double width = (last - first) / static_cast<double>(columns);
+  // The edges of wide columns are rounded to block boundaries, because reading single samples at the edges would be
+  // slow.
+  const double grain = width < branching * branching ? 1.0 : branching;
+  const auto edge = [&](std::size_t column) {
+    const double at = first + width * static_cast<double>(column);
+    return std::clamp(grain * std::ceil(at / grain), std::ceil(first), std::ceil(last));
+  };
+  for (std::size_t i = 0; i < columns; ++i) {
+    const double from = edge(i), to = edge(i + 1);
+    if (to <= 0.0) continue;
+    result[i] = series.extremes(static_cast<std::uint64_t>(std::max(from, 0.0)), static_cast<std::uint64_t>(to));
+  }
+  return result;
+}
+
+}  // namespace inkwell::window

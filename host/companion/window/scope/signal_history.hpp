@@ -1,0 +1,119 @@
+// The last minutes of the scope's signals, stored for fast drawing of any section. Each signal has a ring buffer of
+// samples. Additional ring buffers contain the minimum and maximum of sample blocks. The block sizes are the powers of
+// 16. The extremes of a section need only a few dozen look-ups. The cost of a plot therefore depends on the number of
+// pixels instead of the number of samples.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host/client/device/device.hpp"
+#include "host/companion/window/scope/scope_signal.hpp"
+#include "protocol/signals.hpp"
+
+namespace inkwell::window {
+
+/// Minimum and maximum of several samples. Minimum and maximum are NaN if every sample was lost.
+struct Extremes {
+  float minimum;
+  float maximum;
+};
+
+class SignalSeries {
+ public:
+  /// `capacity`: a power of 16 times a power of 2, at least 16. `first`: index of the first appended sample.
+  explicit SignalSeries(std::size_t capacity, std::uint64_t first = 0);
+
+  void append(float value);
+
+  std::uint64_t end() const { return end_; }  ///< index of the next sample
+  std::uint64_t begin() const { return std::max(first_, end_ > capacity_ ? end_ - capacity_ : 0); }
+  float operator[](std::uint64_t index) const { return samples_[index & (capacity_ - 1)]; }
+
+  /// Returns the extremes of the stored samples in [first, last).
+  Extremes extremes(std::uint64_t first, std::uint64_t last) const;
+
+ private:
+  struct Level {
+    std::unique_ptr<Extremes[]> blocks;
+    std::size_t mask;
+  };
+  std::size_t capacity_;
+  std::uint64_t first_;
+  std::uint64_t end_;
+  std::unique_ptr<float[]> samples_;
+  std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
+};
+
+/// Samples from one source: the device or a recording.
+class SignalLane {
+ public:
+  explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
+
+  const std::vector<protocol::Signal>& signals() const { return signals_; }
+  /// Clears the samples and sets new signals. The next sample has the index `first`.
+  void restart(std::vector<protocol::Signal> signals, std::uint64_t first);
+  /// Sets the formulas and computes their results, including the results for the stored samples.
+  void derive(const std::vector<ScopeSignal>& formulas);
+  /// Appends samples. `values` contains all signals of the first period, then of the second period, and so on.
+  void append(std::span<const float> values);
+  void append_lost(std::uint64_t count);
+
+  std::uint64_t begin() const { return series_.empty() ? 0 : series_.front().begin(); }
+  std::uint64_t end() const { return series_.empty() ? 0 : series_.front().end(); }
+  const SignalSeries* find(const ScopeSignal& signal) const;
+
+ private:
+  struct Derived {
+    ScopeSignal signal;
+    FormulaValues values;
+    std::vector<std::size_t> inputs;  ///< indices of the formula's inputs in signals_
+    SignalSeries series;
+  };
+
+  std::optional<Derived> derived_of(const ScopeSignal& formula) const;
+  void advance(Derived& derived, std::uint64_t until);
+
+  std::size_t capacity_;
+  std::vector<protocol::Signal> signals_;
+  std::vector<SignalSeries> series_;
+  std::vector<ScopeSignal> formulas_;
+  std::vector<Derived> derived_;  ///< formulas with known inputs
+  std::vector<float> inputs_;     ///< buffer for the inputs of a formula
+};
+
+/// History of the streamed signals and of an overlaid recording. Index 0 is the first control period after the signals
+/// were selected.
+class SignalHistory {
+ public:
+  explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
+      : capacity_(capacity), shown_(capacity), over_(capacity) {}
+
+  /// Appends samples. If `samples` contains different signals, the history is cleared first. Lost samples are stored as
+  /// NaN. `over`: samples of the overlaid recording for the same periods; null: no overlay.
+  void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
+  void clear();
+  /// Sets the formulas that are computed in addition to the signals.
+  void derive(const std::vector<ScopeSignal>& formulas);
+
+  std::uint64_t begin() const { return shown_.begin(); }
+  std::uint64_t end() const { return shown_.end(); }
+  const SignalSeries* find(const ScopeSignal& signal) const { return shown_.find(signal); }
+  const SignalSeries* find_over(const ScopeSignal& signal) const { return over_.find(signal); }
+
+ private:
+  std::size_t capacity_;
+  SignalLane shown_, over_;
+};
+
+/// Divides [first, last) into `columns` columns and returns the extremes of each column. The column widths differ by at
+/// most one sample, or by at most 1/16 for wide columns. Each sample belongs to exactly one column.
+std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
+
+}  // namespace inkwell::window

@@ -1,0 +1,39 @@
+// Layout of the window. Bars are at the top, scene and scope are on the left, and the pane column is on the right.
+#pragma once
+
+#include <imgui.h>
+
+#include "host/companion/window/window_settings.hpp"
+
+namespace inkwell::window {
+
+struct Rectangle {
+  ImVec2 place{0, 0};  ///< top left corner
+  ImVec2 size{1, 1};
+};
+
+/// All rectangles in screen coordinates.
+struct WindowLayout {
+  Rectangle status, banner, scene, replay, scope, column;
+  Rectangle column_splitter;  ///< left of the column
+  Rectangle scope_splitter;   ///< above the scope
+  float room;                 ///< height that scene and scope share
+
+  ImVec2 middle_of_scene() const;
+};
+
+/// Heights in screen coordinates; 0 if the item is not shown.
+struct LayoutNeeds {
+  float status_height;
+  float banner_height;
+  float banner_room;  ///< reserved height; with 0 the banner covers the parts below the bars
+  float replay_height;
+};
+
+WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSettings& settings, float scale);
+
+/// Moves a splitter to the right or down, within the available room. `dragged_points` is the distance.
+void drag_column_splitter(float dragged_points, ImVec2 window, float scale, WindowSettings& settings);
+void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings);
+
+}  // namespace inkwell::window

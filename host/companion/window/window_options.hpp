@@ -1,0 +1,66 @@
+// Options of the window.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/client/device/address.hpp"
+#include "host/companion/window/frame/palette.hpp"
+#include "host/companion/window/frame/window_size.hpp"
+#include "protocol/parameters.hpp"
+
+namespace inkwell::window {
+
+/// Recording that the window replays after the start.
+struct ReplayRequest {
+  std::filesystem::path recording;  ///< empty: no replay
+  std::filesystem::path over = {};  ///< recording that is overlaid; empty: none
+  std::string align = {};           ///< text of the mark that aligns the recordings; empty: aligned at their starts
+};
+
+struct WindowOptions {
+  /// Lists the available arms. Mandatory. Called from background threads about once per second while no device is
+  /// connected or the device list is open. The window shows the message of a thrown device::Error.
+  std::function<std::vector<device::Endpoint>()> list_devices;
+  /// Connects only to the arm with this serial number. If the serial number is empty, the user chooses between several
+  /// arms.
+  std::string serial_number;
+  /// Control socket of a virtual board, for the simulated hand and the stylus buttons.
+  std::optional<device::SocketAddress> virtual_board_control;
+
+  /// Starts a virtual board and sets these options for the virtual board. Null if a virtual board is already used or
+  /// not available. Called in the window's thread; throws device::Error.
+  std::function<void(WindowOptions&)> start_virtual_board = {};
+
+  /// Simulated arm of the virtual board, for the simulated hand of the guides. Default: the arm in the device's
+  /// parameters.
+  std::optional<protocol::ParameterSet> simulated_arm;
+
+  /// Firmware image for updates; empty: no updates are offered. `board` is the address of the board. An empty serial
+  /// number selects the chosen board.
+  std::filesystem::path firmware;
+  device::Address board;
+
+  int width = 1280;  ///< in points; a high-resolution display has several pixels per point
+  int height = 800;
+  std::optional<Theme> theme;    ///< default: the saved theme
+  float scale = 0.0f;            ///< scale of fonts, spacing and window; 0 uses the scale of the display
+  bool persist_settings = true;  ///< read and write the settings in the user's configuration directory
+  /// Draws the scene without lighting, so that solid pixels have exactly the colors of palette.hpp.
+  bool flat_colours = false;
+  std::string layout;  ///< initial layout of the scope, e.g. "paper"; empty: the saved layout
+
+  ReplayRequest replay;
+
+  std::filesystem::path screenshot;       ///< if set: write the framebuffer to this PNG file and close
+  double after_seconds = 3.0;             ///< time of the screenshot after the first frame
+  std::filesystem::path parameters_file;  ///< sent to the first connected device
+  bool inspect = false;                   ///< answer requests on standard input, for tests; see inspection.hpp
+  bool frames_report = false;             ///< print the measured frame rate on exit
+};
+
+}  // namespace inkwell::window

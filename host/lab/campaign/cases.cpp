@@ -1,0 +1,202 @@
+#include "host/lab/campaign/cases.hpp"
+
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+#include "boards/known/boards.hpp"
+#include "boards/stm32f405/core/exception_numbers.hpp"
+#include "host/lab/campaign/run.hpp"
+
+namespace inkwell::campaign {
+namespace {
+
+using protocol::InjectedFault;
+using protocol::InjectionPlace;
+
+/// Whether the wire is tested. Of three equivalent wires only the second is tested. Wires of USB, console, debug probe
+/// and status LED are excluded.
+bool is_tried(std::string_view wire) {
+  if (wire.find("[0]") != std::string_view::npos || wire.find("[2]") != std::string_view::npos) return false;
+  for (const std::string_view other : {"usb_minus", "usb_plus", "console_", "debug_", "status_led"})
+    if (wire.starts_with(other)) return false;
+  return true;
+}
+
+constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", "bridges[1].leg_a+bridges[1].leg_b",
+                                                 "motor_current[1]+motor_current[2]"};
+constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
+                                                  "bridge_fault_tim8", "inkwell_switch"};
+/// Exceptions that the firmware handles: PendSV, the supply detector and the control interrupt of the converters. Crash
+/// handlers are not included. USB is polled in the main loop.
+constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
+                                   virtual_board::exception_of(virtual_board::voltage_detector_position),
+                                   virtual_board::exception_of(virtual_board::converters_position)};
+
+/// Tested in addition to the amount in the table or in case_faults().
+constexpr struct {
+  InjectedFault fault;
+  double amount;
+} more_amounts[] = {{InjectedFault::shunt_gain, 2},
+                    {InjectedFault::logic_sag, 2.86},  // below 2.9 V, above the brown-out level
+                    {InjectedFault::analog_sag, 3.5},
+                    {InjectedFault::main_loop_stalled, 0.012}};  // detected, but shorter than the watchdog time-out
+
+std::vector<std::string> places(InjectedFault fault) {
+  std::vector<std::string> places;
+  switch (protocol::info(fault).place) {
+    case InjectionPlace::none:
+    case InjectionPlace::address: return {""};
+    case InjectionPlace::motor: return {"2"};
+    case InjectionPlace::leg: return {"2A", "2B"};
+    case InjectionPlace::converter: return {"1", "2", "3"};
+    case InjectionPlace::wires: places.assign(std::begin(wires_that_touch), std::end(wires_that_touch)); break;
+    case InjectionPlace::exception:
+      for (const unsigned exception : exceptions) places.push_back(std::to_string(exception));
+      break;
+    case InjectionPlace::wire:
+      if (fault == InjectedFault::wire_spikes) {
+        places.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));
+      } else {
+        for (const auto& use : board::default_board.pin_uses())
+          if (is_tried(use.name)) places.emplace_back(use.name);
+      }
+      break;
+  }
+  return places;
+}
+
+}  // namespace
+
+std::string_view name_of(CaseSituation situation) {
+  constexpr std::string_view names[] = {"unreferenced", "ready",   "rest",    "wall",  "motion", "ramping",
+                                        "limited",      "landing", "testing", "fault", "update", "starting"};
+  return names[static_cast<std::size_t>(situation)];
+}
+
+std::string meaning_of(CaseSituation situation) {
+  switch (situation) {
+    case CaseSituation::unreferenced:
+      return "The stylus has been outside the inkwell since power-on, so the board does not know the arm position. The "
+             "hand holds the stylus.";
+    case CaseSituation::ready:
+      return "The pose is valid and the force is off. The hand holds the stylus in free space.";
+    case CaseSituation::rest: return "The force is on. The hand holds the stylus at rest in free space.";
+    case CaseSituation::wall:
+      return "The force is on. The hand presses the stylus into a wall with the highest stiffness.";
+    case CaseSituation::motion:
+      return fmt::format(
+          "The force is on. The hand swings the stylus through free space by {:.0f} mm in {} s, and all joints move.",
+          2e3 * swing_m, swing_s);
+    case CaseSituation::ramping:
+      return "The hand presses the stylus into the stiff wall while the force increases at the lowest rate.";
+    case CaseSituation::limited:
+      return "The force is on. The hand presses the stylus into the stiff wall until the force limit acts.";
+    case CaseSituation::landing:
+      return "The hand presses the stylus into the stiff wall while the force decreases at the lowest rate. The use "
+             "does not continue afterwards.";
+    case CaseSituation::testing:
+      return "The hand holds the stylus in free space. The fault occurs during the self-test pulses of the first "
+             "motor. Without a fault, the bridges also switch off after the pulses.";
+    case CaseSituation::fault:
+      return fmt::format(
+          "The hand holds the stylus in free space. The force was on until the board detected a silent host. The "
+          "injected fault occurs while `host_silent` is still reported. The host clears `host_silent` {} s later, "
+          "while the injected fault is still present.",
+          observed_s);
+    case CaseSituation::update:
+      return "The hand holds the stylus in free space. The host has commanded the board to store its parameters and to "
+             "start its boot loader. The write delays the boot loader by about 80 ms; without a write, it starts "
+             "within 2 ms. The fault occurs in the first 50 ms and remains present in the boot loader. The boot loader "
+             "then starts the firmware, which reports the fault.";
+    case CaseSituation::starting:
+      return "The hand holds the stylus outside the inkwell. At the first instant the fault is present before "
+             "power-on; at the other instants it occurs during start-up. Without a fault, the self-test pulses switch "
+             "the bridges on briefly.";
+  }
+  return "";
+}
+
+std::string CaseFault::name() const {
+  switch (deed) {
+    case Deed::nothing: break;
+    case Deed::fast_hand: return "fast_hand";
+    case Deed::bus_suspended: return "bus_suspended";
+  }
+  if (!fault) return "none";
+  std::string name(protocol::info(*fault).name);
+  if (!of.empty()) name += ":" + of;
+  if (amount) name += fmt::format("={}", *amount);
+  if (for_s) name += fmt::format("+{}", *for_s);
+  return name;
+}
+
+std::string Case::name() const { return fmt::format("{} {} {}", fault.name(), name_of(situation), phase); }
+
+std::vector<CaseFault> case_faults() {
+  std::vector<CaseFault> faults{{}};
+  for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
+    const auto fault = static_cast<InjectedFault>(i);
+    for (std::string& of : places(fault)) {
+      CaseFault made{.fault = fault, .of = std::move(of)};
+      if (fault == InjectedFault::supply_spike) made.for_s = 0.005;
+      if (fault == InjectedFault::encoder_lost_counts) made.amount = 0.1;
+      if (fault == InjectedFault::encoder_slip) made.amount = 400;
+      faults.push_back(made);
+      for (const auto& more : more_amounts)
+        if (more.fault == fault) {
+          made.amount = more.amount;
+          faults.push_back(made);
+        }
+    }
+  }
+  faults.push_back({.deed = Deed::bus_suspended});
+  faults.push_back({.deed = Deed::fast_hand});
+  return faults;
+}
+
+CaseFault at_another(CaseFault fault, unsigned number) {
+  if (!fault.fault) return fault;
+  const auto place = protocol::info(*fault.fault).place;
+  if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
+  if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
+  // Listed wires have the index [1], and touching neighbors also the index [2]. All indices are shifted cyclically.
+  for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
+    char& index = fault.of[at + 1];
+    index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);
+  }
+  return fault;
+}
+
+bool is_of_three(const CaseFault& fault) { return at_another(fault, 1).name() != fault.name(); }
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  unsigned number = 0;
+  for (const CaseFault& fault : case_faults())
+    for (const CaseSituation situation : situations) {
+      for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
+      if (!is_of_three(fault)) continue;
+      // Motor 1 uses the earliest instant, because its pulses come first in the self-test. The instant before power-on
+      // is not used.
+      for (const unsigned other : {1u, 3u}) {
+        const unsigned phase = other == 1 ? 3 : 2;
+        cases.push_back({++number, at_another(fault, other), situation, phase});
+      }
+    }
+  return cases;
+}
+
+std::string listed_name(const std::string& name) {
+  static const auto listed = [] {
+    std::map<std::string, std::string> names;
+    for (const CaseFault& fault : case_faults())
+      for (const unsigned other : {1u, 3u})
+        if (is_of_three(fault)) names[at_another(fault, other).name()] = fault.name();
+    return names;
+  }();
+  const auto found = listed.find(name);
+  return found == listed.end() ? name : found->second;
+}
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,93 @@
+// The fault campaign as a list of cases: every fault in every situation of the arm, at random instants.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/injections.hpp"
+
+namespace inkwell::campaign {
+
+/// Situation of the arm at the injection of the fault.
+enum class CaseSituation : std::uint8_t {
+  unreferenced,  ///< out of the inkwell since power-on: no force
+  ready,         ///< the hand holds the stylus, the force is off
+  rest,          ///< like `ready` with the force on, in free space
+  wall,          ///< pressed into a wall with the highest stiffness
+  motion,        ///< the force is on, during a fast swing through free space
+  ramping,       ///< pressed into the wall while the force increases
+  limited,       ///< pressed into the wall until the force limit acts
+  landing,       ///< pressed into the wall while the force decreases
+  testing,       ///< like `ready`, during the pulses of the self-test
+  fault,         ///< another fault has switched the force off and is still reported
+  update,        ///< during the transition to the boot loader, and in the boot loader
+  starting,      ///< out of the inkwell, before power-on and during start-up
+};
+inline constexpr CaseSituation situations[] = {
+    CaseSituation::unreferenced, CaseSituation::ready,   CaseSituation::rest,    CaseSituation::wall,
+    CaseSituation::motion,       CaseSituation::ramping, CaseSituation::limited, CaseSituation::landing,
+    CaseSituation::testing,      CaseSituation::fault,   CaseSituation::update,  CaseSituation::starting};
+std::string_view name_of(CaseSituation situation);
+/// Description in one sentence with figures.
+std::string meaning_of(CaseSituation situation);
+/// Whether the hand feels a force. Self-test pulses do not count.
+constexpr bool is_active(CaseSituation situation) {
+  return situation >= CaseSituation::rest && situation <= CaseSituation::landing;
+}
+constexpr bool is_pressed(CaseSituation situation) {
+  return is_active(situation) && situation != CaseSituation::rest && situation != CaseSituation::motion;
+}
+
+/// Swing of `motion`: amplitude along all axes, and time from one side to the other.
+inline constexpr double swing_m = 0.03, swing_s = 0.10;
+
+/// Fling of `fast_hand`: distance along x, and its duration.
+inline constexpr double fling_m = 0.14, fling_s = 0.085;
+
+/// Number of instants. The first instant of `starting` is before power-on.
+inline constexpr unsigned phases = 3;
+
+/// Events other than injected faults.
+enum class Deed : std::uint8_t {
+  nothing,
+  fast_hand,
+  bus_suspended,  ///< the PC suspends, or the last program that uses the board through USB/IP is killed
+};
+
+/// An injected fault with its position, or another event (Deed). The control case has neither a fault nor a Deed.
+struct CaseFault {
+  std::optional<protocol::InjectedFault> fault;
+  std::string of;
+  std::optional<double> amount;
+  std::optional<double> for_s;
+  Deed deed = Deed::nothing;
+
+  bool is_fault_free() const { return !fault && deed == Deed::nothing; }
+  std::string name() const;  ///< in the format of --inject, or `none`, `bus_suspended` or `fast_hand`
+};
+
+struct Case {
+  unsigned number;  ///< from 1; constant for the same situations and the same table of faults and positions
+  CaseFault fault;
+  CaseSituation situation;
+  unsigned phase;  ///< 1 to phases
+
+  std::string name() const;
+};
+
+/// Returns the control case, then the faults, then the other events. Faults of three equivalent parts are listed for
+/// motor 2, which carries the load at the wall.
+std::vector<CaseFault> case_faults();
+/// The same fault at another of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or gimbal
+/// potentiometer. Faults of single parts are returned unchanged.
+CaseFault at_another(CaseFault fault, unsigned number);
+bool is_of_three(const CaseFault& fault);
+/// Each listed fault in each situation at each instant. After these, the faults of the first and third equivalent parts
+/// at one instant.
+std::vector<Case> all_cases();
+/// Listed name of a fault at another equivalent part; other names are returned unchanged.
+std::string listed_name(const std::string& name);
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,23 @@
+// The worst values of each fault, with one table for each situation.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/lab/campaign/page.hpp"
+
+#include "host/lab/campaign/groups.hpp"
+#include "host/lab/campaign/section.hpp"
+
+namespace inkwell::campaign {
+
+/// Time until the bridges were off, in control periods, or their state.
+std::string off_text(const Summary& summary);
+/// Definitions of the columns.
+std::string columns();
+/// Findings: cases that could not be run.
+Section not_run(std::span<const Result> results);
+std::string tables(const Groups& groups, const std::vector<CaseFault>& faults);
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,284 @@
+#include "host/lab/campaign/reasons.hpp"
+
+#include <string>
+
+#include "boards/stm32f405/core/exception_numbers.hpp"
+
+namespace inkwell::campaign {
+
+using protocol::InjectedFault;
+
+namespace {
+
+/// Reason why a fault of a wire may stay undetected, by the function of the wire.
+std::string_view reason_of_wire(std::string_view wire) {
+  if (wire.starts_with("encoders"))
+    return "A constant encoder signal is detected only when the joint or the force changes: the count then alternates, "
+           "or the motor check reports missing motion.";
+  if (wire.starts_with("bridges"))
+    return "The motor check needs a requested current. The leg levels are checked only while the bridges are off.";
+  if (wire.starts_with("bridge_fault"))
+    return "The wire has the level of healthy bridges. The next self-test detects a broken wire, but not a short to "
+           "the supply.";
+  if (wire == "bridge_enable") return "Wire and microcontroller pin have the same level as with the force on.";
+  if (wire == "bridge_heartbeat") return "No reason is known: without the heartbeat the bridges are off.";
+  if (wire == "bridge_hold") return "The wire has the same level as with the bridges on.";
+  if (wire.starts_with("motor_current"))
+    return "The reading stays near the requested current, or the resulting motor voltage stays within the tolerance of "
+           "a healthy motor.";
+  if (wire.starts_with("gimbal"))
+    return "Only the user's force law can use the stylus angles. At the end of its track, a healthy potentiometer "
+           "reads the same value. Only the age of the readings is monitored. The next self-test detects a reading at "
+           "the end of the track.";
+  if (wire == "supply") return "The wire shows a valid supply voltage.";
+  if (wire == "usb_supply") return "The wire has the same level as with the cable connected.";
+  return "A faulty switch wire looks like a released or pressed switch. The inkwell switch is checked only for a "
+         "closed contact outside the inkwell.";
+}
+
+const std::string of_stalled_main_loop = std::to_string(virtual_board::exception_pendsv);
+const std::string of_voltage_detector =
+    std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
+
+/// For faults that only accompany another fault, lateness is not judged.
+std::string_view reason_of_exception(std::string_view exception, std::string_view of_control_interrupt) {
+  if (exception == of_stalled_main_loop)
+    return "This interrupt is requested only to record where the main loop hangs, which would be a second fault.";
+  if (exception == of_voltage_detector)
+    return "This interrupt occurs only when the microcontroller supply falls, which would be a second fault. The main "
+           "loop and the brown-out reset also monitor this supply.";
+  return of_control_interrupt;
+}
+
+constexpr std::string_view host_is_missed = "No reason is known: a silent host is detected.";
+constexpr std::string_view no_force_to_lose = "A lost USB connection is reported only while the force is on.";
+constexpr std::string_view falls_anyway =
+    "The force was already decreasing after it was switched off. It becomes zero immediately, and only the state shows "
+    "this.";
+constexpr std::string_view chip_is_frozen =
+    "The microcontroller does not run while its supply is too low, so it cannot report a fault.";
+constexpr std::string_view not_begun = "The core was stopped before its first instruction, so no firmware was running.";
+constexpr std::string_view stalled_unwatched =
+    "The main loop is not monitored during start-up, during another fault, or during the transition to the boot "
+    "loader. It continued before the watchdog expired.";
+constexpr std::string_view pulses_were_over =
+    "The fault occurred after the self-test pulses of this motor, or near their end. The next self-test detects it.";
+constexpr std::string_view break_of_tim8 =
+    "Only the break input of TIM8 reads this pin, and only while the bridges are on. The self-test pulses switch the "
+    "bridges on.";
+
+/// Whether the self-test's pulses detect the fault. If such a fault occurs after the pulses, it can stay undetected.
+bool is_tested_by_pulses(const CaseFault& put_in) {
+  switch (*put_in.fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen:
+    case InjectedFault::wires_shorted:
+      return put_in.of.starts_with("bridges") || put_in.of.starts_with("motor_current");
+    case InjectedFault::shunt_gain:
+    case InjectedFault::shunt_frozen:
+    case InjectedFault::motor_open:
+    case InjectedFault::motor_shorted:
+    case InjectedFault::leg_open:
+    case InjectedFault::leg_slow: return true;
+    default: return false;
+  }
+}
+
+/// Reason for a wire while the bridges are off.
+std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
+  if (wire.starts_with("encoders"))
+    return "The hand keeps the joint stationary. With a reference, a constant encoder signal is detected by "
+           "alternating counts when the joint turns.";
+  if (wire.starts_with("bridges"))
+    return "The leg is low, which is correct while the bridges are off. The next self-test detects the fault, or the "
+           "motor check once a current is requested.";
+  if (wire == "bridge_fault_tim8" && fault == InjectedFault::wire_low) return break_of_tim8;
+  if (wire == "bridge_enable")
+    return "The microcontroller pin has the correct level. A low level at the bridges is detected at the first "
+           "heartbeat. With a high level, the bridges still switch off when the heartbeat stops.";
+  if (wire == "bridge_heartbeat")
+    return "The wire is low, which is correct while the bridges are off. The fault is detected at the first heartbeat.";
+  if (wire == "bridge_hold")
+    return "The wire is low, which is correct while the bridges are off. The fault is detected at the first heartbeat.";
+  if (wire.starts_with("motor_current"))
+    return "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check once "
+           "a current is requested.";
+  if (wire == "usb_supply" && (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low))
+    return no_force_to_lose;
+  if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
+    return "Without a reference, the wire looks like a stylus in the inkwell, so the board references the arm at a "
+           "wrong position. During a self-test or another fault, the reference is cleared without a fault.";
+  return reason_of_wire(wire);
+}
+
+}  // namespace
+
+std::string_view reason_with_force(const CaseFault& put_in) {
+  if (put_in.deed == Deed::fast_hand) return "No reason is known: the speed is checked in each control period.";
+  if (put_in.deed == Deed::bus_suspended) return host_is_missed;
+  const std::string_view of = put_in.of;
+  switch (*put_in.fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen: return reason_of_wire(of);
+    case InjectedFault::wires_shorted: return "The two wires had the same level, or no check compares them.";
+    case InjectedFault::wire_spikes: return "The input filters and repeated reads tolerate the spikes.";
+    case InjectedFault::encoder_stuck:
+      return "A stuck encoder is detected only when the motor turns or its force changes repeatedly while the count "
+             "does not change.";
+    case InjectedFault::encoder_lost_counts:
+    case InjectedFault::encoder_slip:
+      return "No second sensor measures the joint, and the voltage tolerance of a motor is larger than the effect. The "
+             "board detects an angle far beyond its stop, a jump of 16 counts, and a closed inkwell switch outside the "
+             "inkwell.";
+    case InjectedFault::shunt_gain:
+      return "Voltage, reading and speed agree within the tolerance of a healthy motor. The next self-test detects the "
+             "fault.";
+    case InjectedFault::shunt_offset:
+    case InjectedFault::shunt_frozen:
+      return "Voltage, reading and speed agree within the tolerance of a healthy motor.";
+    case InjectedFault::shunt_high:
+    case InjectedFault::shunt_low: return "No reason is known: a healthy sensor cannot produce a reading at its rail.";
+    case InjectedFault::motor_open:
+    case InjectedFault::leg_open:
+      return "No current is requested from this motor, so the motor check cannot find a missing current.";
+    case InjectedFault::motor_shorted:
+      return "With a small current, the motor voltage stays within the tolerance of a healthy motor. The next "
+             "self-test detects the fault.";
+    case InjectedFault::motor_hot:
+      return "The current loop compensates for the higher resistance. The motor voltage stays within the tolerance of "
+             "a healthy motor, or at its limit. No sensor measures the torque.";
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low: return "The other switch of the leg, which would trip the bridge, was not turned on.";
+    case InjectedFault::leg_slow:
+      return "The current loop compensates for the delay, and the voltage loss of the leg is within the tolerance of a "
+             "healthy leg.";
+    case InjectedFault::bridge_fault: return "No reason is known: the break inputs of the timers monitor the wire.";
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike:
+    case InjectedFault::supply_cut: return "The capacitors buffer the supply for this time.";
+    case InjectedFault::supply_ripple:
+      return "The ripple is below 1 V, which healthy motors can cause, or it has lasted too few periods.";
+    case InjectedFault::logic_sag: return "The voltage is above 2.9 V.";
+    case InjectedFault::analog_sag:
+      return "The deviation is within the tolerance of a healthy regulator and of the reference voltage.";
+    case InjectedFault::crystal_stop: return "No reason is known: the clock security system detects a stopped crystal.";
+    case InjectedFault::crystal_drift:
+      return "The deviation is within the tolerance of the clock and of USB, and no second clock is compared.";
+    case InjectedFault::usb_cut: return host_is_missed;
+    case InjectedFault::host_silent: return "A force that is already decreasing does not need a host.";
+    case InjectedFault::core_stalled:
+      return "No reason is known: the heartbeat stops with the core, and the watchdog expires.";
+    case InjectedFault::core_halted: return "No reason is known: the heartbeat and the timers stop with the core.";
+    case InjectedFault::main_loop_stalled: return "No reason is known: the control interrupt monitors the main loop.";
+    case InjectedFault::program_astray:
+      return "The code at the target address returned to the main loop and changed nothing that is checked.";
+    case InjectedFault::exception_lost:
+      return reason_of_exception(of,
+                                 "No reason is known: the heartbeat and the watchdog depend on the control interrupt.");
+    case InjectedFault::exception_late:
+      return reason_of_exception(of, "The delay is shorter than the delay that the firmware detects.");
+    case InjectedFault::adc_stopped:
+      return "No reason is known: the firmware checks that each current conversion is new.";
+    case InjectedFault::dma_stopped:
+      return "No reason is known: the age of the supply and gimbal readings is monitored.";
+    case InjectedFault::ram_bit:
+      return "In the RAM, only the interrupt code, its tables and the settings are checked. The changed byte was not "
+             "used, or was overwritten before its use.";
+    case InjectedFault::flash_bit:
+      return "The bit was outside the image, either in the sectors of the stored parameters or in unused flash.";
+  }
+  return "";
+}
+
+std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
+  if (put_in.deed == Deed::fast_hand) return "Without a force, the hand speed is not limited.";
+  if (put_in.deed == Deed::bus_suspended) return no_force_to_lose;
+  const InjectedFault fault = *put_in.fault;
+  const std::string_view of = put_in.of;
+  const bool is_starting = situation == CaseSituation::starting;
+  if (is_tested_by_pulses(put_in) && (is_starting || situation == CaseSituation::testing)) return pulses_were_over;
+  switch (fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen: return reason_of_idle_wire(fault, of);
+    case InjectedFault::wire_spikes:
+      if (of == "bridge_fault_tim8") return break_of_tim8;
+      return reason_with_force(put_in);
+    case InjectedFault::wires_shorted:
+      return "The two wires have the same level while the bridges are off and the hand keeps the joint stationary.";
+    case InjectedFault::encoder_stuck: return "The hand keeps the joint stationary, and no motor turns it.";
+    case InjectedFault::encoder_lost_counts:
+      return "The hand keeps the joint stationary, so no counts occur that could be lost.";
+    case InjectedFault::encoder_slip:
+      return "Without a reference, the slip has no effect. During a self-test or another fault, the reference is "
+             "cleared without a fault. The inkwell then provides a new reference.";
+    case InjectedFault::shunt_gain:
+    case InjectedFault::shunt_frozen:
+      return "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check "
+             "once a current is requested.";
+    case InjectedFault::motor_hot:
+      return "A motor that is 100 K hotter passes the self-test, and no other function drives it without force.";
+    case InjectedFault::motor_open:
+    case InjectedFault::motor_shorted:
+    case InjectedFault::leg_open:
+    case InjectedFault::leg_slow:
+      return "The bridges are off and no current flows. The next self-test detects the fault.";
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low:
+      return "The bridge trips when the other switch of the leg turns on. This occurs in the next self-test, or when "
+             "the force is switched on.";
+    case InjectedFault::supply_spike:
+      if (situation != CaseSituation::fault && situation != CaseSituation::update) return reason_with_force(put_in);
+      return "The supply is not monitored during another fault or in the boot loader, and it is valid again "
+             "afterwards.";
+    case InjectedFault::logic_sag:
+      if (!is_starting && situation != CaseSituation::update) return reason_with_force(put_in);
+      return chip_is_frozen;
+    case InjectedFault::crystal_drift:
+    case InjectedFault::usb_cut: return no_force_to_lose;
+    case InjectedFault::host_silent: return "A silent host is detected only while the force is on.";
+    case InjectedFault::core_stalled: return is_starting ? not_begun : reason_with_force(put_in);
+    case InjectedFault::main_loop_stalled:
+      if (put_in.amount) return stalled_unwatched;
+      return is_starting ? not_begun : reason_with_force(put_in);
+    case InjectedFault::program_astray:
+      if (!is_starting) return reason_with_force(put_in);
+      return "The code at the target address returned to the main loop and changed nothing that is checked. If the "
+             "fault occurred before the watchdog started, the firmware hung with the bridges off until the reset.";
+    case InjectedFault::core_halted:
+      return "A halted core cannot report a fault. Afterwards it continued normally, because the bridges were off and "
+             "nothing had moved.";
+    default: return reason_with_force(put_in);
+  }
+}
+
+std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation) {
+  constexpr std::string_view unknown = "No reason is known: each cause that switches the bridges off is reported.";
+  if (put_in.deed == Deed::fast_hand) return unknown;
+  const std::string_view usb_gone = situation == CaseSituation::landing ? falls_anyway : unknown;
+  if (put_in.deed == Deed::bus_suspended) return usb_gone;
+  const std::string_view of = put_in.of;
+  switch (*put_in.fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen:
+      if (of == "usb_supply") return usb_gone;
+      break;
+    case InjectedFault::logic_sag: return chip_is_frozen;
+    case InjectedFault::crystal_drift:
+    case InjectedFault::usb_cut: return usb_gone;
+    case InjectedFault::host_silent: return "No host polls the board. The fault is reported when the host polls again.";
+    case InjectedFault::core_halted:
+      return "A halted core cannot report a fault. When the core continues, it reports the missing heartbeat.";
+    default: break;
+  }
+  return unknown;
+}
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,75 @@
+// Result of one case, and its file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/lab/campaign/cases.hpp"
+
+namespace inkwell::campaign {
+
+/// State of a fault that was reported before the injection.
+enum class FirstFault : std::uint8_t {
+  none,       ///< there was no earlier fault, or the board could not be read
+  reported,   ///< the fault is still reported
+  black_box,  ///< the board restarted, and its black box contains the fault
+  lost,
+};
+
+struct Result {
+  unsigned number = 0;
+  std::string fault;  ///< CaseFault::name()
+  std::string situation;
+  unsigned phase = 1;
+  std::string error;  ///< reason why the case could not be run; the other members are invalid then
+
+  double injected_at_s = 0;  ///< board time
+  std::string place;         ///< position chosen from the seed; empty if the case names it
+  bool bridges_were_on = false;
+  std::optional<double> off_after_s;  ///< std::nullopt: the bridges were off, or stayed on
+  bool bridges_went_on = false;       ///< the bridges were switched on, although they were off at the injection
+  std::string detected_as;            ///< name of the firmware's fault; empty if none
+  std::string fault_on_healing;       ///< fault reported only after the cause was removed
+  std::string told_before;            ///< fault reported at the time of the injection; empty if none
+  FirstFault first_fault = FirstFault::none;
+  std::string told_once_cleared;  ///< fault reported after the earlier fault was cleared, with the cause still present
+  unsigned restarts = 0;          ///< in addition to the restarts of the situation
+  bool locked_up = false;
+  bool missed_boot_loader = false;  ///< the boot loader was requested but does not run at the end
+
+  double force_limit_N = 0;
+  double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the injection
+  /// Name of the fault reported during continued use, if no fault was reported before; empty if none.
+  std::string noticed_in_use_as;
+  std::optional<double> noticed_in_use_s;     ///< time since the start of the use
+  std::optional<double> peak_force_in_use_N;  ///< at the hand; std::nullopt without continued use
+  std::optional<double> energy_in_use_J;      ///< delivered to the hand
+  std::string recovery;                       ///< action that restored the force, in the wording of the page
+  std::optional<double> position_error_m;     ///< error of the device's position at the end
+
+  bool operator==(const Result&) const = default;
+};
+
+/// A fault was reported, or the board restarted. A lock-up is an effect of the fault and not a detection.
+bool is_detected(const Result& result);
+/// The fault was not detected, and the bridges did not switch off.
+bool is_unnoticed(const Result& result);
+
+/// Reported faults, restarts and a lock-up; empty if none.
+std::string fault_text(const Result& result);
+
+/// A JSON object with a member for each field, and a line feed.
+std::string text_of(const Result& result);
+/// Throws device::Error if the text is not a result.
+Result parse_result(const std::string& text);
+
+std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);
+/// Writes atomically, so that a killed job leaves no partial result. Throws device::Error.
+void save(const Result& result, const std::filesystem::path& directory);
+/// Results by number. An error names a file that is damaged or belongs to another list of cases.
+std::vector<Result> load_all(const std::filesystem::path& directory);
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,31 @@
+// The paper's figures 11 to 14, drawn with gnuplot from a recording.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/client/recording/gnuplot.hpp"
+#include "host/client/recording/recording.hpp"
+#include "host/lab/experiment/summary.hpp"
+
+namespace inkwell::experiment {
+
+/// Mean, smallest and largest value of the figures' quantities in each millisecond.
+recording::FigureData figure_data(const recording::Recording& recording, BoxWall wall);
+
+struct PaperFigureOptions {
+  std::optional<BoxWall> wall;   ///< std::nullopt: the wall with the deepest penetration
+  std::optional<double> from_s;  ///< since the first sample; std::nullopt: shortly before the contact
+  std::optional<double> to_s;    ///< std::nullopt: shortly after the contact
+};
+
+/// Writes figure-11.png to figure-14.png into a folder, which is created if it is missing. Also writes figures.gnuplot
+/// and figure-data.csv, from which the figures can be redrawn. Returns the four pictures. Throws device::Error if a
+/// signal was not recorded, the wall was not touched, or the time range contains no samples. Also throws if a file
+/// cannot be written or if gnuplot fails.
+std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
+                                      const PaperFigureOptions& options);
+
+}  // namespace inkwell::experiment

@@ -1,0 +1,62 @@
+// Computes the numerical results of the experiment from its recordings, without side effects.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "host/client/recording/recording.hpp"
+#include "host/lab/experiment/wall.hpp"
+#include "protocol/parameters.hpp"
+
+namespace inkwell::experiment {
+
+/// Times since the first sample of a recording.
+struct Interval {
+  double from_s = 0;
+  double to_s = 0;
+};
+
+/// Comparison of the logged force with F = k d + c d', computed from the logged penetration and velocity.
+struct ForceLawError {
+  std::size_t samples = 0;  ///< in contact
+  double maximum_N = 0;
+  double maximum_relative = 0;      ///< of the samples with more than 0.5 N
+  std::size_t samples_outside = 0;  ///< error over 1 % and over 5 mN
+};
+ForceLawError force_law_error(const recording::Recording& recording, const protocol::ParameterSet& parameters);
+
+/// Residual motion of the arm while the hand holds it against the wall.
+struct SteadyHold {
+  Interval interval;
+  std::array<double, 3> encoder_spread_counts{};  ///< largest minus smallest
+  double position_spread_m = 0;                   ///< along the wall's axis
+  double penetration_mean_m = 0;
+};
+SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Interval interval);
+/// The half second with the least motion and at least half of the largest penetration. std::nullopt if the contact was
+/// shorter.
+std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
+
+/// Interval from the first to the last contact on a wall's axis; std::nullopt without contact.
+std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
+
+struct WallResult {
+  std::size_t samples = 0;
+  std::uint64_t samples_lost = 0;
+  std::size_t samples_in_contact = 0;
+  double penetration_maximum_m = 0;
+  double force_maximum_N = 0;
+  double torque_1_maximum_Nm = 0;       ///< magnitude; the paper's T1z
+  double other_torques_maximum_Nm = 0;  ///< magnitude of T2x and T3x
+  ForceLawError force_law_error;
+  std::optional<SteadyHold> steady_hold;
+  std::optional<Interval> contact;
+};
+/// `hold`: interval in which the hand was steady. Without `hold`, find_steady_hold() is used.
+WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, BoxWall wall,
+                    std::optional<Interval> hold);
+
+}  // namespace inkwell::experiment

@@ -1,0 +1,30 @@
+// Walls of the box around the workspace of the sphere.
+#pragma once
+
+#include <string>
+
+#include "host/client/recording/recording.hpp"
+#include "protocol/parameters.hpp"
+
+namespace inkwell::experiment {
+
+struct BoxWall {
+  int axis = 2;  ///< 0 x, 1 y, 2 z
+  int side = 1;  ///< 1 the upper wall, -1 the lower one
+  bool operator==(const BoxWall&) const = default;
+};
+
+/// "z+" and the like. Throws device::Error.
+BoxWall parse_wall(const std::string& name);
+std::string wall_name(BoxWall wall);
+/// The wall in the arm's plane, opposite the arm's base. A push into the wall requires no waist torque.
+BoxWall forward_wall(const protocol::ParameterSet& parameters);
+/// A vertical wall perpendicular to the arm's plane; the waist motor supplies its force.
+BoxWall side_wall(const protocol::ParameterSet& parameters);
+/// Position of the wall along its axis, in meters.
+double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);
+char axis_letter(int axis);
+/// The wall with the deepest penetration. Throws device::Error without contact.
+BoxWall pushed_wall(const recording::Recording& recording);
+
+}  // namespace inkwell::experiment

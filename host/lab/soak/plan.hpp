@@ -1,0 +1,83 @@
+// Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
+//
+// A reported fault that the kind does not name is a false trip. Phases of normal use therefore avoid faults: the hand
+// stays below the speed limit, except in the phase that tests this limit. Some wrong parameters make a fault-free arm
+// look defective: dimensions, resistances, and gains that cause oscillation. These parameters change only while the
+// force is off, or stay close to the correct values (storm.hpp).
+#pragma once
+
+// To add a kind of phase:
+// (1) Add a row to INKWELL_SOAK_KINDS with the faults that the board may report in this phase.
+// (2) Implement the phase with the functions of Bench and add its case to host/lab/soak/phases.cpp. The compiler
+// reports
+//     a missing case. Only Bench::pass() advances board time, because it also checks the board.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "host/lab/soak/random.hpp"
+#include "protocol/supervision.hpp"
+
+namespace inkwell::soak {
+
+/// Faults by which a board can detect wrong encoder counts.
+inline constexpr protocol::Conditions lost_counts = protocol::condition(protocol::Fault::encoder_implausible) |
+                                                    protocol::condition(protocol::Fault::inkwell_implausible);
+
+/// Faults that a disconnected host causes; the board reports the first detected fault.
+inline constexpr protocol::Conditions host_gone =
+    protocol::condition(protocol::Fault::usb_gone) | protocol::condition(protocol::Fault::host_silent);
+
+// clang-format off
+/// X(name, cards in a deck, faults that may be reported, description)
+#define INKWELL_SOAK_KINDS(X) \
+  X(docking, 1, 0, "The stylus is put into the inkwell and removed, then the force is switched on.") \
+  X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.") \
+  X(walls, 2, 0, "The hand presses into walls and slides along them, with up to the force limit.") \
+  X(fast, 1, 0, "The hand moves fast, below the speed limit.") \
+  X(program, 2, 0, "A program sends forces in every mode and places shapes.") \
+  X(scope, 1, 0, "The scope runs and changes its signals.") \
+  X(recording, 1, 0, "The scope is recorded into a file, and the file is read.") \
+  X(live_storm, 2, 0, "Legal and illegal parameter changes are sent with the force on.") \
+  X(wide_storm, 1, lost_counts, \
+    "Legal and illegal values of all parameters are sent with the force off, including joint stops and scales.") \
+  X(store, 1, 0, "Parameters are stored, restored and erased. The board also restarts, even during a write.") \
+  X(cable, 1, host_gone, "The cable is unplugged and plugged in again.") \
+  X(silence, 1, protocol::condition(protocol::Fault::host_silent), \
+    "The host is silent for shorter and longer than the time-out.") \
+  X(killed, 1, host_gone, "The program is killed while the force is on.") \
+  X(reset, 1, 0, "The board is reset at any time.") \
+  X(too_fast, 1, protocol::condition(protocol::Fault::over_speed), \
+    "The hand is faster than a speed limit that was lowered.") \
+  X(fault, 4, ~protocol::Conditions{0}, "A fault from the table is injected and removed.")
+// clang-format on
+
+enum class Kind : std::uint8_t {
+#define X(name, ...) name,
+  INKWELL_SOAK_KINDS(X)
+#undef X
+};
+
+struct KindInfo {
+  std::string_view name;
+  unsigned cards;
+  protocol::Conditions allowed_faults;
+  std::string_view meaning;
+};
+
+inline constexpr auto kind_table = std::to_array<KindInfo>({
+#define X(name, cards, allowed_faults, meaning) {#name, cards, allowed_faults, meaning},
+    INKWELL_SOAK_KINDS(X)
+#undef X
+});
+
+constexpr const KindInfo& info(Kind kind) { return kind_table[static_cast<std::size_t>(kind)]; }
+
+/// A list of phases in random order, with the number of phases of each kind from the table. Each kind occurs in every
+/// list.
+std::vector<Kind> shuffled_deck(Random& random);
+
+}  // namespace inkwell::soak

@@ -1,0 +1,65 @@
+// Scope frames, sent over the vendor bulk interface.
+//
+// A frame is one bulk transfer: a header and the samples of consecutive control periods. A frame has at most
+// scope_frame_maximum bytes and scope_frame_samples_maximum samples. Each transfer ends with a packet of less than 64
+// bytes, which is empty if the length is a multiple of 64.
+//
+// Between two transfers the bus is idle until the device has loaded the next frame. Frames are therefore long. With 14
+// floats per sample, each frame leaves an idle time of two packets. A frame of only 36 samples would leave an idle time
+// of less than half a packet. A gap in `sequence` indicates a lost frame. The `first_period` of the next frame then
+// shows the number of lost samples.
+//
+// In the encoding `full`, a sample has the value of every selected signal, in the order of the selection.
+//
+// In the encoding `changes`, a sample begins with a 32-bit mask, in which bit i is the i-th selected signal. The values
+// that differ from the previous sample follow in rising order of i. The first sample of a frame has every bit set, so
+// that a reader can decode each frame alone.
+//
+// The encoding is `full` for samples of up to scope_full_sample_maximum bytes. At 20 kHz, 14 floats require 1.12 MB/s.
+// Full-speed USB transmits up to 1.216 MB/s in addition to the pose. Longer samples are encoded as `changes`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "protocol/reports.hpp"
+
+namespace inkwell::protocol {
+
+enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
+
+inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" in little-endian byte order
+inline constexpr std::size_t scope_frame_maximum = 6144;
+/// 109 samples last 5.5 ms. This duration bounds the latency for a selection of few signals.
+inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
+inline constexpr std::size_t scope_full_sample_maximum = 56;
+
+#pragma pack(push, 1)
+struct ScopeFrameHeader {
+  std::uint32_t magic = scope_magic;
+  std::uint32_t sequence;         ///< number of frames since the selection
+  std::uint32_t first_period;     ///< control period of the first sample, as PoseReport::time_periods
+  std::uint32_t samples_dropped;  ///< samples lost since start-up because the host did not read
+  std::uint16_t length;           ///< bytes of the frame, including the header
+  std::uint16_t sample_count;
+  ScopeEncoding encoding;
+  std::uint8_t signal_count;
+  std::uint8_t selection_token;  ///< token of the select_signals command that started this stream
+  std::uint8_t reserved = 0;
+};
+#pragma pack(pop)
+static_assert(sizeof(ScopeFrameHeader) == 24);
+
+/// Returns the size of one sample in the encoding `full`, in bytes.
+constexpr std::size_t full_sample_size(const SignalSelection& selection) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < selection.count; ++i)
+    size += wire_size(info(static_cast<Signal>(selection.signals[i])).wire);
+  return size;
+}
+
+constexpr ScopeEncoding encoding_for(const SignalSelection& selection) {
+  return full_sample_size(selection) <= scope_full_sample_maximum ? ScopeEncoding::full : ScopeEncoding::changes;
+}
+
+}  // namespace inkwell::protocol

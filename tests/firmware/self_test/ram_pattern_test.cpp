@@ -1,0 +1,56 @@
+// RAM march test: detected defects and restored content.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <numeric>
+
+#include "firmware/self_test/ram_pattern.hpp"
+
+namespace {
+
+using namespace inkwell;
+
+/// A word with stuck bits, and optionally a coupling to another word.
+struct Word {
+  std::uint32_t stored = 0, stuck_high = 0, stuck_low = 0;
+  Word* disturbs = nullptr;  ///< each write flips a bit of this word
+  Word& operator=(std::uint32_t value) {
+    stored = value;
+    if (disturbs != nullptr) disturbs->stored ^= 4;
+    return *this;
+  }
+  operator std::uint32_t() const { return (stored | stuck_high) & ~stuck_low; }
+};
+
+using Memory = std::array<Word, 10>;
+
+template <class Change>
+bool is_intact_with(Change change) {
+  Memory memory{};
+  change(memory);
+  std::array<std::uint32_t, 4> room;
+  return link::retains_pattern(std::span<Word>(memory), std::span(room));
+}
+
+TEST_CASE("sound memory keeps the pattern, and has its content afterwards") {
+  Memory memory{};
+  for (std::uint32_t i = 0; i < memory.size(); ++i) memory[i] = 1000 + i;
+  std::array<std::uint32_t, 4> room;
+  CHECK(link::retains_pattern(std::span<Word>(memory), std::span(room)));
+  for (std::uint32_t i = 0; i < memory.size(); ++i) CHECK(memory[i] == 1000 + i);
+}
+
+TEST_CASE("a bit that stands still is found, whichever, high or low, first word or last") {
+  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}})
+    for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_high = bit; }));
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_low = bit; }));
+    }
+}
+
+TEST_CASE("a write that disturbs a neighbour is found, before it or behind it") {
+  CHECK_FALSE(is_intact_with([](Memory& memory) { memory[1].disturbs = &memory[2]; }));
+  CHECK_FALSE(is_intact_with([](Memory& memory) { memory[2].disturbs = &memory[1]; }));
+}
+
+}  // namespace

@@ -1,0 +1,187 @@
+// Retention of the motor heat across a restart, with any memory content.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "firmware/exchange/guarded.hpp"
+#include "firmware/store/motor_heat_keeper.hpp"
+
+namespace inkwell {
+namespace {
+
+using control::Warmth;
+using link::MotorHeatKeeper;
+
+constexpr Warmth warm{{0.5f, 0.25f, 1.0f}, {0.25f, 0.125f, 0.75f}, 0};
+constexpr Warmth warmer{{0.75f, 0.5f, 1.25f}, {0.5f, 0.375f, 0.875f}, 1};
+
+void check_is(const std::optional<Warmth>& found, const Warmth& expected) {
+  REQUIRE(found.has_value());
+  CHECK(found->heat == expected.heat);
+  CHECK(found->housing == expected.housing);
+  CHECK(found->too_hot == expected.too_hot);
+}
+
+using Words = std::array<std::uint32_t, sizeof(MotorHeatKeeper) / sizeof(std::uint32_t)>;
+
+/// Memory layout of the keeper, with named members.
+struct Memory {
+  struct Place {
+    struct Left {
+      Warmth warmth;
+      std::uint32_t number;
+    } left;
+    std::uint32_t check;
+    void seal() { check = ~link::sum_of(left); }
+  };
+  std::array<Place, 2> places;
+  std::uint32_t next_number;
+};
+
+MotorHeatKeeper filled_with(std::uint32_t word) {
+  Words words;
+  words.fill(word);
+  return std::bit_cast<MotorHeatKeeper>(words);
+}
+
+/// State after power-on.
+MotorHeatKeeper fresh() {
+  MotorHeatKeeper keeper = filled_with(0x5A5A'5A5A);
+  keeper.start(true);
+  return keeper;
+}
+
+/// Two records have been written, the second record to the second slot.
+Memory memory_with(const Warmth& first, const Warmth& second) {
+  MotorHeatKeeper keeper = fresh();
+  keeper.store(first);
+  keeper.store(second);
+  return std::bit_cast<Memory>(keeper);
+}
+
+std::optional<Warmth> found_in(const Memory& memory) { return std::bit_cast<MotorHeatKeeper>(memory).start(false); }
+
+}  // namespace
+
+TEST_CASE("motor heat: what was left last is what the next start finds, and those after it") {
+  MotorHeatKeeper keeper = fresh();
+  for (const Warmth& warmth : {warm, warmer, warm, warm, warmer}) {
+    keeper.store(warmth);
+    check_is(keeper.start(false), warmth);
+    check_is(keeper.start(false), warmth);
+  }
+  keeper.store(warm);
+  keeper.store(warmer);
+  keeper.store(warm);
+  check_is(keeper.start(false), warm);
+}
+
+TEST_CASE("motor heat: memory after power-up is not believed") {
+  for (const std::uint32_t word : {0u, 0xFFFF'FFFFu, 0x3E3E'3E3Eu, 0x5A5A'5A5Au}) {
+    MotorHeatKeeper keeper = filled_with(word);
+    CHECK_FALSE(keeper.start(false).has_value());
+    keeper.store(warm);
+    check_is(keeper.start(false), warm);
+  }
+}
+
+TEST_CASE("motor heat: the power's coming forgets all of it, also for the starts after it") {
+  MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(memory_with(warm, warmer));
+  CHECK_FALSE(keeper.start(true).has_value());
+  CHECK_FALSE(keeper.start(false).has_value());
+  keeper.store(warm);
+  check_is(keeper.start(false), warm);
+}
+
+TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and the one before it is found") {
+  const auto before = std::bit_cast<Words>(memory_with(warmer, warm));
+  MotorHeatKeeper keeper = std::bit_cast<MotorHeatKeeper>(before);
+  keeper.store(warmer);
+  const auto after = std::bit_cast<Words>(keeper);
+  constexpr std::size_t number = 7, check = 8, next_number = 18;
+  // The previous record in this slot has the same heat.
+  for (std::size_t word = 0; word < after.size(); ++word)
+    CHECK((before[word] != after[word]) == (word == number || word == check || word == next_number));
+  // The compiler may write the words in any order.
+  for (unsigned written = 0; written < 4; ++written) {
+    Words words = before;
+    if ((written & 1) != 0) words[number] = after[number];
+    if ((written & 2) != 0) words[check] = after[check];
+    keeper = std::bit_cast<MotorHeatKeeper>(words);
+    check_is(keeper.start(false), written == 3 ? warmer : warm);
+    keeper.store(warmer);
+    check_is(keeper.start(false), warmer);
+  }
+  // Storing a different heat is interrupted after each word.
+  Memory other = memory_with(warm, warmer);
+  for (std::size_t end = 1; end < check; ++end) {
+    Memory cut = other;
+    constexpr Warmth cold{};
+    std::memcpy(&cut.places[0].left, &cold, std::min(4 * end, sizeof cold));
+    cut.places[0].left.number += 2;
+    check_is(found_in(cut), warmer);
+  }
+}
+
+TEST_CASE("motor heat: the first copy after a start leaves what the start found where it is") {
+  Memory memory = memory_with(warm, warmer);
+  memory.next_number = 0xF000'0001;  // an invalid number, which start() ignores
+  auto keeper = std::bit_cast<MotorHeatKeeper>(memory);
+  check_is(keeper.start(false), warmer);
+  keeper.store(warm);
+  check_is(keeper.start(false), warm);
+  memory = std::bit_cast<Memory>(keeper);
+  CHECK(memory.places[0].left.number == 2);
+  CHECK(memory.places[1].left.number == 1);
+  memory.places[0].check ^= 1;
+  check_is(found_in(memory), warmer);
+}
+
+TEST_CASE("motor heat: a bit that has changed in the newest copy leaves the one before it") {
+  const auto words = std::bit_cast<Words>(memory_with(warm, warmer));
+  for (std::size_t word = 9; word < 18; ++word) {
+    Words damaged = words;
+    damaged[word] ^= 1u << 3;
+    check_is(std::bit_cast<MotorHeatKeeper>(damaged).start(false), warm);
+  }
+}
+
+TEST_CASE("motor heat: the newest is known when numbers wrap") {
+  Memory memory = memory_with(warm, warmer);
+  memory.places[0].left.number = 0;
+  memory.places[1].left.number = 0xFFFF'FFFF;
+  for (auto& place : memory.places) place.seal();
+  check_is(found_in(memory), warm);
+}
+
+TEST_CASE("motor heat: what is kept lies in its range") {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float most = MotorHeatKeeper::most;
+  MotorHeatKeeper keeper = fresh();
+  keeper.store({{-1e-9f, 0.5f, 225.0f}, {infinity, std::numeric_limits<float>::quiet_NaN(), -infinity}, 1});
+  check_is(keeper.start(false), {{0.0f, 0.5f, most}, {most, most, 0.0f}, 1});
+}
+
+TEST_CASE("motor heat: what lies out of its range, or is no number, is not believed, however sound it looks") {
+  Memory memory = memory_with(warm, warm);
+  memory.places[1].left.warmth = warmer;
+  memory.places[1].seal();
+  check_is(found_in(memory), warmer);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float wrong : {-0.01f, 4.01f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+    for (std::size_t motor = 0; motor < 3; ++motor) {
+      for (const auto part : {&Warmth::heat, &Warmth::housing}) {
+        Memory damaged = memory;
+        (damaged.places[1].left.warmth.*part)[motor] = wrong;
+        damaged.places[1].seal();
+        check_is(found_in(damaged), warm);
+      }
+    }
+  }
+}
+
+}  // namespace inkwell

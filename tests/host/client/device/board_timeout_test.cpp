@@ -1,0 +1,31 @@
+// Time limits that count board time.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <optional>
+
+#include "host/client/device/board_timeout.hpp"
+
+using namespace inkwell;
+using namespace std::chrono_literals;
+
+TEST_CASE("a limit counts board time, however long the computer takes for it") {
+  device::BoardTimeout limit(1.0, 2s);
+  const std::chrono::steady_clock::time_point begin{};
+  CHECK_FALSE(limit.is_over(5'000, begin));
+  CHECK_FALSE(limit.is_over(10'000, begin + 1900ms));
+  CHECK_FALSE(limit.is_over(25'000, begin + 3800ms));
+  CHECK(limit.is_over(25'001, begin + 3900ms));
+}
+
+TEST_CASE("wall time counts while board time does not pass") {
+  device::BoardTimeout limit(1.0, 2s);
+  const std::chrono::steady_clock::time_point begin{};
+  std::optional<std::int64_t> now_periods;
+  SUBCASE("because no pose came yet") {}
+  SUBCASE("because the board is paused") { now_periods = 100; }
+  CHECK_FALSE(limit.is_over(now_periods, begin));
+  CHECK_FALSE(limit.is_over(now_periods, begin + 2s));
+  CHECK(limit.is_over(now_periods, begin + 2001ms));
+  CHECK_FALSE(limit.is_over(101, begin + 3s));  // board time advances again
+}

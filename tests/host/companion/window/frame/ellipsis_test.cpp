@@ -1,0 +1,42 @@
+// Labels that are too long are shortened with an ellipsis, and the window size depends on the text.
+#include <doctest/doctest.h>
+
+#include "host/companion/window/frame/ellipsis.hpp"
+#include "host/companion/window/frame/window_size.hpp"
+
+using namespace inkwell::window;
+
+namespace {
+
+/// Text width with one unit per character.
+float characters(std::string_view text) {
+  float count = 0;
+  for (const char byte : text) count += (static_cast<unsigned char>(byte) & 0xC0u) != 0x80u ? 1.0f : 0.0f;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a label that does not fit ends in an ellipsis, between two characters") {
+  CHECK(with_ellipsis("Wall stiffness", 14, characters) == "Wall stiffness");
+  CHECK(with_ellipsis("Wall stiffness", 13, characters) == "Wall stiffne\u2026");
+  CHECK(with_ellipsis("Wall stiffness", 6, characters) == "Wall\u2026");  // no space before it
+  CHECK(with_ellipsis("\u03a9\u03a9\u03a9", 2, characters) == "\u03a9\u2026");
+  CHECK(with_ellipsis("Wall", 1, characters).empty());
+  CHECK(with_ellipsis("", 1, characters).empty());
+}
+
+TEST_CASE("a window is as many points big as it was asked for, but no bigger than its display") {
+  CHECK(window_size({1280, 800}, 1.0f, ScreenSize{1920, 1080}) == ScreenSize{1280, 800});
+  CHECK(window_size({1280, 800}, 2.0f, ScreenSize{3840, 2160}) == ScreenSize{2560, 1600});
+  CHECK(window_size({1280, 800}, 2.0f, ScreenSize{1920, 1080}) == ScreenSize{1920, 1080});
+  CHECK(window_size({1280, 800}, 1.5f, std::nullopt) == ScreenSize{1920, 1200});
+}
+
+TEST_CASE("text gives way where a display has no room for the smallest window, but not below what can be read") {
+  CHECK(fitting_scale(2.0f, ScreenSize{1920, 1200}) == 2.0f);
+  CHECK(fitting_scale(2.0f, ScreenSize{1350, 840}) == doctest::Approx(1.5f));
+  CHECK(fitting_scale(2.0f, ScreenSize{1800, 560}) == 1.0f);
+  CHECK(fitting_scale(1.5f, ScreenSize{640, 480}) == 1.0f);
+  CHECK(fitting_scale(2.0f, std::nullopt) == 2.0f);
+}

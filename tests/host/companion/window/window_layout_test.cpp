@@ -1,0 +1,87 @@
+// Panes never overlap and share the window height proportionally.
+#include <doctest/doctest.h>
+
+#include <array>
+
+#include "host/companion/window/window_layout.hpp"
+
+using namespace inkwell::window;
+
+namespace {
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  const auto apart = [](float a_begin, float a_size, float b_begin, float b_size) {
+    return a_begin + a_size <= b_begin + 0.01f || b_begin + b_size <= a_begin + 0.01f;
+  };
+  return !apart(a.place.x, a.size.x, b.place.x, b.size.x) && !apart(a.place.y, a.size.y, b.place.y, b.size.y);
+}
+
+}  // namespace
+
+TEST_CASE("no part of the window overlaps another one or leaves the window") {
+  for (const float scale : {1.0f, 2.0f})
+    for (const ImVec2 points : {ImVec2{900, 560}, {1280, 800}, {1920, 1080}, {2560, 1440}, {3840, 2160}})
+      for (const float part : {0.1f, 0.42f, 0.9f})
+        for (const float banner : {0.0f, 60.0f}) {
+          CAPTURE(points.y);
+          CAPTURE(part);
+          const ImVec2 window{scale * points.x, scale * points.y};
+          WindowSettings settings;
+          settings.scope_part = part;
+          const auto layout =
+              layout_of(window, {100 * scale, banner * scale, banner * scale, 46 * scale}, settings, scale);
+          const std::array parts{layout.status, layout.banner, layout.scene,
+                                 layout.replay, layout.scope,  layout.column};
+          for (std::size_t i = 0; i < parts.size(); ++i) {
+            CHECK(parts[i].place.x + parts[i].size.x <= window.x + 0.5f);
+            CHECK(parts[i].place.y + parts[i].size.y <= window.y + 0.5f);
+            for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(parts[i], parts[j]));
+          }
+          CHECK(layout.scope.size.y >= 0.99f * WindowSettings::scope_height_minimum * scale - 6 * scale);
+          CHECK(layout.scene.size.y > 100 * scale);
+        }
+}
+
+TEST_CASE("a banner for which there is no room yet lies over the scene, which stays where it is") {
+  const WindowSettings settings;
+  const auto before = layout_of({1280, 800}, {46, 0, 0, 0}, settings, 1.0f);
+  const auto with_banner = layout_of({1280, 800}, {46, 60, 0, 0}, settings, 1.0f);
+  CHECK(with_banner.scene.place.y == before.scene.place.y);
+  CHECK(with_banner.scene.size.y == before.scene.size.y);
+  CHECK(with_banner.banner.place.y == 46);
+  CHECK(with_banner.banner.size.y == 60);
+  CHECK(layout_of({1280, 800}, {46, 0, 60, 0}, settings, 1.0f).scene.place.y == before.scene.place.y + 60);
+}
+
+TEST_CASE("a higher window gives scene and scope more in proportion") {
+  const WindowSettings settings;
+  const auto scope_part = [&](float height) {
+    const auto layout = layout_of({1280, height}, {46, 0, 0, 0}, settings, 1.0f);
+    return layout.scope.size.y / (height - 46);
+  };
+  CHECK(scope_part(800) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
+  CHECK(scope_part(1440) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
+  CHECK(scope_part(2160) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
+}
+
+TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
+  WindowSettings settings;
+  settings.scope_part = 0.9f;  // more than the available height
+  const ImVec2 window{1280, 800};
+  const LayoutNeeds needs{46, 0, 0, 0};
+  const auto before = layout_of(window, needs, settings, 1.0f);
+  drag_scope_splitter(20, before, 1.0f, settings);
+  const auto after = layout_of(window, needs, settings, 1.0f);
+  CHECK(after.scope.place.y - before.scope.place.y == doctest::Approx(20).epsilon(0.06));
+}
+
+TEST_CASE("a window that is small for a while leaves the parts as they were") {
+  WindowSettings settings;
+  settings.column_width = 500;
+  const WindowSettings before = settings;
+  const auto small = layout_of({900, 560}, {46, 0, 0, 0}, settings, 1.0f);
+  drag_column_splitter(0, {900, 560}, 1.0f, settings);
+  drag_scope_splitter(0, small, 1.0f, settings);
+  CHECK(settings.column_width == before.column_width);
+  CHECK(settings.scope_part == before.scope_part);
+}
