@@ -120,6 +120,9 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
     rig.wait_until("the scene turns by " + key, [&](const Sight& now) { return std::abs(x(now) - before) > 2.0; });
   };
   turns_by("shift+Right");
+  // xdotool releases Shift before the arrow. Shift must have an effect even if it was pressed in an earlier frame.
+  rig.hold_key("shift");
+  turns_by("shift+Left");
   turns_by("shift+Prior");
 
   const device::Vector3 held_m = rig.true_probe_m();

@@ -53,7 +53,6 @@ void ImGuiFrames::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   keys_.begin_frame();
-  ImGui::NewFrame();
 }
 
 ImVec2 ImGuiFrames::size() const { return ImGui::GetIO().DisplaySize; }

@@ -2,12 +2,15 @@
 
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
+#include <imgui_internal.h>
 
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/key_letters.hpp"
+#include "host/companion/window/frame/key_order.hpp"
 
 namespace inkwell::window {
 
@@ -25,7 +28,26 @@ bool can_cancel() {
 // This back end queues key events and follows the keyboard layout, so no set-up is necessary.
 void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
-void apply_keys(KeyTaps&) {}
+
+QueuedInput kind_of(const ImGuiInputEvent& event) {
+  if (event.Type != ImGuiInputEventType_Key) return QueuedInput::other;
+  const ImGuiKey key = event.Key.Key;
+  if ((key & ImGuiMod_Mask_) != 0) return QueuedInput::modifier;
+  // The back end also reports a modifier as a key.
+  const bool is_modifier_key = key >= ImGuiKey_LeftCtrl && key <= ImGuiKey_RightSuper;
+  return event.Key.Down && !is_modifier_key ? QueuedInput::key_press : QueuedInput::other;
+}
+
+void start_frame(KeyTaps&) {
+  ImVector<ImGuiInputEvent>& queue = GImGui->InputEventsQueue;
+  std::vector<QueuedInput> kinds;
+  for (const ImGuiInputEvent& event : queue) kinds.push_back(kind_of(event));
+  const auto count = static_cast<std::ptrdiff_t>(events_of_frame(kinds));
+  const std::vector<ImGuiInputEvent> later(queue.begin() + count, queue.end());
+  queue.resize(static_cast<int>(count));
+  ImGui::NewFrame();
+  for (const ImGuiInputEvent& event : later) queue.push_back(event);
+}
 
 #else
 
@@ -52,13 +74,14 @@ void note_tap(KeyTaps& taps, int key) {
     if (down[modifier] && modifier != key) taps.note(modifier);
 }
 
-void apply_keys(KeyTaps& taps) {
+void start_frame(KeyTaps& taps) {
   ImGuiIO& io = ImGui::GetIO();
   follow_keyboard_layout(io);
   taps.apply(io.KeysDown);
   io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
   io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
   io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
+  ImGui::NewFrame();
 }
 
 #endif
@@ -85,6 +108,6 @@ void KeyFeed::take(const KeyEvent& event) {
   ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.modifiers);
 }
 
-void KeyFeed::begin_frame() { apply_keys(taps_); }
+void KeyFeed::begin_frame() { start_frame(taps_); }
 
 }  // namespace inkwell::window

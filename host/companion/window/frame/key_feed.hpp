@@ -19,7 +19,7 @@ class KeyFeed {
 
   /// Passes an event of the window to ImGui, except for the keys that stop the force.
   void take(const KeyEvent& event);
-  /// Call between the NewFrame() of the back end and ImGui::NewFrame().
+  /// Calls ImGui::NewFrame() with the keys of this frame. Call after the NewFrame() of the back end.
   void begin_frame();
 
  private:
