@@ -7,7 +7,7 @@
 namespace inkwell::application {
 
 /// One round takes about 0.2 s.
-/// The image in flash is compared with the checksum that the build appends (tools/seal_image.py).
+/// The image in flash is compared with the checksum that the build appends (tools/generate/seal_image.py).
 /// The copies from which interrupts run are compared with the image.
 /// The settings of the control interrupt and the parameters are compared with their checksums.
 class MemoryCheck {

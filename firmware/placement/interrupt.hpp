@@ -3,9 +3,9 @@
 
 /// Place this mark before the definition of a function that an interrupt calls. The mark places the function in the
 /// section .interrupt_text (boards/facts/stm32f405.ld). Start-up copies this section to RAM. The tool
-/// tools/check_image.py rejects interrupts that call code outside this section. The tool also rejects functions in this
-/// section that no interrupt calls. All code of firmware/control is in this section and needs no marks. On a PC the
-/// mark has no effect.
+/// tools/check/check_image.py rejects interrupts that call code outside this section. The tool also rejects functions
+/// in this section that no interrupt calls. All code of firmware/control is in this section and needs no marks. On a PC
+/// the mark has no effect.
 #if defined(__arm__)
 // Each function has a separate section, so that the linker can omit functions that were inlined everywhere.
 #define INKWELL_INTERRUPT_SECTION(number) ".text.interrupt." #number

@@ -1,7 +1,7 @@
 // Registers and fields as types. Addresses are template arguments, so an access compiles to a load or a store.
 //
-// Headers in this folder have a fixed form. The tool tools/check_registers.py compares the compiled headers with the
-// manufacturer's description of the chip. The header registers/watchdog.hpp is a short example.
+// Headers in this folder have a fixed form. The tool tools/check/check_registers.py compares the compiled headers with
+// the manufacturer's description of the chip. The header registers/watchdog.hpp is a short example.
 //
 // Register and field names are those of the reference manual.
 #pragma once

@@ -10,9 +10,9 @@ import sys
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "tools/docs"))
 
-import architecture  # noqa: E402: located in tools/
+import architecture  # noqa: E402: located in tools/docs/
 
 GRAPHS: list[pathlib.Path] = []
 

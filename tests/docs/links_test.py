@@ -6,8 +6,8 @@ import unittest
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-PAGES = [TOP / "README.md", TOP / "CONTRIBUTING.md", TOP / "SECURITY.md", *sorted((TOP / "docs").glob("**/*.md")),
-         *sorted((TOP / "boards").glob("*/README.md"))]
+PAGES = [TOP / "README.md", TOP / "CONTRIBUTING.md", TOP / "SECURITY.md", TOP / "tools/README.md",
+         *sorted((TOP / "docs").glob("**/*.md")), *sorted((TOP / "boards").glob("*/README.md"))]
 LINK = re.compile(r"\]\(([^()\s]+)\)")
 HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
 

@@ -4,9 +4,9 @@ import pathlib
 import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools/docs"))
 
-import generate_command_page  # noqa: E402: in tools/
+import generate_command_page  # noqa: E402: in tools/docs/
 import generate_completion  # noqa: E402
 import generate_manual  # noqa: E402
 import help_text  # noqa: E402

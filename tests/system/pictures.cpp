@@ -1,4 +1,4 @@
-// Takes pictures of the window's panes with the virtual board, for tools/pictures. This file is not a test.
+// Takes pictures of the window's panes with the virtual board, for tools/docs/pictures. This file is not a test.
 #include <doctest/doctest.h>
 
 #include <algorithm>

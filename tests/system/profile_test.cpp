@@ -12,7 +12,7 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 
-TEST_CASE("a profile holds the whole control interrupt, and tools/flame-graph draws it") {
+TEST_CASE("a profile holds the whole control interrupt, and tools/docs/flame-graph draws it") {
   const TemporaryDirectory directory;
   const std::string elf = build_directory() + "/../board/inkwell.elf", profile = directory.file("profile");
   const auto board = run_program("virtual-board", {"--elf", elf, "--seconds", "0.1", "--profile", profile});
@@ -25,7 +25,7 @@ TEST_CASE("a profile holds the whole control interrupt, and tools/flame-graph dr
   CHECK(cycles > instructions / 2);  // an IT instruction may take no cycle
   CHECK(cycles < board::servo_cycles);
 
-  const std::string tool = build_directory() + "/../../tools/flame-graph", picture = directory.file("picture.svg");
+  const std::string tool = build_directory() + "/../../tools/docs/flame-graph", picture = directory.file("picture.svg");
   REQUIRE(run_program(tool, {elf, profile, picture}).exit_code == 0);
   unsigned long drawn = 0;
   std::string stack;

@@ -1,5 +1,5 @@
-// A short soak test with each kind of phase and the flashed firmware; tools/soak runs one hour. The test also checks
-// that a soak test has the requested duration.
+// A short soak test with each kind of phase and the flashed firmware; tools/lab/soak runs one hour. The test also
+// checks that a soak test has the requested duration.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -75,7 +75,7 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
   CHECK(json.at("stopped") == false);
   CHECK(soak("again.json", "2") == json);
   const auto alone = [&](const std::string& number) {
-    // The last value of a repeated option is used, as with additional options of tools/soak.
+    // The last value of a repeated option is used, as with additional options of tools/lab/soak.
     return run_program("inkwell", {"soak", "--seconds", "3600", "--seconds", "3", "--sitting-seconds", "2", "--seed",
                                    "7", "--sitting", number, "--out", directory.file("alone.json")});
   };

@@ -1,4 +1,4 @@
-"""tools/check-format: only the version that formats the sources judges them."""
+"""tools/check/format: only the version that formats the sources judges them."""
 
 import os
 import pathlib
@@ -30,7 +30,7 @@ class CheckFormat(unittest.TestCase):
                 )
                 program.chmod(0o755)
             return subprocess.run(
-                [SOURCE / "tools/check-format"],
+                [SOURCE / "tools/check/format"],
                 env=os.environ | {"PATH": str(folder)},
                 capture_output=True,
                 text=True,

@@ -1,4 +1,4 @@
-"""The words that tools/check-language finds in pages and sources.
+"""The words that tools/check/language finds in pages and sources.
 
 usage: check_language_test.py REPOSITORY
 """
@@ -10,7 +10,7 @@ import sys
 import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
-loader = importlib.machinery.SourceFileLoader("check_language", str(REPOSITORY / "tools/check-language"))
+loader = importlib.machinery.SourceFileLoader("check_language", str(REPOSITORY / "tools/check/language"))
 check_language = importlib.util.module_from_spec(importlib.util.spec_from_loader("check_language", loader))
 sys.dont_write_bytecode = True
 loader.exec_module(check_language)

@@ -1,4 +1,4 @@
-"""What tools/generate_layouts.py makes of a header, and that it takes no line of a structure for nothing."""
+"""What tools/generate/generate_layouts.py makes of a header, and that it takes no line of a structure for nothing."""
 
 import subprocess
 import sys
@@ -31,7 +31,7 @@ def generate(header: str) -> subprocess.CompletedProcess:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "made_up.hpp")
         file.write_text(header)
-        return subprocess.run([sys.executable, Path(sys.argv[1]) / "tools/generate_layouts.py", file],
+        return subprocess.run([sys.executable, Path(sys.argv[1]) / "tools/generate/generate_layouts.py", file],
                               capture_output=True, text=True)
 
 

@@ -1,9 +1,9 @@
-"""What tools/mutate takes away from a source, and that it leaves the rest as it is."""
+"""What tools/lab/mutate takes away from a source, and that it leaves the rest as it is."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(sys.argv[1]) / "tools"))
+sys.path.insert(0, str(Path(sys.argv[1]) / "tools/lab"))
 import mutants  # noqa: E402
 
 SOURCE = """

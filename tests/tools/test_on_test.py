@@ -18,8 +18,8 @@ class TestOn(unittest.TestCase):
             folder = pathlib.Path(folder)
             programs, tree = folder / "programs", folder / "tree"
             programs.mkdir()
-            (tree / "tools").mkdir(parents=True)
-            for name in ("test-on", "test-on-trial"):
+            (tree / "tools/release").mkdir(parents=True)
+            for name in ("test-on", "release/test-on-trial"):
                 (tree / "tools" / name).write_bytes((SOURCE / "tools" / name).read_bytes())
             (tree / "committed").touch()
             git = ["git", "-C", tree, "-c", "user.name=A", "-c", "user.email=a@example.invalid"]

@@ -1,5 +1,5 @@
 # Writes all targets with their folders and libraries to target-graph.txt in the build directory, one target per line.
-# The test of docs/architecture.md and tools/draw-architecture read this file. Format:
+# The test of docs/architecture.md and tools/docs/draw-architecture read this file. Format:
 #
 #     name|folder|library;library;...|published header;...
 function(inkwell_target_lines directory result)

@@ -124,7 +124,7 @@ void add_soak_command(const Place& place) {
       "soak",
       "Tests virtual boards with random use, faults, unplugged cables and parameter changes\n"
       "Ctrl-C stops the soak and prints the results so far. Exit code 1: the soak found a problem.");
-  // tools/soak passes its default options before the user's options. The last value of an option takes precedence.
+  // tools/lab/soak passes its default options before the user's options. The last value of an option takes precedence.
   command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
   command->add_option("--seconds", options->board_time_s, "Total board time, divided equally among the boards")

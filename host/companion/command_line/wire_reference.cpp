@@ -72,7 +72,7 @@ constexpr bool is_whole(const layouts::Struct& row) {
   return end == row.bytes;
 }
 static_assert(std::all_of(std::begin(layouts::structs), std::end(layouts::structs), is_whole),
-              "a protocol structure has a gap, or a field that tools/generate_layouts.py did not find");
+              "a protocol structure has a gap, or a field that tools/generate/generate_layouts.py did not find");
 
 std::string type_of(const layouts::Field& field) {
   if (field.bits > 0 && field.bits == 1) return fmt::format("bit {}", field.first_bit);

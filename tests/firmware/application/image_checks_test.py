@@ -37,7 +37,7 @@ class ImageChecks(unittest.TestCase):
                 check=True, capture_output=True)
             commands = (["check_image.py", elf], ["stack_bound.py", elf])
             check_image, stack_bound = (
-                subprocess.run([sys.executable, REPOSITORY / "tools" / command[0], *command[1:]],
+                subprocess.run([sys.executable, REPOSITORY / "tools/check" / command[0], *command[1:]],
                                capture_output=True, text=True, check=False)
                 for command in commands)
             return check_image, stack_bound
@@ -191,7 +191,7 @@ class ImageChecks(unittest.TestCase):
         self.assert_refused(stack_bound, "recursion: ")
 
     def test_a_file_that_is_no_image_is_refused(self):
-        result = subprocess.run([sys.executable, REPOSITORY / "tools/check_image.py", __file__],
+        result = subprocess.run([sys.executable, REPOSITORY / "tools/check/check_image.py", __file__],
                                 capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 2)
         self.assertIn("cannot read", result.stderr)

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 SKIPPED = 77
-TOOL = pathlib.Path(__file__).resolve().parents[3] / "tools/check_registers.py"
+TOOL = pathlib.Path(__file__).resolve().parents[3] / "tools/check/check_registers.py"
 
 svd = os.environ.get("INKWELL_SVD")
 if not svd:

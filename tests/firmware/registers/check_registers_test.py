@@ -8,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-TOOL = pathlib.Path(__file__).resolve().parents[3] / "tools/check_registers.py"
+TOOL = pathlib.Path(__file__).resolve().parents[3] / "tools/check/check_registers.py"
 
 SOURCE = """
 #include "firmware/registers/register.hpp"

@@ -1,4 +1,4 @@
-"""The price of the force laws, and what tools/force_law_cost.py refuses.
+"""The price of the force laws, and what tools/check/force_law_cost.py refuses.
 
     cost_test.py REPOSITORY IMAGE...
 """
@@ -12,7 +12,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(sys.argv[1])
 IMAGES = sys.argv[2:]
-TOOL = REPOSITORY / "tools/force_law_cost.py"
+TOOL = REPOSITORY / "tools/check/force_law_cost.py"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
 

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Checks the firmware image for forbidden code (heap, double precision) and for violations of the interrupt rules.
+
+    tools/check/check_image.py build/board/inkwell.elf
+
+Prints the size of the image. Prints one line per error and returns exit code 1 if there are errors.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+
+from call_graph import Image, Unreadable, read_image, run
+from interrupt_rules import broken_interrupt_rules
+
+# Functions that the firmware image must not contain, and the cause of each function. Patterns of whole symbol names.
+FORBIDDEN = {
+    r"_?(malloc|calloc|realloc|free)(_r)?|_sbrk(_r)?": "the heap",
+    r"_Zn[wa].*|_Zd[la].*": "operator new or delete",
+    r"__aeabi_(d|l2d|ul2d|i2d|ui2d|f2d|cd|cdr)\w*": "double precision in software",
+    r"__cxa_(throw|rethrow|begin_catch|allocate_exception)|_Unwind_\w+": "exceptions",
+    r"__cxa_guard_\w+": "thread-safe initialisation of local variables",
+    r"_ZTI.*|__dynamic_cast": "run-time type information",
+    r"(sin|cos|tan|a?sin|acos|atan2?|exp|log|pow|fmod|sqrt|cbrt|hypot)f?l?": "the mathematical library",
+    r"_?(v?f?n?printf|puts|_vfprintf_r)": "formatted printing",
+}
+
+
+def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
+    """Size and address of each section that occupies memory."""
+    rows = re.findall(r"^(\.\S+)\s+(\d+)\s+(\d+)$", run("arm-none-eabi-size", "-A", elf), re.MULTILINE)
+    return {name: (int(size), int(address)) for name, size, address in rows if int(address) != 0}
+
+
+def forbidden_symbols(image: Image) -> list[str]:
+    return [
+        f"the image holds {name}: {meaning}"
+        for name in sorted(image.symbols)
+        for pattern, meaning in FORBIDDEN.items()
+        if re.fullmatch(pattern, name)
+    ]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Checks the firmware's image.")
+    parser.add_argument("elf", help="the linked image")
+    arguments = parser.parse_args()
+    try:
+        image = read_image(arguments.elf)
+        sections = section_bytes(arguments.elf)
+    except (OSError, subprocess.CalledProcessError, Unreadable, KeyError) as error:
+        print(f"cannot read {arguments.elf} as the firmware's image: {error}", file=sys.stderr)
+        return 2
+
+    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".interrupt_text", ".interrupt_tables", ".text", ".data", ".data.ccm"))
+    core_coupled = sum(size for size, address in sections.values() if address >> 16 == 0x1000)
+    ram = sum(size for size, address in sections.values() if address >> 24 == 0x20)
+    print(f"image: {in_flash} bytes; core-coupled memory {core_coupled}, main memory {ram}")
+
+    size, address = sections.get(".interrupt_text", (0, 0))
+    problems = forbidden_symbols(image) + broken_interrupt_rules(image, range(address, address + size))
+    for problem in problems:
+        print(f"ERROR: {problem}", file=sys.stderr)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
