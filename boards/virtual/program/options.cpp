@@ -9,7 +9,7 @@
 
 #include "boards/stm32f405/debugger/symbols.hpp"
 #include "boards/virtual/program/requests.hpp"
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 #include "protocol/image_identity.hpp"
 
 #include "boards/virtual/program/log.hpp"

@@ -25,7 +25,7 @@
 
 #include "boards/known/boards.hpp"
 #include "host/client/device/address.hpp"
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 #include "host/client/process/fork.hpp"
 #include "protocol/image_identity.hpp"
 

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "boards/known/boards.hpp"
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 
 #include "host/client/firmware_update/elf.hpp"
 

@@ -12,7 +12,7 @@
 #include "host/client/firmware_update/flash_file.hpp"
 #include "host/client/firmware_update/probe.hpp"
 #include "host/client/firmware_update/update.hpp"
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 
 #include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/interrupt.hpp"

@@ -16,7 +16,7 @@
 
 #include <fmt/format.h>
 
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 
 #include "host/companion/command_line/help.hpp"
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 #include "host/companion/window/scope/scope_layout.hpp"
 #include "host/companion/window/window.hpp"
 

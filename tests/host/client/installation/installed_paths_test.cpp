@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 
 using namespace inkwell;
 

@@ -7,27 +7,27 @@ foreach(kind BIN LIB DATA)
                         "lib: an installation that is moved finds its parts relative to its programs.")
   endif()
 endforeach()
-set(INKWELL_PROGRAMS_PLACE ${CMAKE_INSTALL_BINDIR})
-set(INKWELL_ARMS_PLACE ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
+set(INKWELL_PROGRAMS_PATH ${CMAKE_INSTALL_BINDIR})
+set(INKWELL_ARMS_PATH ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
 # Programs and images depend on the processor architecture; Debian places such files in lib/.
-set(INKWELL_FIRMWARE_PLACE lib/inkwell/firmware)
-set(INKWELL_DROPINS_PLACE lib/inkwell/dropins)
+set(INKWELL_FIRMWARE_PATH lib/inkwell/firmware)
+set(INKWELL_DROPINS_PATH lib/inkwell/dropins)
 
 # Creates links at the same locations in the build directory, so that built programs find their files like installed
 # programs. The target of a link may be built later.
-function(inkwell_link_places)
-  foreach(link ${INKWELL_PROGRAMS_PLACE}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
-               ${INKWELL_ARMS_PLACE}=${PROJECT_SOURCE_DIR}/boards/arms
-               ${INKWELL_FIRMWARE_PLACE}=${PROJECT_BINARY_DIR}/../board
-               ${INKWELL_DROPINS_PLACE}=${PROJECT_BINARY_DIR}/dropins)
+function(inkwell_link_installed_paths)
+  foreach(link ${INKWELL_PROGRAMS_PATH}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
+               ${INKWELL_ARMS_PATH}=${PROJECT_SOURCE_DIR}/boards/arms
+               ${INKWELL_FIRMWARE_PATH}=${PROJECT_BINARY_DIR}/../board
+               ${INKWELL_DROPINS_PATH}=${PROJECT_BINARY_DIR}/dropins)
     string(REPLACE "=" ";" link ${link})
-    list(GET link 0 place)
+    list(GET link 0 path)
     list(GET link 1 part)
-    cmake_path(ABSOLUTE_PATH place BASE_DIRECTORY ${PROJECT_BINARY_DIR})
-    cmake_path(GET place PARENT_PATH folder)
+    cmake_path(ABSOLUTE_PATH path BASE_DIRECTORY ${PROJECT_BINARY_DIR})
+    cmake_path(GET path PARENT_PATH folder)
     cmake_path(RELATIVE_PATH part BASE_DIRECTORY ${folder})
     file(MAKE_DIRECTORY ${folder})
-    file(CREATE_LINK ${part} ${place} SYMBOLIC)
+    file(CREATE_LINK ${part} ${path} SYMBOLIC)
   endforeach()
 endfunction()
-inkwell_link_places()
+inkwell_link_installed_paths()

@@ -1,4 +1,4 @@
-#include "host/client/installation/places.hpp"
+#include "host/client/installation/installed_paths.hpp"
 
 #include <dlfcn.h>
 
@@ -27,14 +27,14 @@ std::filesystem::path prefix() {
   const auto own = own_folder();
   std::error_code code;
   for (auto folder = own;; folder = folder.parent_path()) {
-    if (std::filesystem::exists(folder / INKWELL_ARMS_PLACE, code)) return folder;
+    if (std::filesystem::exists(folder / INKWELL_ARMS_PATH, code)) return folder;
     if (folder == folder.parent_path()) return own;
   }
 }
 
-std::filesystem::path virtual_board() { return prefix() / INKWELL_PROGRAMS_PLACE / "virtual-board"; }
-std::filesystem::path firmware(const std::string& image) { return prefix() / INKWELL_FIRMWARE_PLACE / image; }
-std::filesystem::path default_arm() { return prefix() / INKWELL_ARMS_PLACE / "omni.toml"; }
-std::filesystem::path dropins() { return prefix() / INKWELL_DROPINS_PLACE; }
+std::filesystem::path virtual_board() { return prefix() / INKWELL_PROGRAMS_PATH / "virtual-board"; }
+std::filesystem::path firmware(const std::string& image) { return prefix() / INKWELL_FIRMWARE_PATH / image; }
+std::filesystem::path default_arm() { return prefix() / INKWELL_ARMS_PATH / "omni.toml"; }
+std::filesystem::path dropins() { return prefix() / INKWELL_DROPINS_PATH; }
 
 }  // namespace inkwell::installation
