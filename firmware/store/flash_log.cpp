@@ -118,9 +118,10 @@ void FlashLog::make_room() {
 // A failed write of the erase record is ignored, because the erase is necessary in any case.
 void FlashLog::erase(std::size_t number) {
   const std::uint32_t erases = ++erases_[number];
-  const std::size_t place = 1 - number;
-  if (sectors_[place].is_begun && sectors_[place].end + record_words(1) <= memory_->sector(place).size()) {
-    const std::size_t current = std::exchange(current_, place);
+  const std::size_t other_sector = 1 - number;
+  if (sectors_[other_sector].is_begun &&
+      sectors_[other_sector].end + record_words(1) <= memory_->sector(other_sector).size()) {
+    const std::size_t current = std::exchange(current_, other_sector);
     prepare({.schema = protocol::store_schema, .kind = static_cast<std::uint16_t>(RecordKind::erase)}, {&erases, 1});
     while (step() == Progress::under_way) {
     }
