@@ -17,7 +17,7 @@ double parameter(inkwell_arm* arm, const std::string& name) {
   return value;
 }
 
-/// Reads three parameters whose names differ in the number of the joint or motor.
+/// Reads three parameters, one for each joint or motor.
 Vector of_each(inkwell_arm* arm, const std::string& before, const std::string& after) {
   return {parameter(arm, before + "1" + after), parameter(arm, before + "2" + after),
           parameter(arm, before + "3" + after)};

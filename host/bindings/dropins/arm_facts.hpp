@@ -30,7 +30,7 @@ void require(inkwell_result result);
 /// Throws std::runtime_error with the reason if the arm does not answer.
 ArmFacts read_facts(inkwell_arm* arm);
 
-/// The force at the probe that corresponds to these joint torques (tau = J^T F); zero where the arm is singular.
+/// Force at the probe for these joint torques (tau = J^T F); zero where the arm is singular.
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm);
 
 /// Jacobian in row-major order, m/rad. The Jacobian times the joint speeds is the probe velocity.

@@ -24,18 +24,17 @@ constexpr double rest_m_per_s = 0.1;
 // Faults that HDAPI treats as temporary. The force returns automatically once the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
-/// Whether the board has judged the request. Errors of the link, or of a claim that was lost with the link, are not a
-/// judgment.
+/// True if the board has accepted or refused the request. A link error leaves the request undecided.
 bool is_judged(inkwell_result result) { return result == INKWELL_OK || result == INKWELL_REFUSED; }
 
-/// Faults that the board raises when a program exits or is late while the force is on.
+/// The board raises these faults if a program exits or is late while the force is on.
 bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
 }
 
-/// Rotation vector from one attitude to the next, about a millisecond later. The rotation axis is in the antisymmetric
+/// Rotation vector between two attitudes that are about a millisecond apart. The rotation axis is in the antisymmetric
 /// part of the rotation matrix.
 Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
   const auto turn = [&](int row, int column) {
@@ -200,8 +199,8 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports the specific cause: a lost link or a fault. Until then, FORCE_ERROR shows the program that
-  // there is no force.
+  // The next frame reports the specific cause: a lost link or a fault. Until that frame, FORCE_ERROR shows the program
+  // that there is no force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_loss_reported_;
   is_force_loss_reported_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;
@@ -273,8 +272,8 @@ void Device::care() {
     // inkwell_wait_for_pose() returns a time-out if the board is silent, and INKWELL_DISCONNECTED if the link is lost.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
-    // The force is not switched on automatically after another program, a lasting fault or a lost link has switched it
-    // off. The program must request the force again.
+    // The force stays off after another program, a lasting fault or a lost link has switched it off. The program must
+    // request the force again.
     const bool was_on = is_on;
     if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;
     const bool passes_by = !is_lost && pose.state == INKWELL_FAULT && passes(pose.fault);

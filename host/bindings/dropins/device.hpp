@@ -18,7 +18,7 @@
 
 namespace inkwell::dropins {
 
-/// The requests of a program in a frame, in the program's units.
+/// The program's requests in one frame, in the program's units.
 struct Command {
   std::optional<Vector> force_N, joint_torque_mNm;
   std::optional<std::array<double, 6>> motor_values;
@@ -91,7 +91,7 @@ class Device {
 
   /// Called when the scheduler starts or stops. The force depends on this state and on the capability.
   void set_scheduler_runs(bool runs);
-  /// Switches the force on or off as the program requests, also after a loss.
+  /// Switches the force on or off as the program requests, even after the arm has lost the force.
   void follow_force_output();
   /// Returns when the board has confirmed that the force is off, or when the program requests the force again. Raises
   /// COMM_ERROR if the board does not confirm that the force is off. Called without the lock of Devices.
@@ -117,7 +117,7 @@ class Device {
   Vector send(const Command& command, const inkwell_pose& pose);
   std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
-  /// A thread for the calls that need a round trip to the device, so that frames do not wait for these calls.
+  /// This thread makes the calls that need a round trip to the device. Frames therefore do not wait for these calls.
   void care();
 
   const Handle handle_;

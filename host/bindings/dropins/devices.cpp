@@ -107,7 +107,7 @@ bool Devices::close(Handle handle) {
     device = std::exchange(devices_[handle], nullptr);
     if (current_ == handle) current_ = invalid_handle;
   }
-  // The scheduler may still wait for a pose of the device. The arm must be closed when this function returns.
+  // The scheduler may still wait for a pose of the device. This function must not return before the arm is closed.
   while (device.use_count() > 1) std::this_thread::sleep_for(1ms);
   return true;
 }

@@ -13,7 +13,7 @@
 
 namespace inkwell::dropins {
 
-/// Information about the parent's devices, for a forked child.
+/// A forked child's information about the devices of its parent.
 struct ParentsDevices {
   int process = 0;
   Handle handles = 0;  ///< lower handles may belong to the parent
@@ -22,7 +22,8 @@ struct ParentsDevices {
 class Devices {
  public:
   explicit Devices(const ParentsDevices& parents) : parents_(parents) {}
-  /// Does not lock the mutex, because a parent's thread that does not exist in the child may have locked the mutex.
+  /// Does not lock the mutex, because a thread of the parent may have locked it, and this thread does not exist in the
+  /// child.
   ParentsDevices as_parents() const;
 
   /// Every call of the interface locks this mutex while it uses a device, but not while it opens or closes a device.
@@ -53,7 +54,7 @@ class Devices {
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   void renew_forces();
-  /// The first device that sends poses, which sets the pace of the scheduler; NULL if no device sends poses.
+  /// Returns the first device that sends poses, or NULL. This device sets the pace of the scheduler.
   std::shared_ptr<Device> pacing();
 
  private:

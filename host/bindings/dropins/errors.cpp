@@ -13,7 +13,8 @@ namespace inkwell::dropins {
 namespace {
 
 constexpr std::size_t stack_maximum = 256;
-/// Limit for texts that are never freed. Sentences differ by device and cause, so a program normally needs only a few.
+/// Limit for texts that are never freed. There is one sentence for each device and cause, so a program normally needs
+/// only a few.
 constexpr std::size_t kept_maximum = 1024;
 
 struct Text {

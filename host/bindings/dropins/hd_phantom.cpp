@@ -172,8 +172,8 @@ bool is_open(int number) {
   return true;
 }
 
-/// Passes the last values to `write` in every case, because some programs ignore the result. Returns -1 if the values
-/// are not current.
+/// Always passes the last values to `write`, because some programs ignore the result. Returns -1 if the values are not
+/// current.
 template <class Write>
 int read(int number, Write write) {
   const process::CancellationGuard guard;

@@ -23,8 +23,8 @@ struct Runtime {
 /// because the devices and the servo thread belong to the parent.
 Runtime& runtime();
 
-/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Call this function
-/// before the scheduler starts, so that objects created earlier outlive the callbacks.
+/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Static objects that
+/// were created before this call outlive the callbacks, so call this function before the scheduler starts.
 void stop_callbacks_at_exit();
 
 }  // namespace inkwell::dropins

@@ -34,7 +34,7 @@ class Scheduler {
   bool stop(std::chrono::milliseconds limit);
   bool runs() const;
 
-  /// False for a rate at which no device sends poses.
+  /// False if no device can send poses at this rate.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
   /// Rate of the last tick in the time of the pacing device, or the set rate if the measured rate is unknown.

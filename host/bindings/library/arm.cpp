@@ -17,7 +17,7 @@ namespace {
 
 using protocol::Command;
 
-/// Board time after which enable_force is sent again.
+/// enable_force is sent again after this board time.
 constexpr double retry_s = 0.1;
 
 /// After this time without a pose the board counts as reset or paused.

@@ -46,22 +46,23 @@ class Arm {
   void read(Take take) const {
     poses_.read(take);
   }
-  /// The first pose after the pose with this sequence. Throws Disconnected if the link is lost, and TimedOut. `answer`
-  /// shows whether the calling thread sets a force for each pose, so that lock step waits for the force.
+  /// Returns the first pose after the pose with this sequence number. Throws Disconnected if the link is lost, and
+  /// TimedOut if no such pose arrives in time. If `answer` shows that the calling thread sets a force for each pose,
+  /// lock step waits for this force.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
                              Turns::Answer answer = Turns::Answer::none) const;
   /// Waits until this board time has passed. Throws TimedOut if no poses arrive.
   void sleep(double duration_s) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
-  /// Makes this arm object the driver, like set_force(), place_shapes() and start_servo(). Throws InUse with the name
+  /// Makes this arm object the driver, as set_force(), place_shapes() and start_servo() do. Throws InUse with the name
   /// of the driver if another program or arm object drives the arm.
   void enable_force(double timeout_s);
   /// Takes the arm over from its current driver.
   void take_over();
   void disable_force();
   void stop();
-  /// Throws FaultStays if the cause remains.
+  /// Throws FaultStays if the cause of the fault remains.
   void clear_fault();
   void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
   void set_force(const double (&force_N)[3]);

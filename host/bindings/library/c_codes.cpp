@@ -1,4 +1,5 @@
-// The header of the C interface cannot include the protocol. This file compares the header's numbers with the protocol.
+// The header of the C interface cannot include the protocol. This file compares the header's numbers with those of the
+// protocol.
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
@@ -72,7 +73,7 @@ constexpr Code limits[] = {CODE(LIMIT_FORCE),  CODE(LIMIT_CURRENT), CODE(LIMIT_C
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));
-// `limits` was added later in padding, so the offsets of all other members are unchanged for older programs.
+// `limits` occupies former padding, so older programs still find all other members at their offsets.
 static_assert(offsetof(inkwell_pose, position_m) == 24 && sizeof(inkwell_pose) == 240);
 
 constexpr Code stored[] = {CODE(STORED_NOTHING), CODE(STORED_PARAMETERS), CODE(STORED_FACTORY_RESET),

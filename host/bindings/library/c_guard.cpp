@@ -11,7 +11,8 @@
 namespace inkwell::library {
 namespace {
 
-// A plain array, because destructors at program exit may call the library after the thread's objects are destroyed.
+// This is a plain array, because destructors may call the library at program exit, after the thread's objects were
+// destroyed.
 thread_local char error_text[sentence_maximum];
 
 inkwell_result fail(inkwell_result result, const char* sentence) {

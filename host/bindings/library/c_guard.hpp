@@ -1,5 +1,5 @@
 // Guards every call of the C interface. No exception leaves the library, and each call returns a result. A canceled
-// thread stops where it waits. A forked child uses no arm of its parent.
+// thread stops only where it waits. A forked child uses no arm of its parent.
 #pragma once
 
 #include <cxxabi.h>

@@ -42,8 +42,8 @@ inkwell_parameter row_of(const protocol::ParameterInfo& row) {
 }
 inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help.data()}; }
 
-/// A row in C form; null after the last row. Rows keep their address until the process exits, because force law rows
-/// are added later and programs may read rows in their last destructors.
+/// A row in C form; null after the last row. Rows are never moved or freed. Force law rows are added later, and
+/// programs may read rows in their last destructors.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
   static auto& rows = *new std::deque<Row>;

@@ -21,7 +21,7 @@ constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
-/// A stopped process receives no poses, so each wait counts for at most this time.
+/// A wait counts for at most this time, because a stopped process receives no poses.
 constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
@@ -88,7 +88,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       read_poses([this, is_first = true](const ReadPose& read) mutable {
         if (!std::exchange(is_first, false)) return;
         poses_.let_program_decide();
-        // The loss must be reported to the program before it switches the force on again.
+        // The loss must be reported before the program switches the force on again.
         if (read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
           arm_.device->send(protocol::Command::disable_force);
       });
@@ -133,7 +133,7 @@ void Connection::read_poses(const OnPose& on_pose) {
 bool Connection::report_lost_claim() {
   std::optional<device::Driver> driver;
   if (!arm_.device->try_driver(driver)) return false;
-  // After a release by this program, no loss is reported.
+  // If this program has released the arm, no loss is reported.
   if (driver && !driver->is_this_device)
     poses_.lose_claim(fmt::format("The arm was taken over by {}. That program now controls the force.",
                                   device::driver_text(*driver)));

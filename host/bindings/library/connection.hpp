@@ -1,4 +1,4 @@
-// The thread that opens the arm, reads its poses, and reopens it after a lost link.
+// Opens the arm, reads its poses, and reopens the arm after a lost link, in a separate thread.
 #pragma once
 
 #include <condition_variable>
@@ -19,13 +19,13 @@ namespace inkwell::library {
 
 class Connection {
  public:
-  /// Returns once poses arrive. If this arm has started a virtual board, the poses are then referenced. Throws Error.
+  /// Returns once poses arrive. If this arm has started a virtual board, the first poses are referenced. Throws Error.
   Connection(const std::string& address, PoseFeed& poses);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// The device of the arm; the same object after the link was lost and restored.
+  /// The device of the arm. The object does not change when a lost link is restored.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
 

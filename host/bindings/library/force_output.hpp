@@ -1,4 +1,4 @@
-// The thread that sends a program's forces, so that no caller waits for USB.
+// Sends a program's forces in a separate thread, so that no caller waits for USB.
 #pragma once
 
 #include <chrono>

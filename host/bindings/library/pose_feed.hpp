@@ -53,10 +53,10 @@ class PoseFeed final : public device::LockStep {
  public:
   // ---- for the thread that reads the poses ---------------------------------------------------------------------
 
-  /// Switches to lock step with these turns. If `is_stepped`, board time passes only while a call waits, once
-  /// let_program_decide() was called.
+  /// Switches to lock step with these turns. After let_program_decide(), if `is_stepped`, board time passes only while
+  /// a call waits.
   void take_turns(std::shared_ptr<Turns> turns, bool is_stepped);
-  /// From now on the program decides when time passes. Call this again after a lost link.
+  /// From this call on, the program decides when time passes. Call this again after a lost link.
   void let_program_decide();
   /// Waits until the next pose may be requested. Without lock step, a request is always allowed. False if the arm
   /// closes.
@@ -114,7 +114,7 @@ class PoseFeed final : public device::LockStep {
 
   // ---- the force ---------------------------------------------------------------------------------------------
 
-  /// This program uses forces from now on, so losses of the force are reported to this program.
+  /// From this call on, losses of the force are reported to this program.
   void use_force();
   /// Called when this program switches the force on, or accepts that the force is off.
   void forget_lost_force();
@@ -129,8 +129,8 @@ class PoseFeed final : public device::LockStep {
 
   /// Counts lost links, silences and lost forces. Each of these events stops the running servo.
   std::uint64_t interruptions() const;
-  /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if the number of losses is not
-  /// `known`. Only for servos. In lock step, board time stops until the servo waits again or ends its answer.
+  /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if interruptions() has changed
+  /// from `known`. Only for servos. In lock step, board time stops until the servo waits again or ends its answer.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
     const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };

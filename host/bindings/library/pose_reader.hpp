@@ -20,8 +20,8 @@ struct ReadPose {
 class PoseReader {
  public:
   inkwell_pose read(const device::Pose& report, const control::Arm& geometry);
-  /// The newest pose that the device has sent. The function waits if no pose has arrived; none on time-out. Older poses
-  /// are skipped, because a servo would answer them too late.
+  /// Returns the newest pose that the device has sent, and waits if no pose has arrived. Returns none on time-out.
+  /// Older poses are skipped, because a servo would answer them too late.
   std::optional<ReadPose> read_newest(device::Device& device, std::chrono::milliseconds timeout,
                                       const control::Arm& geometry);
 

@@ -87,7 +87,7 @@ void ScopeStream::run() {
   }
 }
 
-/// Ends a selection. After a reconnection the board no longer has the selection.
+/// Ends a selection. A reconnected board has lost the selection of signals.
 void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   const std::lock_guard lock(mutex_);
   if (selection != selection_ || signals_.empty()) return;

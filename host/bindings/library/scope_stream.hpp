@@ -1,4 +1,4 @@
-// The thread that reads the scope, for callers and for a recording.
+// The thread that reads the scope for callers and for a recording.
 #pragma once
 
 #include <atomic>

@@ -13,7 +13,7 @@ namespace inkwell::library {
 
 class SeenPoses {
  public:
-  /// Sequence for the calling thread; none before the first pose of the thread.
+  /// Sequence number of the calling thread's newest pose; none before its first pose.
   std::optional<std::uint32_t> newest() const {
     const std::lock_guard lock(mutex_);
     const auto seen = sequences_.find(std::this_thread::get_id());

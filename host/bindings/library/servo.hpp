@@ -1,4 +1,4 @@
-// The thread that calls a program's servo function at each pose, until poses or force are lost.
+// Calls a program's servo function at each pose in a separate thread, until poses or force are lost.
 #pragma once
 
 #include <atomic>

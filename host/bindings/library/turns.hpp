@@ -28,7 +28,7 @@ class Turns {
   explicit Turns(bool waits_for_loops = true) : waits_for_loops_(waits_for_loops) {}
 
   /// Longest time for an answer. After this time, board time passes without the answer. In a stepped group the limits
-  /// are long, so that they do not depend on the computer load. Without stepped boards the limits are short, so that a
+  /// are long, so that the computer load does not affect a run. Without stepped boards the limits are short, so that a
   /// hanging servo does not block the board for other programs.
   struct Patience {
     std::chrono::milliseconds loop, servo;
@@ -47,7 +47,7 @@ class Turns {
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
 
-    /// Until this call, turns of a stepped board begin without a waiting call.
+    /// Before this call, turns of a stepped board begin without a waiting call.
     void let_program_decide();
     /// Waits until the next turn begins, simultaneously for all boards. False after `leave`.
     bool begin();
@@ -60,7 +60,7 @@ class Turns {
     /// The link of the board is lost. The board rejoins the group in its next turn, which begins without a waiting
     /// call.
     void pause();
-    /// Removes the board from the group. Another thread may call this function. Waiting calls of this board then
+    /// Removes the board from the group. Another thread may call this function. Waiting calls of the removed board
     /// return.
     void leave();
 

@@ -169,7 +169,7 @@ mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
 
 Answers pose(const Arguments& arguments) {
   inkwell_pose pose;
-  // Read before and after the pose: if both values are true, the encoders were referenced during the pose.
+  // The encoders were referenced during the pose if they were referenced before and after the pose.
   int was_referenced, is_referenced;
   require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
   require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));

@@ -222,7 +222,7 @@ void Arm::start_servo(py::function servo) {
   if (!servo_is_running()) take_ending().raise_it();
   auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
   call([&] {
-    // Two threads that start servos must store the servos in the order in which the library started the servos.
+    // The servos must be stored in the order in which the library has started them.
     const std::lock_guard lock(servo_mutex_);
     const auto result = inkwell_start_servo(arm, &Arm::call_servo, next.get());
     if (result == INKWELL_OK) servo_.swap(next);  // the previous servo is destroyed with the interpreter's lock

@@ -50,7 +50,7 @@ class Arm {
   /// Raises the servo's exception, or another error that has ended the servo.
   void stop_servo();
   bool servo_is_running();
-  /// Raises once the reason why the servo has ended, unless the program or the servo function has ended the servo.
+  /// Raises the error that has ended the servo. Each error is raised only once.
   void check_servo();
 
   double parameter(const std::string& name);
@@ -112,8 +112,7 @@ class Arm {
   template <class Call>
   void call(Call library_call);
   /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
-  /// durations of the attempts add up to the time-out. The time-out therefore counts board time if the library counts
-  /// board time.
+  /// time-out is the sum of the attempts' durations, which the library may measure in board time.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>

@@ -1,4 +1,4 @@
-// The native module under the package's Python files: the library's structs with numpy arrays, and an arm.
+// The native module of the Python package: the library's structs with numpy arrays, and an arm.
 #include <string>
 #include <vector>
 

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> chain(const protocol::CrashFacts& crash);
 /// Throws device::Error unless `image` is the image that crashed.
 void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& image);
 
-/// Several lines: cause, call chain (with names if there is an image), registers.
+/// Several lines with cause, call chain and registers. An image adds names to the call chain.
 std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image);
 
 }  // namespace inkwell::crash

@@ -15,8 +15,8 @@ class BusClock {
   /// Call this regularly with the newest bus frame, for instance once per second.
   void note(const BusFrame& frame);
 
-  /// Time of a control period in seconds of bus frames, counted from the start of the bus. None before the first frame.
-  /// Before the second frame the nominal rate is used.
+  /// Time of a control period, measured with the bus frames, in seconds since the start of the bus. None before the
+  /// first frame. Before the second frame the nominal rate is used.
   std::optional<double> host_time_s(std::int64_t time_periods) const;
 
  private:

@@ -32,9 +32,9 @@ std::string fault_line(protocol::Fault fault, Device& device);
 /// finds this fault at its start can clear the fault, because the previous program caused the fault.
 bool is_left_by_a_host(protocol::Fault fault);
 
-/// Clears the fault and checks for 0.2 s of board time that it does not return. If a self-test follows, the check lasts
-/// until the self-test has finished. Returns immediately if `now` shows no fault. `next` waits for the next pose.
-/// Throws FaultStays.
+/// Clears the fault, and checks for 0.2 s of board time that the fault does not return. If a self-test follows, the
+/// check lasts until the self-test has finished. Returns immediately if `now` shows no fault. `next` waits for the next
+/// pose. Throws FaultStays.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next);
 
 }  // namespace inkwell::device

@@ -8,8 +8,8 @@
 
 namespace inkwell::device {
 
-/// Returns the answer to a command. Throws CommandRefused if the board refuses the command, Error if the line is not an
-/// answer of a board.
+/// Returns the answer to a command. Throws CommandRefused if the board refuses the command, and Error if the line is
+/// not an answer of a board.
 nlohmann::json parse_answer(std::string_view line, std::string_view command);
 
 // The functions below read the content of an answer. A missing value is zero or empty; a trace and the list of injected

@@ -144,7 +144,7 @@ std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint) {
 
 namespace {
 
-/// True if the firmware refuses to detach because the force is on. A firmware that is detaching may not answer.
+/// True if the firmware refuses to detach because the force is on. A firmware often does not answer while it detaches.
 bool has_refused(ControlChannel& channel) {
   try {
     const auto status = channel.read({get_status_request}, status_length);

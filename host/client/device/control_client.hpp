@@ -30,7 +30,7 @@ struct Hand {
   double damping_Ns_per_m = 3;
 };
 
-/// A target of the hand, and the time in board time after which the hand reaches the target.
+/// Target of the hand, and board time until the hand reaches the target.
 struct HandWaypoint {
   double after_s = 0;
   Vector3 target_m{};
@@ -70,8 +70,8 @@ struct MeterReading {
   double energy_J = 0;  ///< energy delivered to the hand; energy from the hand is not subtracted
   double travel_m = 0;  ///< largest distance from the start position
   double lag_m = 0;     ///< largest distance from the hand's target
-  /// Force on the probe from the torques of all motors, averaged over a control period. The force is measured while a
-  /// bridge drives and the arm is not singular.
+  /// Force on the probe from the torques of all motors, averaged over a control period. The force is measured only
+  /// while a bridge drives and the arm is not singular.
   double peak_motor_force_N = 0;
   double peak_motor_force_over_ms_N = 0;  ///< the same, averaged over a millisecond
 };

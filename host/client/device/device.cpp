@@ -39,7 +39,7 @@ constexpr auto claim_poll_interval = 5ms;
 /// Time limits for the execution of a command and for the decrease of the force to zero.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
-/// The counter in the self-test report is not widened, because only its differences are used.
+/// The counter in the self-test report stays in 32 bits, because only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
 /// A claim that is not renewed expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
@@ -88,7 +88,7 @@ int next_object() {
   return ++opened;
 }
 
-/// Numbers that distinguish the requests of this object from the requests of other objects.
+/// Request numbers of this object, which differ from those of other objects.
 struct OwnNumbers {
   std::uint32_t claim, ticket;
   std::uint16_t transaction_ticket;
@@ -329,7 +329,8 @@ struct Device::Implementation {
     }
   }
 
-  /// Checks the claim when the driver parity of a pose differs. The parity may have changed since the pose was sent.
+  /// Reads the claim if the pose's driver parity is not the expected parity. The driver may have changed since the pose
+  /// was sent.
   void check_claim(const protocol::PoseReport& pose) {
     if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
     // In lock step the owner of the mutex may wait for the next pose, so this function must not wait for the mutex.
@@ -355,8 +356,8 @@ struct Device::Implementation {
   /// Requires output_mutex.
   std::uint32_t next_ticket() { return ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1; }
 
-  /// None if the report contains no result of this request: the board has not received the request, or newer results
-  /// have replaced the result.
+  /// None if the report contains no result of this request, because the board has not received the request or because
+  /// newer results have replaced the result.
   static std::optional<protocol::RequestResult> result_in(const protocol::RequestResultsReport& report,
                                                           std::uint32_t of_ticket) {
     const auto* entry = std::ranges::find(report.entries, of_ticket, &protocol::RequestResultEntry::ticket);

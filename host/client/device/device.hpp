@@ -78,9 +78,9 @@ class Device {
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
-  /// Continues on the link of `opened`, a device on the same board. Do not use `opened` afterwards. References to this
-  /// device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board has
-  /// another force law.
+  /// Continues on the link of `opened`, which must be a device on the same board. Do not use `opened` afterwards.
+  /// References to this device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if
+  /// the board has another force law.
   void take_link_of(Device& opened);
 
   /// For a device of another protocol version, only the members before the table hashes are valid; the rest is 0.
@@ -100,9 +100,9 @@ class Device {
   /// Writes the driver into `driver`. Returns false without waiting if another thread has a request in progress,
   /// because in lock step that thread may wait for the next pose.
   bool try_driver(std::optional<Driver>& driver);
-  /// Makes this object the driver until release(), its destruction, or protocol::claim_expiry_s without a sign of life.
-  /// Throws InUse with the driver's name if another object or program drives the arm. If the process of the driver does
-  /// not exist on this computer, claim() first waits until the claim of the driver expires.
+  /// Makes this object the driver until release(), until its destruction, or until protocol::claim_expiry_s have passed
+  /// without a sign of life. Throws InUse with the driver's name if another object or program drives the arm. If the
+  /// process of the driver does not exist on this computer, claim() first waits until the claim of the driver expires.
   void claim();
   /// Like claim(), but ends the claim of the current driver, whose force fades out.
   void take_over();
@@ -160,8 +160,8 @@ class Device {
   /// The state of the stored parameters. The commands that change the stored parameters are in board_store.hpp.
   protocol::StoreReport store_report();
 
-  /// The black box of the last fault; its `fault` is none if the black box is empty. All counters count from the last
-  /// board start before the fault, and are not widened.
+  /// The black box of the last fault; its `fault` is none if the black box is empty. All counters start at the last
+  /// board start before the fault, and have 32 bits.
   protocol::BlackBoxReport black_box();
   /// The rows of this black box in chronological order. Throws Error if the board has discarded this black box.
   std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);
@@ -169,7 +169,7 @@ class Device {
   /// The newest result of each self-test item.
   protocol::SelfTestReport read_self_test();
   /// Runs the self-test, which takes 0.05 s, and returns the results. Throws NotTested if the board refuses because the
-  /// force is on or a fault is shown.
+  /// force is on or a fault is active.
   protocol::SelfTestReport self_test();
 
   /// Waits for the next scope frame; none on time-out.

@@ -46,12 +46,13 @@ std::string log_line(std::string_view clock_utc, std::optional<double> time_s, E
 /// Uses the board time of the event.
 std::string line_of(const Event& event);
 
-/// The events between a pose and the previous pose, if any: force on or off, fault raised or cleared.
-/// `noticed_at_periods`: more accurate time of the current fault, if known.
+/// Events from one pose to the next: force on or off, fault raised or cleared. Without `before`, the earlier state is
+/// no force and no fault. `noticed_at_periods`: more accurate time of the current fault, if known.
 std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
                                   std::optional<std::int64_t> noticed_at_periods);
 
-/// "wall_stiffness_N_per_m = 600.0, was 800.0", one event per changed parameter; `whose` is appended to the text.
+/// One event per changed parameter, such as "wall_stiffness_N_per_m = 600.0, was 800.0". `whose` is appended to the
+/// text.
 std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
                                     std::optional<std::int64_t> at_periods, std::string_view whose = {});
 

@@ -18,8 +18,8 @@ std::span<std::byte> writable_bytes(Report& report) {
 /// The error for a report of `length` bytes.
 Incompatible too_short(const char* what, std::size_t length, std::size_t wanted);
 
-/// Reads the information report. If the protocol version of the device differs, only the members with the same position
-/// are read; the rest is 0. Throws Incompatible if these members are missing.
+/// Reads the information report. The protocol version of the device may differ. In this case, only members at the same
+/// position are read, and the rest is 0. Throws Incompatible if these members are missing.
 protocol::InformationReport read_information(Transport& transport);
 
 }  // namespace inkwell::device

@@ -29,7 +29,7 @@ struct ParameterDifference {
 ParameterFile parse_parameters(std::string_view toml, const std::string& file_name);
 ParameterFile load_parameters(const std::filesystem::path& file);
 
-/// All parameters by group, each with a comment of its unit, range and help.
+/// Lists all parameters by group. Comments state their unit, range and help.
 std::string format_parameters(const protocol::ParameterSet& parameters);
 /// Writes a temporary file first and then renames it, so that a full disk does not destroy the old file.
 void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters);

@@ -24,7 +24,7 @@ struct ScopeSamples {
 
 class ScopeDecoder {
  public:
-  /// Announces the selection of the select_signals command with this token: at most scope_signals_maximum signals.
+  /// Announces the signals that the select_signals command with this token selects, at most scope_signals_maximum.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
   /// Rejects all samples from control periods before `period`, because these samples belong to an earlier program. An

@@ -100,7 +100,7 @@ class Session {
   /// The events since the last call; if there are too many, only the newest events.
   std::vector<Event> take_events();
 
-  /// Selects these signals for every control period, also after each reconnection.
+  /// Selects these signals for every control period. The selection is repeated after each reconnection.
   void select_signals(std::vector<protocol::Signal> signals);
   /// The session's scope thread calls `receive` with every frame. Set `receive` before the first selection.
   void on_scope(std::function<void(const ScopeSamples&)> receive);

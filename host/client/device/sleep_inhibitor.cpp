@@ -19,7 +19,7 @@
 namespace inkwell::device {
 namespace {
 
-/// systemd-inhibit blocks sleep while `cat` reads from the pipe, until the other end of the pipe is closed.
+/// systemd-inhibit blocks sleep while `cat` runs. `cat` exits when the other end of the pipe is closed.
 constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--what=sleep:idle",
                                                        "--who=Inkwell",   "--why=The force of the haptic arm is on",
                                                        "--mode=block",    "cat"};

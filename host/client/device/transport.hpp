@@ -42,7 +42,7 @@ struct Endpoint {
   /// Only for a virtual board. Each report is then requested when the program reads it. The LockStep object must
   /// outlive the transport.
   LockStep* lock_step = nullptr;
-  /// Only for a virtual board: the seed of the numbers that are otherwise random, so that a run can be repeated.
+  /// Seed of numbers that are otherwise random, for repeatable runs. Only for a virtual board.
   std::optional<std::uint64_t> seed = {};
 };
 
@@ -63,7 +63,7 @@ class Transport {
   /// Returns without waiting for the device, unless many reports are pending.
   virtual void write_report(std::span<const std::byte> report) = 0;
   /// Waits until the device has received every written report; false on time-out. The next report is then sent without
-  /// delay. The default suits a transport whose write_report() waits for the device.
+  /// delay. The default implementation is for a transport whose write_report() waits for the device.
   virtual bool wait_until_written([[maybe_unused]] std::chrono::milliseconds timeout) { return true; }
   /// `report[0]` is the report id. Returns the received length.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;

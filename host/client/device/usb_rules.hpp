@@ -1,4 +1,4 @@
-// Operating system differences in opening USB devices. The rules of each system are data, so that tests on one system
+// Rules by which operating systems open USB devices. The rules of each system are data, so that tests on one system
 // cover the decisions for all systems.
 #pragma once
 
@@ -22,7 +22,7 @@ inline constexpr const UsbRules& usb_rules = linux_usb_rules;
 /// Disconnected, or InUse with the sentence `in_use`.
 [[noreturn]] void throw_libusb_refusal(int code, const char* in_use, const UsbRules& rules = usb_rules);
 
-/// Throws NoPermission or InUse for an interface at `path` that hidapi could not open. `detail`: text of hid_error.
+/// Throws NoPermission or InUse for the interface at `path`, which hidapi could not open. `detail`: text of hid_error.
 [[noreturn]] void throw_hidapi_refusal(const std::string& path, const std::string& detail,
                                        const UsbRules& rules = usb_rules);
 

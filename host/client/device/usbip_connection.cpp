@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Time limit before the import, because a peer that is not a USB/IP server may never answer.
+/// Time limit until the import. A peer that is not a USB/IP server may never answer.
 constexpr auto reply_timeout = 3s;
 
 ReceiveBytes from(Socket& socket) {
@@ -182,8 +182,8 @@ void UsbipConnection::receive(std::span<std::byte> bytes) {
 
 void UsbipConnection::receive_answer() {
   const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
-  // The transfer stays open until its answer is complete. If the connection fails earlier, the waiting call therefore
-  // fails.
+  // The transfer stays open until its answer is complete. If the connection fails before that, the waiting call fails
+  // too.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);

@@ -20,7 +20,7 @@
 
 namespace inkwell::device {
 
-/// Lists the devices of a USB/IP server. Throws Error if no USB/IP server answers, or nothing arrives for 3 s.
+/// Lists the devices of a USB/IP server. Throws Error if no USB/IP server answers, or if nothing arrives for 3 s.
 std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server);
 
 class UsbipConnection {

@@ -25,8 +25,8 @@ constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // one second; then the oldest are dropped, which the sequence shows
 constexpr std::size_t writes_under_way = 16;
 constexpr std::size_t writes_in_lock_step = 1024;
-// A device accepts no commands if a command is pending for this number of reports (one second of board time), or for
-// this wall time without reports.
+// A device counts as refusing commands if a command stays pending for this number of reports (one second of board
+// time), or for this wall time without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
 constexpr char takes_no_commands[] = "The device accepts no commands, although it sends poses. Reset the board.";
@@ -102,7 +102,7 @@ class UsbipTransport : public Transport {
       scope_claimed_ = true;
       request_bulk();
     }
-    // Requests are answered in order, so a refusal of the bulk request arrives before this answer.
+    // The server answers in order, so a refusal of the bulk request arrives before the answer to this request.
     try {
       carry_out([&] { connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18)); });
     } catch (...) {

@@ -13,11 +13,11 @@ namespace inkwell::device {
 /// wrap may therefore be negative. A value must be noted at least every 29 hours. Any thread may call any function.
 class WideCounter {
  public:
-  /// The wide value that is nearest to a known wide value.
+  /// Returns the 64-bit value that ends with the bits of `value` and is nearest to `known`.
   static std::int64_t nearest_to(std::int64_t known, std::uint32_t value) {
     return known + static_cast<std::int32_t>(value - static_cast<std::uint32_t>(known));
   }
-  /// The first wide value that is not before a known wide value.
+  /// Returns the smallest 64-bit value that ends with the bits of `value` and is at least `known`.
   static std::int64_t at_or_after(std::int64_t known, std::uint32_t value) {
     return known + static_cast<std::uint32_t>(value - static_cast<std::uint32_t>(known));
   }
@@ -34,7 +34,7 @@ class WideCounter {
     return newest == nothing_noted ? 0 : newest;
   }
 
-  /// The wide value that is nearest to the newest value. Before the first note(), the value itself.
+  /// The wide value that is nearest to the newest value. Before the first note(), returns the value itself.
   std::int64_t nearest(std::uint32_t value) const {
     const std::int64_t newest = newest_.load();
     return newest == nothing_noted ? std::int64_t{value} : nearest_to(newest, value);

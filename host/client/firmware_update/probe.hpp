@@ -28,10 +28,10 @@ std::vector<std::string> openocd_arguments_for_writing(const std::string& interf
 inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
                       verified_line[] = "inkwell: the image is verified";
 
-/// Runs openocd in a private folder, because openocd searches for scripts in its current folder first. Without full
-/// consent, a first run reads the identity of the installed firmware. `on_line` receives each line that openocd prints.
-/// Throws Objected and Downgrade like `update`. Throws device::Error if openocd is missing, fails, or does not report
-/// that the image is verified.
+/// Runs openocd in a private folder, because openocd searches for scripts in its current folder first. Without
+/// Consent::to_everything, a first run reads the identity of the installed firmware. `on_line` receives each line that
+/// openocd prints. Throws Objected and Downgrade like `update`. Throws device::Error if openocd is missing, fails, or
+/// does not report that the image is verified.
 void update_by_probe(const Image& image, const std::string& interface, Consent consent,
                      const std::function<void(const std::string&)>& on_line);
 

@@ -150,7 +150,7 @@ class IdentifyMotor final : public Step {
     return pulse;
   }
 
-  /// Chooses the second voltage. The second voltage aims at twice the current of the later step test, within the
+  /// Chooses the second voltage. The second voltage is chosen for twice the current of the later step test, up to the
   /// allowed current. The estimate uses the first pulse's current and the board's dead-time voltage.
   void choose_voltage() {
     identify(pulses_, period_s, ripple_A);  // throws if the currents do not match the circuit
@@ -166,7 +166,7 @@ class IdentifyMotor final : public Step {
     return static_cast<double>(tuning_->board->bridge_dead_time_part()) * recorder_->values_of(Signal::supply_V).back();
   }
 
-  /// Mean of both pulses over the last millisecond with voltage.
+  /// Mean current of both pulses during their last millisecond with voltage.
   double settled_A() const {
     constexpr std::size_t samples = protocol::servo_rate_Hz / 1000;
     double sum_A = 0.0;

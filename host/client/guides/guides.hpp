@@ -22,7 +22,7 @@
 
 namespace inkwell::guides {
 
-/// Trusted reference when counts and stops disagree.
+/// Reference to trust if encoder counts and stops disagree.
 enum class StopsTrust : std::uint8_t {
   limits,    ///< limits of the arm: counts per turn or inkwell angles are wrong
   encoders,  ///< counts and inkwell: the limits must be changed to the found stops

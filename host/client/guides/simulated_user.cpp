@@ -54,8 +54,8 @@ SimulatedUser::Joints SimulatedUser::inkwell() const {
   return joints;
 }
 
-/// Removes the stylus from the inkwell and moves it through the poses, from the end of the last motion. Returns the
-/// duration.
+/// Removes the stylus from the inkwell. The stylus then moves through the poses, from the end of its last motion.
+/// Returns the duration.
 double SimulatedUser::move(std::vector<Joints> through, double stiffness_N_per_m) {
   through.insert(through.begin(), joints_);
   joints_ = through.back();
@@ -107,7 +107,7 @@ void SimulatedUser::press_button(int button, double at_s) {
   planned_.push_back(
       {at_s, [this, button] {
          control_.buttons(button == 1, button == 2);
-         // A busy computer may be late for the press, and the release must not follow immediately.
+         // The release is timed from the actual press, because a busy computer may press late.
          planned_.push_back({control_.status().board_time_s + press_s, [this] { control_.buttons(false, false); }});
        }});
 }

@@ -68,8 +68,8 @@ struct UserTask {
   bool operator==(const UserTask&) const = default;
 };
 
-/// Call begin once, then advance repeatedly until it returns true. Every failure is a device::Error with cause and
-/// remedy.
+/// Call begin once. Then call advance repeatedly until advance returns true. Every failure is a device::Error with
+/// cause and remedy.
 class Step {
  public:
   virtual ~Step() = default;

@@ -40,8 +40,8 @@ void check_folder(const fs::path& folder, const SocketAddress& where, std::strin
     throw refusal(where, option, "other users may change its folder. Choose a folder that only you can write");
 }
 
-/// Serializes programs that start at the same time. Closing the descriptor releases the lock. A user who locks a shared
-/// folder permanently delays the start by one second.
+/// Serializes programs that start at the same time. Closing the descriptor releases the lock. If a user permanently
+/// locks a shared folder, the start is delayed by one second.
 Descriptor lock_folder(const fs::path& folder) {
   Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   constexpr int tries = 100;
@@ -107,7 +107,7 @@ void Listener::listen_on_path(std::string_view option) {
   const Descriptor folder_lock = lock_folder(folder);
   remove_stale_socket(address_, option);
   const UnixName name(address_.path);
-  // Linux applies the mode of the socket to the file, so other users cannot connect at any moment.
+  // Linux applies the mode of the socket to the file, so other users can never connect.
   struct stat status {};
   if (::fchmod(socket_.number(), S_IRUSR | S_IWUSR) != 0 || ::bind(socket_.number(), name.address(), name.size()) != 0)
     throw refusal(address_, option, std::strerror(errno));

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
 
-/// Target of a symbolic link, because the target must be replaced and not the link.
+/// Follows a symbolic link, because the target must be replaced instead of the link.
 fs::path resolve_links(fs::path path) {
   constexpr int links_maximum = 40;  // limit of Linux
   std::error_code code;
@@ -67,7 +67,7 @@ std::optional<pid_t> owner_of(const Descriptor& file) {
   return on_another_device;
 }
 
-/// Opens the file also without write permission, because a file is replaceable if its folder is writable.
+/// Opens even a file without write permission, because a file is replaceable if its folder is writable.
 Descriptor open_existing(const fs::path& path) {
   constexpr int flags = O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
   Descriptor file(::open(path.c_str(), O_RDWR | flags));

@@ -34,7 +34,7 @@ struct Range {
   std::size_t begin, end;
 };
 
-/// Whether each sample is drawn at its time. Samples with a large step need not be evenly spaced.
+/// True if each sample is drawn as one point at its time. Samples of a black box need not be evenly spaced.
 bool has_point_each(const Recording& recording, Range shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
@@ -88,7 +88,8 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
     }
     return data;
   }
-  // With few points, each point is one sample. The half period prevents rounding from moving a sample to its neighbor.
+  // If there are few samples, each sample is one point. The half period prevents a rounding error from moving a sample
+  // into the next point.
   const double half_period_s = 0.5 / protocol::servo_rate_Hz;
   const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
   std::size_t begin = shown.begin;
@@ -186,7 +187,7 @@ double right_edge(const Recording& recording, const Overlay* over, const std::ve
   return 1 - std::min(names_parts_maximum, names_pixels / width_pixels);
 }
 
-/// Command for tick labels at round steps with readable spacing. The default of gnuplot is up to twice as many labels.
+/// Command for tick labels at round steps with readable spacing. By default, gnuplot draws up to twice as many labels.
 std::string tics_of(const FigurePane& pane, const FigureData& data) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < data.names.size(); ++i) {

@@ -48,9 +48,9 @@ class QuietHdf5 {
 };
 
 /// Access list that disables the library's file lock, unless the environment variable HDF5_USE_FILE_LOCKING enables it.
-/// Child processes inherit this lock until they exit, and no program could open the recording during that time. Two
-/// recorders cannot use one file, because its name must be new. Other programs are not prevented from writing into an
-/// unfinished recording.
+/// Child processes would inherit this lock until they exit, and no program could then open the recording. Two recorders
+/// cannot use one file, because its name must be new. Other programs are not prevented from writing into an unfinished
+/// recording.
 Handle file_access();
 
 /// Fixed-length UTF-8 text.

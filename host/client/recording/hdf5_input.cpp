@@ -75,7 +75,7 @@ void Hdf5Input::fail(const std::string& what) const {
 
 bool Hdf5Input::has(const std::string& path) const { return H5Lexists(file_.id(), path.c_str(), H5P_DEFAULT) > 0; }
 
-/// Refuses links of other kinds, which lead to another file or to no object.
+/// Accepts only hard links, because other links lead to another file or to no object.
 void Hdf5Input::check_is_here(const std::string& path) const {
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
     const std::string part = path.substr(0, end);

@@ -178,7 +178,7 @@ Recording read(const std::filesystem::path& file) {
   make_plain(recording);
   if (!recording.periods.empty())
     for (Mark& mark : recording.marks) mark.period = period_after(recording.periods.front(), mark.period);
-  // Events of the device arrive shortly after the user's notes.
+  // Sorts the marks by time, because events of the device arrive later than notes of the user.
   std::ranges::stable_sort(recording.marks, {}, &Mark::period);
   recording.name = protocol::plain_text(file.stem().string());
   return recording;

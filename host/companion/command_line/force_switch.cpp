@@ -61,7 +61,7 @@ std::string what_keeps_it_off(const Pose& pose) {
 
 Pose switch_force_off(device::Device& device) {
   device.switch_force_off();
-  // The queue may still contain poses with force.
+  // The queue may still contain poses from before the force was switched off.
   Pose pose = next_pose(device);
   const std::int64_t begin_periods = pose.time_periods;
   while (protocol::force_is_on(pose.state) && pose.time_periods - begin_periods < patience_periods)

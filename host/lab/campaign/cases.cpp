@@ -33,7 +33,7 @@ constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};
 
-/// Tested in addition to the amount in the table or in case_faults().
+/// These amounts are tested in addition to the amounts in the table and in case_faults().
 constexpr struct {
   InjectedFault fault;
   double amount;
@@ -160,7 +160,8 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   const auto place = protocol::info(*fault.fault).place;
   if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // Listed wires have the index [1], and touching neighbors also the index [2]. All indices are shifted cyclically.
+  // A listed wire has the index [1], and a listed pair of adjacent wires also has the index [2]. All indices are
+  // shifted cyclically.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
     char& index = fault.of[at + 1];
     index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);

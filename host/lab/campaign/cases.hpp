@@ -80,14 +80,14 @@ struct Case {
 /// Returns the control case, then the faults, then the other events. Faults of three equivalent parts are listed for
 /// motor 2, which carries the load at the wall.
 std::vector<CaseFault> case_faults();
-/// The same fault at another of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or gimbal
-/// potentiometer. Faults of single parts are returned unchanged.
+/// Returns the same fault at another one of three equivalent parts (1 to 3): motor, leg, encoder, current sensor, or
+/// gimbal potentiometer. Faults of single parts are returned unchanged.
 CaseFault at_another(CaseFault fault, unsigned number);
 bool is_of_three(const CaseFault& fault);
-/// Each listed fault in each situation at each instant. After these, the faults of the first and third equivalent parts
-/// at one instant.
+/// Lists each fault in each situation at each instant. The faults of the first and third equivalent parts follow, at
+/// one instant each.
 std::vector<Case> all_cases();
-/// Listed name of a fault at another equivalent part; other names are returned unchanged.
+/// Maps the name of a fault at any equivalent part to the name in case_faults().
 std::string listed_name(const std::string& name);
 
 }  // namespace inkwell::campaign

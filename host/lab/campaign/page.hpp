@@ -9,7 +9,7 @@
 
 namespace inkwell::campaign {
 
-/// Summary of the cases of a fault in a situation: their worst values.
+/// Worst values of all cases of one fault in one situation.
 struct Summary {
   unsigned cases = 0;       ///< number of completed cases
   unsigned detected = 0;    ///< a fault was reported, or the board restarted; switching the bridges off alone does not

@@ -12,7 +12,7 @@
 
 namespace inkwell::campaign {
 
-/// A share above the force limit that noise may cause.
+/// Noise may raise the measured force to this multiple of the force limit.
 inline constexpr double tolerated_part_of_limit = 1.05;
 
 /// Worst values of all cases with the force on. The extra energy is listed only where a fault-free run exists for

@@ -12,7 +12,7 @@
 
 namespace inkwell::campaign {
 
-/// Time until the bridges were off, in control periods, or their state.
+/// Time in control periods until the bridges were off, or the state of the bridges.
 std::string off_text(const Summary& summary);
 /// Definitions of the columns.
 std::string columns();

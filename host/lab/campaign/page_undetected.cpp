@@ -17,7 +17,7 @@
 namespace inkwell::campaign {
 namespace {
 
-/// Detections during continued use, of the cases with continued use.
+/// Counts the cases with continued use, and the detections during that use.
 class InUse {
  public:
   /// `healthy`: the fault-free case with the same start, or null.
@@ -53,7 +53,7 @@ class InUse {
   }
 
  private:
-  /// Compares only cases used until the end, because the others had less time.
+  /// Compares only cases with complete use, because the use in all other cases was shorter.
   void compare(const Result& result, const Result* healthy) {
     if (healthy == nullptr || healthy->noticed_in_use_s || !result.energy_in_use_J || !healthy->energy_in_use_J) return;
     const double more_J = *result.energy_in_use_J - *healthy->energy_in_use_J;
@@ -74,8 +74,9 @@ InUse healthy_in_use(const Groups& groups) {
   return healthy;
 }
 
-/// Name of the situation if a completed case satisfies `counts`, otherwise empty. If only some cases satisfy `counts`,
-/// their number follows. If not all equivalent parts are affected, the affected parts follow.
+/// Returns the name of the situation if a completed case satisfies `counts`, and otherwise an empty text. Adds the
+/// number of these cases unless all cases satisfy `counts`. Adds the affected parts unless all equivalent parts are
+/// affected.
 std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
                            bool (*counts)(CaseSituation, const Result&)) {
   const auto* results = find(groups, fault.name(), situation);
@@ -199,7 +200,7 @@ Section off_without_report(const Groups& groups, const std::vector<CaseFault>& f
 }
 
 Section undetected_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  // Grouped by reason, because many faults share few reasons.
+  // The faults are grouped by reason, because many faults share few reasons.
   struct Row {
     std::string_view reason;
     std::string where;

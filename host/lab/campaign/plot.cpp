@@ -32,8 +32,8 @@ std::string line(int x1, int y1, int x2, int y2, std::string_view more) {
   return fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", x1, y1, x2, y2, more);
 }
 
-/// Positions of the bars. Bars of numeric classes nearly touch. A last bar that is not a numeric class follows after a
-/// gap.
+/// Positions of the bars. Bars of numeric classes nearly touch. If the last bar is not a numeric class, a gap precedes
+/// this bar.
 class Layout {
  public:
   explicit Layout(const Histogram& histogram) : histogram_(histogram), gap_(histogram.edges.empty() ? 8 : 2) {}
@@ -59,7 +59,7 @@ class Layout {
 /// Letter widths of a wide sans-serif font.
 constexpr std::size_t title_letter = 8, letter = 7;
 
-/// Number above a bar, or next to the limit line if they would overlap.
+/// The number is above its bar, or next to the limit line if number and line would overlap.
 std::string number_of(const Histogram& histogram, const Layout& layout, std::size_t bar, int y) {
   const std::string digits = std::to_string(histogram.bars[bar].count);
   const int half_width = static_cast<int>(letter * digits.size()) / 2 + 4;

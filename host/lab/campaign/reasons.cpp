@@ -40,7 +40,7 @@ const std::string of_stalled_main_loop = std::to_string(virtual_board::exception
 const std::string of_voltage_detector =
     std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
 
-/// For faults that only accompany another fault, lateness is not judged.
+/// An interrupt that occurs only together with another fault needs no separate detection.
 std::string_view reason_of_exception(std::string_view exception, std::string_view of_control_interrupt) {
   if (exception == of_stalled_main_loop)
     return "This interrupt is requested only to record where the main loop hangs, which would be a second fault.";
@@ -67,7 +67,7 @@ constexpr std::string_view break_of_tim8 =
     "Only the break input of TIM8 reads this pin, and only while the bridges are on. The self-test pulses switch the "
     "bridges on.";
 
-/// Whether the self-test's pulses detect the fault. If such a fault occurs after the pulses, it can stay undetected.
+/// Whether the self-test's pulses detect the fault. A fault that occurs after the pulses can stay undetected.
 bool is_tested_by_pulses(const CaseFault& put_in) {
   switch (*put_in.fault) {
     case InjectedFault::wire_open:

@@ -90,7 +90,7 @@ std::filesystem::path file_of(const std::filesystem::path& directory, unsigned n
 
 void save(const Result& result, const std::filesystem::path& directory) {
   const auto file = file_of(directory, result.number);
-  // Several programs may write to the folder, also from several machines.
+  // Programs on several machines may write to the folder at the same time.
   auto unfinished = file;
   unfinished += fmt::format(".{}.part", ::getpid());
   recording::write_text(unfinished, text_of(result));

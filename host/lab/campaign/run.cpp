@@ -75,7 +75,7 @@ void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation si
   if (situation != CaseSituation::ramping) board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
 
-/// Whether the board is in the state of the situation, for situations named after a state.
+/// True if the board is in the state that the situation requires.
 bool is_there(const BoardRun& board, CaseSituation situation) {
   switch (situation) {
     case CaseSituation::ramping: return board.is(State::ramping);
@@ -346,7 +346,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.paused = true;
   options.seconds = longest_case_s;
   options.brown_out_level = 3;  // setting of a flashed board
-  // Only a fault position that is chosen from the seed differs in each case.
+  // Cases of the same phase have the same seed, unless the seed chooses the address of the fault.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
   options.seed = chooses ? the_case.number : the_case.phase;

@@ -33,7 +33,7 @@ void be_in_use(Bench& bench, bool with_force) {
   bench.pass(bench.random.from(0.0, 0.7));
 }
 
-/// A fault of the program may affect any part of the code or its data.
+/// A corrupted program may affect any part of the code or its data.
 Disturbance disturbance_by(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::program_astray:

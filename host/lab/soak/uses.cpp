@@ -31,7 +31,7 @@ constexpr double fastest_way_m_per_s = 1.0;
 
 double distance_m(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// Moves from point to point at about this speed for the full time, with a call of `each` after every step.
+/// Moves from point to point at about this speed for the full time. Calls `each` after every step.
 void wander(Bench& bench, double time_s, double speed_m_per_s, const std::function<Vector3()>& next_m,
             const std::function<void()>& each = {}) {
   Vector3 here_m = bench.board.true_position_m();

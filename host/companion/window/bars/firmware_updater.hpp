@@ -18,7 +18,7 @@ namespace inkwell::window {
 
 class FirmwareUpdater {
  public:
-  /// `asks`: the board's firmware is newer. A second call of begin() permits the downgrade.
+  /// `awaits_consent`: the board's firmware is newer, and a second call of begin() permits the downgrade.
   enum class Phase : std::uint8_t { idle, runs, awaits_consent, failed, done };
   /// State of the updater during a frame.
   struct Sight {

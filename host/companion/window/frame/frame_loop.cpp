@@ -92,7 +92,7 @@ void FrameLoop::lay_out(Frame& frame) {
   imgui_.end();
 
   const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
-  // Frames below the full rate and frames for screenshots are always antialiased.
+  // At a reduced frame rate, and for screenshots, frames are always antialiased.
   frame.smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed;
   PictureDigest canvas;
   canvas.add(content_.canvas_digest());

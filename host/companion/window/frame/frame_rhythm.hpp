@@ -17,7 +17,7 @@ class FrameRhythm {
   bool is_due(bool something_happened, double now_s) const;
   /// True if the laid-out frame must be drawn.
   bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
-  /// Records the drawing time of a frame below the full rate. Slow drawing reduces the rate of these frames further.
+  /// Records the drawing time of a frame at the reduced rate. Slow drawing reduces this rate further.
   void took(double drawing_s);
   /// True while frames are drawn at the full rate.
   bool is_lively(double now_s) const { return now_s < lively_until_s_; }

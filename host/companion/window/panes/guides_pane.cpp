@@ -217,7 +217,7 @@ void GuidesPane::draw_checks(const Style& style) {
     right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
                0.42f * width);
     if (check.expected.empty()) continue;
-    // The text shows the result in addition to the color.
+    // The text and its color both show the result.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
          fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
   }

@@ -25,7 +25,7 @@ class LineThinning {
     if (std::abs(point.x - before.x) < invisible_pixels && std::abs(point.y - before.y) < invisible_pixels) return;
     if (waits_) {
       const float slope = (point.y - kept_.back().y) / (point.x - kept_.back().x);
-      // Keeps the waiting point if a straight line to the new point would omit a bend.
+      // Keeps the previous point if a straight line to the new point would omit a bend.
       if (!(point.x > waiting_.x && lowest_slope_ <= slope && slope <= highest_slope_)) {
         kept_.push_back(waiting_);
         waits_ = false;

@@ -126,8 +126,8 @@ class Arm {
     throw_what_ended_servo();
     if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
     std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
-    // The new servo waits until its state is stored, so that the new servo does not use the state of the previous
-    // servo.
+    // The lock delays the new servo until the new state is stored. Otherwise, the new servo would use the previous
+    // servo's state.
     const std::lock_guard<std::mutex> lock(opened_->mutex);
     require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
     opened_->servo.swap(state);
