@@ -4,8 +4,7 @@
 // To add a guide:
 // (1) Add a line to INKWELL_GUIDES.
 // (2) Write host/client/guides/NAME_guide.cpp with the plan of the steps and an `Offer` named NAME_guide. Access the
-// device
-//     only through DevicePort.
+//     device only through DevicePort.
 // (3) Add options of the guide to Choices and to the command of its group in host/companion/command_line.
 // (4) Add a test with a simulated arm to tests/host/client/guides. Add a new subcommand to the list in
 //     tests/system/bad_input_test.cpp.

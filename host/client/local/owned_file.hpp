@@ -37,9 +37,8 @@ class OwnedFile {
   /// The content if it has exactly this size, otherwise empty. Also empty if the file is not a regular file.
   std::vector<std::byte> content(std::size_t size) const;
   /// Replaces the content atomically, so that a reader finds the complete old or the complete new content.
-  /// @throws FileInUse if another program has replaced the file, which then does not change. std::system_error if the
-  /// file cannot be
-  ///         written.
+  /// @throws FileInUse if another program has replaced the file, which then does not change.
+  /// @throws std::system_error if the file cannot be written.
   void replace(std::span<const std::byte> content);
 
  private:

@@ -9,8 +9,7 @@
 // To add a kind of phase:
 // (1) Add a row to INKWELL_SOAK_KINDS with the faults that the board may report in this phase.
 // (2) Implement the phase with the functions of Bench and add its case to host/lab/soak/phases.cpp. The compiler
-// reports
-//     a missing case. Only Bench::pass() advances board time, because it also checks the board.
+//     reports a missing case. Only Bench::pass() advances board time, because it also checks the board.
 
 #include <array>
 #include <cstddef>

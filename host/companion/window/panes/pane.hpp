@@ -3,8 +3,7 @@
 
 // To add a pane:
 // (1) Write host/companion/window/panes/NAME_pane.cpp. The file defines a class derived from Pane and the function
-// NAME_pane(),
-//     which creates the pane. The function title() returns the text of the tab.
+//     NAME_pane(), which creates the pane. The function title() returns the text of the tab.
 // (2) Add the line PANE(NAME_pane) to host/companion/window/panes/registry.cpp.
 // (3) Return the displayed signals from shown_signals(). The function follow() receives the samples of all streamed
 //     signals, in the order of ScopeSamples::signals. Override stream() only if the pane needs the stream exclusively.
