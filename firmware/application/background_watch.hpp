@@ -1,6 +1,6 @@
-// Checks in the main loop: memory, supplies and wires. The control interrupt has no spare cycles for these checks. A
-// delay of two control periods is permitted. The CPU supply needs a faster reaction and has a separate interrupt. The
-// main loop only polls whether the CPU supply is still low.
+// Checks in the main loop: memory, supplies and wires. The control interrupt has no spare cycles for these checks. The
+// results of these checks may be two control periods late. The CPU supply needs a faster reaction and has a separate
+// interrupt. The main loop only polls whether the CPU supply is still low.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace inkwell::application {
 class BackgroundWatch {
  public:
   /// Checks the whole memory. Call this function after the drivers have started and before a motor can be driven.
-  /// Returns false if a bit is wrong.
+  /// Returns false if a memory bit is wrong.
   bool start();
 
   /// Call this function in each round of the main loop, at most once per control period. The control interrupt reads

@@ -75,7 +75,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t last_round_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - last_round_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  // The hang record is requested once per stall. During start-up the record is not requested.
+  // The hang record is requested once per stall of the main loop, but not during start-up.
   if (missed_periods == main_loop_stalled_periods + 1 && last_round_periods != first_period) [[unlikely]]
     drivers::CallAfterInterrupts::request();  // calls hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | condition(Fault::main_loop_stalled, main_loop_stalls) |
@@ -109,8 +109,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   drivers::finish_stores();
 }
 
-// The supply interrupt and the control interrupt do not preempt each other. The next control period switches the
-// bridges off. The main loop also polls the CPU supply and reports the fault while the supply is low.
+// The supply interrupt and the control interrupt do not preempt each other. The bridges are switched off in the next
+// control period. The main loop also polls the CPU supply and reports the fault while the supply is low.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
   drivers::finish_stores();

@@ -124,7 +124,7 @@ extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame
 }
 
 /// The control interrupt requests this exception and can preempt this handler. The handler itself preempts only the
-/// main loop, so the stack contains the state of the main loop. If possible, the main loop continues afterwards.
+/// main loop, so the stack contains the state of the main loop. The main loop continues after the handler, if possible.
 extern "C" [[gnu::naked]] void hang_handler() {
   asm volatile(
       "mov r0, sp \n"

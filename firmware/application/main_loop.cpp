@@ -64,7 +64,7 @@ void feed_watchdogs() {
   static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
-  // Half of the bound is used, because the control interrupt may have advanced since `periods` was read.
+  // The bound is halved, because the control interrupt may have advanced `completed_periods` after the read.
   const bool may_be_noted = periods - main_loop_periods.load() > main_loop_stalled_periods / 2;
   main_loop_periods.store(periods);
   if (may_be_noted) crash_record.erase();  // the main loop runs again, and no hang is recorded after the store

@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-/// Places a zero-initialized object, or an object with a constructor that runs at start-up, in the core-coupled memory.
+/// Places an object in the core-coupled memory. The object is zero-initialized or has a constructor, which runs at
+/// start-up.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
 /// Places an object without a constructor in the part of the main memory that start-up does not clear. The object

@@ -12,7 +12,7 @@ namespace inkwell::application {
 /// The settings of the control interrupt and the parameters are compared with their checksums.
 class MemoryCheck {
  public:
-  /// Runs the whole first round, because no motor may be driven if the memory is damaged. Returns false if a bit is
+  /// Runs the whole first round, because no motor may be driven with damaged memory. Returns false if a memory bit is
   /// wrong.
   [[nodiscard]] bool start();
 

@@ -52,8 +52,8 @@ static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
                   is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// Slow channels in conversion order. The voltages of the supply and of a motor current are both near mid-range, so the
-/// supply is the last channel.
+/// Slow channels in conversion order. The supply is the last channel, because a motor current is sampled next, and both
+/// voltages are near mid-range.
 struct SlowChannel {
   std::uint32_t channel;
   Sampling sampling;

@@ -7,7 +7,7 @@
 //        |  /  \  /  \  /  \   |
 //   0    | /    \/    \/    \  |
 //          |                 |
-//          update            update
+//          update            update.
 //
 // At the update, the preloaded compare values of all six legs become active, and the ADCs sample.
 //
@@ -31,7 +31,7 @@ class Bridges {
       pin(board::facts.bridges[1].leg_b), pin(board::facts.bridges[2].leg_b), pin(board::facts.bridge_fault_tim1),
       pin(board::facts.bridge_fault_tim8)};
 
-  /// Sets up both timers and starts them with all outputs off. From then on the update triggers the ADCs.
+  /// Sets up both timers and starts them with all outputs off. After this call the update triggers the ADCs.
   void start();
 
   /// Preloads zero voltage for all motors. The motors get zero voltage if the control interrupt does not finish in

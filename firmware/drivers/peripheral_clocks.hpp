@@ -33,7 +33,8 @@ template <class Peripheral>
 void start_clock() {
   using Enable = typename ClockOf<Peripheral>::Enable;
   Enable::Owner::modify(Enable(1));
-  // The read delays the first access (erratum "Delay after an RCC peripheral clock enabling").
+  // Reading the register delays the first access to the peripheral (erratum "Delay after an RCC peripheral clock
+  // enabling").
   static_cast<void>(Enable::Owner::read());
 }
 

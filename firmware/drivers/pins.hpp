@@ -55,7 +55,7 @@ void configure(Mode mode, Pull pull, Speed speed) {
 inline void start_pins() {
   using Enable = registers::RCC::AHB1ENR;
   Enable::modify(Enable::GPIOAEN(1), Enable::GPIOBEN(1), Enable::GPIOCEN(1));
-  // The read delays the first access (erratum "Delay after an RCC peripheral clock enabling").
+  // Reading the register delays the first access to the port (erratum "Delay after an RCC peripheral clock enabling").
   static_cast<void>(Enable::read());
 }
 

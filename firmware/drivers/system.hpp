@@ -19,7 +19,8 @@ struct ResetCause {
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 
-/// Reads and clears the flags of the last reset, so that the next reset is reported alone.
+/// Reads and clears the flags of the last reset. The flags after the next reset therefore show only the cause of
+/// that reset.
 inline ResetCause take_reset_cause() {
   const ResetCause cause{registers::RCC::CSR::read()};
   registers::RCC::CSR::modify(registers::RCC::CSR::RMVF(1));

@@ -27,7 +27,7 @@ class DriverClaim {
   void pass_time(std::uint32_t now_periods);
   /// Records a sign of life of the driver.
   void renew(std::uint32_t now_periods) { heard_at_periods_ = now_periods; }
-  /// True if the claim has expired. Call this function more often than the period counter wraps.
+  /// True if the claim has expired. Call this function at least once per wrap of the period counter.
   bool has_expired(std::uint32_t now_periods) const;
   /// Ends the claim. No program is the driver after this call.
   void end();

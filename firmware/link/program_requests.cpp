@@ -26,7 +26,7 @@ Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coord
 
 constexpr std::size_t longest_output_report = protocol::longest_report(protocol::ReportKind::output);
 
-/// The square of this force is finite in the following computations.
+/// Limit for force components, whose squares then stay finite.
 constexpr float longest_force_N = 1e6f;
 
 Vector3 shortened(const Vector3& force_N) {

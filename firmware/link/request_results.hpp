@@ -10,7 +10,7 @@
 
 namespace inkwell::link {
 
-/// Stores the newest requests with a ticket. Only the main loop uses this class.
+/// Stores the newest requests that have a ticket. Only the main loop uses this class.
 class RequestResults {
  public:
   explicit RequestResults(const CommandQueue& queue) : queue_(queue) {}

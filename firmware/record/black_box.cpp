@@ -37,7 +37,7 @@ std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
 
 bool is_intact(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
 
-/// Number of the first row from the fault on. Rows before the fault have smaller numbers.
+/// Number of the first row that is not before the fault. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
 
 /// Returns the number of the next row before the fault. After 24 days without a fault the row number decreases by a

@@ -57,7 +57,7 @@ class BlackBox {
         followed_(samples.recorded()) {}
 
   /// Reads the rows of the previous run. Call this function once, before the control interrupt starts. `raised` is the
-  /// start-up fault for the end of the previous run, or `none`. `crash` is the crash record of that run.
+  /// fault that start-up raises for the end of the previous run, or `none`. `crash` is the crash record of that run.
   void start(protocol::Fault raised, const protocol::CrashFacts& crash);
 
   /// Records the samples since the last call. Call this function in every pass of the main loop.

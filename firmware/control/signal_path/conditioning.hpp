@@ -73,7 +73,7 @@ void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
 /// Encoder counts while the stylus is in the inkwell. Joint angles are computed relative to these counts.
 struct InkwellReference {
   static constexpr std::uint32_t still_periods = periods_in(0.1f);
-  /// Largest encoder dither of a stationary arm.
+  /// Largest change of the encoder count at a stationary arm.
   static constexpr std::int32_t still_counts = 1;
   /// Beyond this distance from the inkwell, the stylus cannot close the inkwell switch. The switch closes shortly
   /// before the stylus is at rest. When a hand pulls the stylus out, debouncing reports the open switch 5 ms late.

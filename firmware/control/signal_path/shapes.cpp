@@ -28,7 +28,7 @@ Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float dep
     return pushed_N;
   }
   const Vector3 away_m = grip.point_m - probe_m;
-  // Spring and damper along the surface. The normal component of the spring and damper force is removed below.
+  // Spring and damper along the surface. The normal component of this force is then removed.
   const Vector3 pull_N = surface.stiffness_N_per_m * away_m - surface.damping_Ns_per_m * velocity_m_per_s;
   const Vector3 held_N = pull_N - dot(pull_N, normal) * normal;
   const float held_squared_N2 = dot(held_N, held_N);

@@ -13,7 +13,8 @@
 
 namespace inkwell::control {
 
-/// Pulse of `amplitude` for `pulse_periods`. A rest of the same duration follows, so that recordings include the decay.
+/// Pulse with the height `amplitude` and the duration `pulse_periods`. A rest of the same duration follows, so that
+/// recordings include the decay.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
@@ -41,7 +42,7 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
   return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
 }
 
-/// Current of a motor, 0..2, for a force of `force_limit_N` on the hand. The hand fixes the probe in this pose. The
+/// Current of motor 0, 1 or 2 for a force of `force_limit_N` on the hand. The hand fixes the probe in this pose. The
 /// force of a single motor is perpendicular to the probe motions of the other two joints. The force is the torque
 /// divided by the component of the joint's Jacobian column in this perpendicular direction. Returns 0 if the
 /// perpendicular direction is undefined in this pose.

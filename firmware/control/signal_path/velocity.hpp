@@ -33,8 +33,8 @@ struct EncoderEdge {
 /// State of the speed estimate of one joint.
 struct SpeedEstimate {
   static constexpr std::uint32_t capacity = 6;
-  /// An edge is not stored if it is closer than this to the last stored edge. Six stored edges therefore cover 3 ms
-  /// even at a speed at which every period has an edge.
+  /// An edge is stored only if at least this time has passed since the last stored edge. Six stored edges therefore
+  /// cover 3 ms even at a speed at which every period has an edge.
   static constexpr std::uint32_t spacing_periods = 11;
   /// The time of an edge has an uncertainty of one period, so the speed error of a window of this length is 1/64.
   static constexpr std::uint32_t enough_periods = 64;

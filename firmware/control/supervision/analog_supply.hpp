@@ -36,7 +36,7 @@ struct AnalogSupply {
                                  maximum_counts = counts_at_nominal(1.24f);
   /// Largest error of the manufacturer's measurement: 1 %.
   static constexpr std::uint16_t calibration_error_counts = typical_counts / 100;
-  /// Number of tolerated consecutive wrong readings. A current loop does not follow a tolerated disturbance.
+  /// Number of tolerated consecutive wrong readings. A current loop is too slow to follow a tolerated disturbance.
   static constexpr std::uint32_t tolerated_readings = 12;
 
   std::int32_t expected_counts = typical_counts;  ///< reading of VREFINT at nominal VDDA

@@ -8,7 +8,7 @@
 // large.
 //
 // Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
-// of a healthy motor are integrated over time. The result is a flux. The equation neglects the inductance. The
+// of a healthy motor are integrated over time. This integral is a flux. The equation neglects the inductance. The
 // inductance adds at most L di to this flux. A large difference is detected sooner than a small difference.
 #pragma once
 

@@ -93,9 +93,9 @@ void OtgFs::follow_cable() {
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
 }
 
-// On a bus reset the core itself only deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old
-// packets may be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. The function begin_receive()
-// supports this state.
+// On a bus reset the core deactivates the endpoints (USBAEP). The endpoints stay enabled (EPENA), and old packets may
+// be in the receive FIFO. An OUT endpoint may stay enabled with NAK set. The function begin_receive() supports this
+// state.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
