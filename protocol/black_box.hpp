@@ -18,11 +18,11 @@ namespace inkwell::protocol {
 
 /// Number of control periods between consecutive rows, except before the row of the fault.
 inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
-/// 100 rows (100 ms) before the fault, and 101 rows from the fault's row on.
+/// The black box has 100 rows (100 ms) before the fault, and 101 rows from the fault on.
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
 inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + black_box_rows_from_fault;
 
-/// Exception numbers in a crash record for a failed crystal (NMI) and for a stalled main loop (PendSV).
+/// In a crash record, these exception numbers stand for a failed crystal (NMI) and a stalled main loop (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
 /// Crash record of a CPU fault (ARMv7-M, "Fault handling") or a stalled main loop. All values are 0 if there was no CPU
@@ -55,7 +55,7 @@ struct BlackBoxReport {
   std::uint16_t rows_before;    ///< number of rows before the fault; these rows come first
   std::uint16_t row_count;      ///< 0..black_box_rows_maximum
   std::uint32_t fault_periods;  ///< control period of the fault, or of the last row before a restart
-  /// Number of crashes with a restart since the fault. Later crashes do not change the rows.
+  /// Number of restarts that crashes have caused since the fault. Later crashes do not change the rows.
   std::uint32_t later_crashes;
   CrashFacts crash;  ///< crash record of the newest restart after a crash
 };

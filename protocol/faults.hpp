@@ -2,18 +2,17 @@
 #pragma once
 
 // To add a fault:
-// 1. Append a row with the next code to INKWELL_FAULTS. For a new placeholder in braces, extend with_figures() in
-//    host/client/device/fault_text.cpp.
-// 2. Add the condition to firmware/control/controller.cpp if the fault must be raised in the same control period. If a
-//    delay of about 0.15 ms is acceptable, use firmware/application/background_watch.cpp instead. The file
-//    firmware/application/control_interrupt.cpp raises the faults for a late interrupt, a stalled main loop and a lost
-//    USB connection.
-// 3. Add a row to condition_table in protocol/supervision.hpp and a separate row to
-//    tests/firmware/control/supervision/supervisor_test.cpp. The row of condition_table sets the monitored states, the
-//    clearing, the motor switch-off and the loss of the reference.
-// 4. Add an enumerator to host/bindings/library/include/inkwell/inkwell.h and a line to
-// host/bindings/library/c_codes.cpp. The compiler
-//    reports a missing line.
+// (1) Append a row with the next code to INKWELL_FAULTS. For a new placeholder in braces, extend with_figures() in
+//     host/client/device/fault_text.cpp.
+// (2) Add the condition to firmware/control/controller.cpp if the fault must be raised in the same control period. If a
+//     delay of about 0.15 ms is acceptable, use firmware/application/background_watch.cpp instead. The file
+//     firmware/application/control_interrupt.cpp raises the faults for a late interrupt, a stalled main loop and a lost
+//     USB connection.
+// (3) Add a row to condition_table in protocol/supervision.hpp and a separate row to
+//     tests/firmware/control/supervision/supervisor_test.cpp. The row of condition_table sets the monitored states, the
+//     clearing, the motor switch-off and the loss of the reference.
+// (4) Add an enumerator to host/bindings/library/include/inkwell/inkwell.h and a line to
+//     host/bindings/library/c_codes.cpp. The compiler reports a missing line.
 
 #include <array>
 #include <cstddef>
@@ -116,7 +115,7 @@ inline constexpr auto refusal_table = std::to_array<CodeInfo>({
 #undef X
 });
 
-/// The number after the last code.
+/// One more than the last code.
 inline constexpr std::size_t fault_code_end = std::size_t{fault_table.back().code} + 1;
 
 inline constexpr CodeInfo unknown_code{0xFFFF, "unknown", "The device sent a code that is unknown to this companion.",

@@ -54,7 +54,7 @@ constexpr std::string_view wanted_place(InjectionPlace place) {
   return "";
 }
 
-/// Returns the help text of a row with values instead of names in braces.
+/// Returns the help text of a row, in which values replace the names in braces.
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
   const auto place = row.help.find(figure);

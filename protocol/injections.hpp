@@ -6,13 +6,13 @@
 #pragma once
 
 // To add an injected fault:
-// 1. Add a row below the last row of its part.
-// 2. Implement the fault in boards/virtual/injection/injector.cpp, with a class of the plant or a function of the
-//    chip.
-// 3. Add a row to docs/virtual-board.md, in the order of this table.
-// 4. In host/lab/campaign/reasons.cpp, state why the fault may stay undetected. The compiler reports a missing case.
-// 5. For a new kind of place, add a value to InjectionPlace, its parser to boards/virtual/injection/injection.cpp
-//    and its names to protocol/injection_request.hpp.
+// (1) Add a row below the last row of its part.
+// (2) Implement the fault in boards/virtual/injection/injector.cpp, with a class of the plant or a function of the
+//     chip.
+// (3) Add a row to docs/virtual-board.md, in the order of this table.
+// (4) In host/lab/campaign/reasons.cpp, state why the fault may stay undetected. The compiler reports a missing case.
+// (5) For a new kind of place, add a value to InjectionPlace, its parser to boards/virtual/injection/injection.cpp and
+//     its names to protocol/injection_request.hpp.
 //
 // A new row changes the numbers of all later campaign cases. Help, control socket, command line, window and campaign
 // use this table.

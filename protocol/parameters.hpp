@@ -12,17 +12,17 @@
 #pragma once
 
 // To add a parameter:
-// 1. Add a row with a new id below the last row of its group. The group "arm" is for parameters that must not
-//    change while the force is on (needs_force_off()).
-// 2. For a parameter of the arm, set the default to arm_defaults::NAME and add the key NAME to each
-//    boards/arms/*.toml.
-// 3. If one parameter must be above another parameter, add the pair to parameter_bounds.
-// 4. For a choice other than no and yes, add the names to choice_names() in
-// host/companion/window/panes/tuning_pane.cpp.
-// 5. Add a member to control::Settings (settings.hpp) and compute the member in
-//    firmware/control/settings.cpp. control::Controller passes the settings to the signal path.
-// 6. Choose a default that does not change the force, so that existing tests pass unchanged.
-// 7. Build `board` and `pc-tests`. PC programs refuse a firmware that was built with another table.
+// (1) Add a row with a new id below the last row of its group. The group "arm" is for parameters that must not change
+//     while the force is on (needs_force_off()).
+// (2) For a parameter of the arm, set the default to arm_defaults::NAME and add the key NAME to each
+//     boards/arms/*.toml.
+// (3) If one parameter must be above another parameter, add the pair to parameter_bounds.
+// (4) For a choice other than no and yes, add the names to choice_names() in
+//     host/companion/window/panes/tuning_pane.cpp.
+// (5) Add a member to control::Settings (settings.hpp) and compute the member in firmware/control/settings.cpp.
+//     control::Controller passes the settings to the signal path.
+// (6) Choose a default that does not change the force, so that existing tests pass unchanged.
+// (7) Build `board` and `pc-tests`. PC programs refuse a firmware that was built with another table.
 //
 // Sliders, command line, files and help texts use this table.
 

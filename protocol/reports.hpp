@@ -240,7 +240,7 @@ struct CommandReport {
 
 #pragma pack(pop)
 
-/// Longest interval between two force reports over which the board interpolates.
+/// The board interpolates between two force reports over at most this interval.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 
 /// Output report, at most one per millisecond: the force that a program requests at the probe. The board interpolates
@@ -263,14 +263,14 @@ struct ForceReport {
 /// may have moved since that pose.
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
-/// Heat above which the current limit of a motor falls. At heat 1 the limit equals the continuous current.
+/// Above this heat, the current limit of a motor falls. At heat 1 the limit equals the continuous current.
 inline constexpr float motor_heat_limits_from = 0.85f;
-/// Heat at which a fault switches the force off. The reduced current limit normally prevents this heat.
+/// At this heat, a fault switches the force off. The reduced current limit normally prevents this heat.
 inline constexpr float motor_heat_fault = 1.25f;
 
-/// Fraction of speed_limit_m_per_s above which the force component along the motion is reduced.
+/// Above this fraction of speed_limit_m_per_s, the force component along the motion is reduced.
 inline constexpr float speed_limits_from = 0.8f;
-/// Fraction of speed_limit_m_per_s above which the force component along the motion is zero.
+/// Above this fraction of speed_limit_m_per_s, the force component along the motion is zero.
 inline constexpr float speed_stops_driving_from = 0.9f;
 
 /// Longest board name. A board has the name of its folder in boards/.

@@ -7,10 +7,10 @@
 #pragma once
 
 // To add a signal:
-// 1. Append a row with the next id. Signals of motors 1 to 3 or of x, y and z need matching names, units and wire
-//    types. EachAxis compares the rows at compile time.
-// 2. Write the value in Controller::write_signals() (firmware/control/controller.cpp).
-// 3. To record the signal by default, add the signal to standard_signals() in host/client/recording/signals.cpp.
+// (1) Append a row with the next id. Signals of motors 1 to 3 or of x, y and z need matching names, units and wire
+//     types. EachAxis compares the rows at compile time.
+// (2) Write the value in Controller::write_signals() (firmware/control/controller.cpp).
+// (3) To record the signal by default, add the signal to standard_signals() in host/client/recording/signals.cpp.
 //
 // Each signal needs about 800 bytes of RAM in the black box. The linker reports an overflow. `inkwell signals`, the
 // scope, recordings and plots use this table.

@@ -97,8 +97,7 @@ INKWELL_STORE_CONTENTS(X)
 #undef X
 }  // namespace detail
 
-/// True if the board may store or erase parameters. The force must be off, and only a further command may switch the
-/// force on.
+/// True if the board may store or erase parameters, because the force is off and only a command can switch it on.
 constexpr bool may_store(State state) {
   return state == State::unreferenced || state == State::ready || state == State::fault;
 }

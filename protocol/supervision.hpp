@@ -214,8 +214,8 @@ struct Condition {
   bool voids_reference = false;
 };
 
-/// If several faults occur in one period, the board reports the fault with the first row in this table. The first fault
-/// in the table explains the other faults. The reported fault remains until it is cleared.
+/// If several faults occur in one period, the board reports the fault with the first row in this table. In the
+/// table, a fault precedes the faults that it explains. The reported fault remains until it is cleared.
 inline constexpr auto condition_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};
