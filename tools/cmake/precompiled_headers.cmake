@@ -34,8 +34,8 @@ inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
 # CLI11 generates code in every file that includes its headers, so only the commands include CLI11.
 inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
-# The optimization of these headers takes longest, and their code is not time-critical. All targets with these
-# precompiled headers must use the same option.
+# Optimizing these headers takes longest, and their code is not time-critical. All targets with these precompiled
+# headers must use the same option.
 foreach(target inkwell_command_headers inkwell_command_line inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()

@@ -18,7 +18,7 @@ function(inkwell_target_lines directory result)
         set(${property} "")
       endif()
     endforeach()
-    # The interface repeats the private libraries of a static library, only for the linker.
+    # The interface of a static library repeats its private libraries for the linker.
     list(APPEND LINK_LIBRARIES ${INTERFACE_LINK_LIBRARIES})
     list(FILTER LINK_LIBRARIES EXCLUDE REGEX "LINK_ONLY")
     list(REMOVE_DUPLICATES LINK_LIBRARIES)

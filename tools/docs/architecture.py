@@ -134,7 +134,8 @@ def read_tree(repository: pathlib.Path, graphs: list[pathlib.Path]) -> Tree:
     published = {header.relative_to(repository) for target in inside for header in target.published}
     with_private_headers = {str(header.parent) for header in published}
 
-    # Files of users include these by other names than the path: <inkwell/inkwell.h>, <control/force_law.hpp>.
+    # User files include these headers with names that differ from their paths: <inkwell/inkwell.h>,
+    # <control/force_law.hpp>.
     installed = {str(header.relative_to(directory)): header
                  for root in ROOTS for directory in (repository / root).rglob("include") for header in directory.rglob("*.h*")}
 
