@@ -33,7 +33,7 @@ struct Moment {
   Command command;
 };
 
-/// Capabilities and their values when a device is opened.
+/// Capabilities, and their initial values for an opened device.
 #define INKWELL_HD_CAPABILITIES(X)                                  \
   X(0x4000, force_output, "HD_FORCE_OUTPUT", false)                 \
   X(0x4001, max_force_clamping, "HD_MAX_FORCE_CLAMPING", true)      \

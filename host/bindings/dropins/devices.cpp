@@ -27,7 +27,7 @@ inkwell_address_kind kind_of(const std::string& address) {
   return kind;
 }
 
-/// True if each opening of the address starts a separate board.
+/// True if the address starts a separate board each time it is opened.
 bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
 thread_local Handle current_here = invalid_handle;

@@ -163,7 +163,7 @@ Phantom* reach(int number) {
   return &phantom;
 }
 
-/// Starts the servo; false if the device is not open.
+/// Starts the servo. Returns false if the device is not open.
 bool is_open(int number) {
   const std::lock_guard opening(servo().opening);
   const auto found = servo().phantoms.find(number);

@@ -12,8 +12,8 @@ using namespace inkwell::dropins;
 
 namespace {
 
-/// The table row for a call with this type, and the current device if the row needs a device. Raises an error for an
-/// invalid call.
+/// Finds the table row for a call with this type, and the current device if the row needs a device. Raises an error for
+/// an invalid call.
 struct Query {
   const Parameter* row = nullptr;
   Device* device = nullptr;

@@ -37,7 +37,7 @@ class Scheduler {
   /// False if no device can send poses at this rate.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
-  /// Rate of the last tick in the time of the pacing device, or the set rate if the measured rate is unknown.
+  /// Rate of the last tick, measured in the time of the pacing device. If this rate is unknown, returns the set rate.
   double measured_rate_Hz() const;
 
   /// Returns invalid_handle if the list is full. In the servo thread, the callback is called once before it is listed.

@@ -25,7 +25,7 @@ constexpr double silence_s = 2.0;
 
 std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
 
-/// Converts the fault information of a library pose.
+/// Extracts the fault information from a library pose.
 device::ShownFault shown_fault(const inkwell_pose& pose) {
   const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
                      : pose.state == INKWELL_STARTING ? protocol::State::testing

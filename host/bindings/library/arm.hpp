@@ -1,7 +1,7 @@
 // An open arm, which consists of parts. Each part owns its data, and any thread may call any part.
 //
 //   Part         (thread)                    data.
-//   PoseFeed     (no thread)                 the newest pose, and the losses of poses, link and force.
+//   PoseFeed     (no thread)                 the newest pose, and lost poses, links and forces.
 //   Turns        (no thread)                 the turns of all virtual boards of the program.
 //   Connection   (connects, reads poses)     the device, the started board, and the geometry of the arm.
 //   ForceOutput  (sends forces)              the newest force and the force mode.

@@ -24,8 +24,8 @@ struct inkwell_arm {
 
 namespace inkwell::library {
 
-/// The result for the current exception. Stores the sentence of the exception as inkwell_error_text() of the calling
-/// thread.
+/// Returns the result code for the exception in progress. Stores the sentence of the exception as inkwell_error_text()
+/// of the calling thread.
 inkwell_result result_of_exception() noexcept;
 
 template <class Action>

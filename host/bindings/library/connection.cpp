@@ -97,8 +97,8 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
     }
   }
   {
-    // The virtual board exits with this thread, which created it. Other threads may still use the device until `ends_`
-    // is set.
+    // The virtual board exits when this thread exits, because this thread created it. Other threads may still use the
+    // device until `ends_` is set.
     std::unique_lock lock(end_mutex_);
     end_changed_.wait(lock, [this] { return ends_; });
   }

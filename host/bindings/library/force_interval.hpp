@@ -12,8 +12,9 @@ namespace inkwell::library {
 /// threads, and a virtual board runs in simulated time.
 class ForceInterval {
  public:
-  /// Usual interval between the program's forces in ms: the median of five intervals. One late force therefore has no
-  /// effect. `pose_sequence` is the sequence of the newest pose that the program had read when it computed this force.
+  /// Usual interval between the program's forces in ms: the median of five intervals. A single late force therefore
+  /// does not change the median. `pose_sequence` is the sequence of the newest pose that the program had read when it
+  /// computed this force.
   int next(std::uint32_t pose_sequence);
 
  private:

@@ -69,7 +69,7 @@ class PoseFeed final : public device::LockStep {
   void publish(const inkwell_pose& pose, bool is_referenced);
   /// Reports a loss. `cause` is a sentence with the remedy; the newest cause replaces earlier causes.
   void lose(Loss kind, const std::string& cause);
-  /// This program has lost its claim of the arm.
+  /// This program has lost its claim to the arm.
   void lose_claim(const std::string& cause);
 
   // ---- poses ---------------------------------------------------------------------------------------------------
@@ -93,9 +93,9 @@ class PoseFeed final : public device::LockStep {
   /// Throws Disconnected while the link is lost.
   void require_link() const;
 
-  /// Waits until `condition(pose, loss)` is true, this board time has passed, or no pose has arrived for the same wall
-  /// time. Returns the newest pose. Throws Disconnected while the link is lost, but not during a silence. `answer`
-  /// states how the calling thread answers the pose.
+  /// Waits until `condition(pose, loss)` is true. Also returns after this board time, or after the same wall time
+  /// without a pose. Returns the newest pose. Throws Disconnected while the link is lost, but not during a silence.
+  /// `answer` states how the calling thread answers the pose.
   template <class Condition>
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {

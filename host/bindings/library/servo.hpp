@@ -17,7 +17,7 @@ namespace inkwell::library {
 
 class Servo {
  public:
-  /// Writes the force on the hand, which is preset to 0. Returning false or throwing stops the servo.
+  /// Writes the force on the hand. The force is preset to 0. The servo stops if the function returns false or throws.
   using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
   /// Receives each force, and the sequence of the pose to which the force belongs. An exception of this function stops
   /// the servo.
@@ -36,7 +36,7 @@ class Servo {
   void stop();
   bool is_running() const;
   /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. Does not throw if the
-  /// program or the function stopped the servo.
+  /// program or the servo function stopped the servo.
   void throw_what_ended_it() const;
   bool is_caller() const { return std::this_thread::get_id() == thread_.get_id(); }
 

@@ -10,7 +10,7 @@ namespace inkwell::library {
 /// Longest error sentence, including the terminating zero.
 inline constexpr std::size_t sentence_maximum = 2048;
 
-/// Copies as much of the text as fits, and terminates it.
+/// Copies the text with a terminating zero, truncated to the size of the array.
 template <std::size_t size>
 void copy_text(const char* text, char (&to)[size]) {
   std::strncpy(to, text, size - 1);

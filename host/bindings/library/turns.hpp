@@ -96,7 +96,7 @@ class Turns {
     return answer == Answer::servo || (answer == Answer::loop && waits_for_loops_);
   }
   bool is_stepped() const;
-  /// Stops waiting for answers that have exceeded their limit.
+  /// Stops waiting for answers that have exceeded their time limit.
   void forget_late_answers(std::chrono::milliseconds waited);
   bool may_begin() const;
   void begin_turn();

@@ -1,5 +1,5 @@
-// Control transfers for firmware updates (DFU 1.1). The device is either a running firmware, which can detach to the
-// boot loader of the chip, or that boot loader.
+// Control transfers for firmware updates (DFU 1.1). The device runs the firmware or the chip's boot loader. The
+// firmware can detach to the boot loader.
 #pragma once
 
 #include <cstddef>

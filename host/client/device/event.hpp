@@ -46,8 +46,8 @@ std::string log_line(std::string_view clock_utc, std::optional<double> time_s, E
 /// Uses the board time of the event.
 std::string line_of(const Event& event);
 
-/// Events from one pose to the next: force on or off, fault raised or cleared. Without `before`, the earlier state is
-/// no force and no fault. `noticed_at_periods`: more accurate time of the current fault, if known.
+/// Events from one pose to the next: force on or off, fault raised or cleared. If `before` is missing, the earlier pose
+/// counts as a pose without force and fault. `noticed_at_periods`: more accurate time of the current fault, if known.
 std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
                                   std::optional<std::int64_t> noticed_at_periods);
 

@@ -15,7 +15,7 @@ struct ForceRequest {
   std::array<float, 3> force_N{};  ///< on the hand, workspace axes
   protocol::ForceMode mode = protocol::ForceMode::beside_walls;
   int interval_ms = 1;  ///< interval until the next request, 1 to protocol::force_interval_maximum_ms
-  /// Sequence of the pose that this force answers; by default, the newest pose.
+  /// Sequence number of the pose that this force answers. Default: the newest pose.
   std::optional<std::uint32_t> pose_sequence{};
 };
 

@@ -43,7 +43,7 @@ struct Session::Implementation {
   void note_losses(std::int64_t at_periods);
   /// `before_periods`: time of the previous pose, if any.
   void follow_fault(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
-  /// Uses the black box, which has the exact period unless it still contains an older fault.
+  /// Reads the exact period of the fault from the black box, unless the black box still contains an older fault.
   static std::int64_t noticed_at_periods(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
   void send_requests(Device& device);
   /// A refusal by the board is shown to the user and does not close the connection.

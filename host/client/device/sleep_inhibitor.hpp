@@ -1,5 +1,5 @@
-// Prevents computer sleep while the force is on. A suspended computer sends no sign of life, and the board would raise
-// a fault.
+// Prevents computer sleep while the force is on. A suspended computer would send no sign of life, and the board would
+// raise a fault.
 #pragma once
 
 #include <atomic>

@@ -57,8 +57,8 @@ std::vector<Endpoint> find_usbip_devices(const SocketAddress& server);
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Waits for an input report. Returns its length including the leading report id, or 0 on time-out. In lock step the
-  /// call requests the report from the board, unless the time-out is 0.
+  /// Waits for an input report. Returns the report length including the leading report id, or 0 on time-out. In lock
+  /// step the call requests the report from the board, unless the time-out is 0.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
   /// Returns without waiting for the device, unless many reports are pending.
   virtual void write_report(std::span<const std::byte> report) = 0;
@@ -72,8 +72,8 @@ class Transport {
   virtual void claim_scope() = 0;
   /// Releases the stream for other programs. Has no effect if this program has not reserved the stream.
   virtual void release_scope() = 0;
-  /// Waits for one bulk transfer of the scope, which must be claimed. Returns its length, or 0 on time-out. Enough
-  /// transfers are pending to prevent data loss if the reader is 100 ms late.
+  /// Waits for one bulk transfer of the scope, which must be claimed. Returns the length of the transfer, or 0 on
+  /// time-out. Enough transfers are pending to prevent data loss if the reader is 100 ms late.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
   /// The endpoint, with the serial number and product name that the device reported.
   virtual const Endpoint& endpoint() const = 0;

@@ -64,7 +64,7 @@ class OpenTransfers {
 
   /// The number of data bytes that follow an answer. Throws Disconnected if the answer belongs to no open transfer.
   std::size_t data_length_of(const usbip::ReturnSubmit& answer) const;
-  /// A transfer that an answer has finished.
+  /// A transfer whose answer has arrived.
   struct Ended {
     OnUsbipCompletion on_completion;
     UsbipCompletion completion;

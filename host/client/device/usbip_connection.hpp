@@ -32,8 +32,8 @@ class UsbipConnection {
   using Completion = UsbipCompletion;
   using OnCompletion = OnUsbipCompletion;
 
-  /// Imports the device. Throws Error if the device is in use or gone, and the errors of list_usbip_devices(). Call
-  /// `start` before the first transfer. A control transfer is canceled after `timeout`.
+  /// Imports the device. Throws Error if the device is in use or gone, or if list_usbip_devices() fails. Call `start`
+  /// before the first transfer. A control transfer is canceled after `timeout`.
   UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                   std::chrono::milliseconds timeout = control_timeout);
   ~UsbipConnection();

@@ -39,7 +39,7 @@ struct VirtualBoardOptions {
   bool real_time = true;         ///< synchronizes board time with wall time
   bool paused = false;           ///< starts with board time stopped
   bool lock_step = false;        ///< board time passes only while the programs that use the device wait for it
-  /// Board time in seconds after which the board exits. With this option, board time continues after a processor
+  /// The board exits after this board time in seconds. With this option, board time continues after a processor
   /// lock-up, because the watchdog may reset the chip.
   std::optional<double> seconds = {};
   bool from_boot_loader = false;  ///< the boot loader of the chip starts the firmware, instead of a reset

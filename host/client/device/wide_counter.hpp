@@ -34,7 +34,7 @@ class WideCounter {
     return newest == nothing_noted ? 0 : newest;
   }
 
-  /// The wide value that is nearest to the newest value. Before the first note(), returns the value itself.
+  /// Returns the 64-bit value that is nearest to the newest value. Before the first note(), returns the value itself.
   std::int64_t nearest(std::uint32_t value) const {
     const std::int64_t newest = newest_.load();
     return newest == nothing_noted ? std::int64_t{value} : nearest_to(newest, value);

@@ -27,7 +27,7 @@ std::vector<Sector> parse_memory_layout(std::string_view name);
 /// The sectors of `all` that the image uses.
 std::vector<Sector> sectors_of(const Image& image, const std::vector<Sector>& all);
 
-/// Throws the errors of ControlChannel, and Error with the failure that the boot loader reports.
+/// Throws Error with the failure that the boot loader reports. ControlChannel may throw other errors.
 class BootLoader {
  public:
   static constexpr std::size_t block_bytes = 2048, option_bytes = 16;

@@ -20,7 +20,7 @@ std::string force_law_digits(const Information& information);
 /// force law becomes a remark with the file's name.
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
-/// Whether the control period in a file is plausible, which means at most thirty years.
+/// True if the number of a control period in a file is plausible: at most thirty years.
 bool can_be_period(std::int64_t written);
 /// Control period that follows `before` in a file. Files of earlier versions store only the lower 32 bits, which wrap.
 std::int64_t period_after(std::int64_t before, std::int64_t written);

@@ -26,7 +26,7 @@ class BoardRun {
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }
   void set(std::initializer_list<device::ParameterChange> changes);
-  /// Closes the device abruptly, like a killed program, and waits until the board's USB detects it.
+  /// Closes the device abruptly, like a killed program, and waits until the board's USB detects the disconnection.
   void drop_device();
   /// Sets a function that is called with every pose from now on.
   void watch_poses(std::function<void(const device::Pose&)> watch) { watch_ = std::move(watch); }

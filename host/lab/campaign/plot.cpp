@@ -119,7 +119,7 @@ std::string limit_of(const Histogram& histogram, const Layout& layout) {
   const int reach = x + 6 + static_cast<int>(letter * histogram.limit->text.size());
   const bool has_room = reach <= end_of_drawing(histogram, layout);
   return line(x, above - 32, x, base, fmt::format("stroke=\"{}\" stroke-dasharray=\"5 3\"", limit_colour)) +
-         // above the number on the highest bar
+         // The text is above the number on the highest bar.
          text({x + (has_room ? 6 : -6), above - 23, has_room ? "start" : "end",
                fmt::format("fill=\"{}\"", limit_colour)},
               histogram.limit->text);

@@ -86,7 +86,7 @@ bool is_tested_by_pulses(const CaseFault& put_in) {
   }
 }
 
-/// Reason for a wire while the bridges are off.
+/// Reason why a fault of a wire may stay undetected while the bridges are off.
 std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
   if (wire.starts_with("encoders"))
     return "The hand keeps the joint stationary. With a reference, a constant encoder signal is detected by "

@@ -129,8 +129,8 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   }
   expect(board.connect(1.0), "the device did not enumerate.");
   ParameterSet parameters = board.device().parameters();
-  // The long host time-out prevents a time-out fault, because this host is silent after each injection. Faults of the
-  // host and the situation `fault` use the default time-out.
+  // The long host time-out prevents a time-out fault, because this host is silent after each injection. Cases with
+  // host faults, and cases in the situation `fault`, use the default time-out.
   if (!is_about_the_host(the_case.fault) && situation != CaseSituation::fault)
     board.set({{Parameter::host_timeout_s, 2.0f}});
   if (situation == CaseSituation::unreferenced) {

@@ -19,7 +19,7 @@ using protocol::State;
 constexpr double poll_interval_s = 0.005;
 constexpr double close_check_s = 0.1;
 
-/// Status and truth count resets from power-on; the first reset is the watchdog test.
+/// Returns the number of restarts after the watchdog test, whose reset the board also counts.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 
 bool force_on(const device::Pose& pose) { return protocol::force_is_on(pose.state); }
@@ -80,7 +80,7 @@ void Bench::check_closely() {
   if (is_undisturbed() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
 }
 
-/// The pose is slightly older than the truth.
+/// Compares the newest pose with `truth`, which is slightly newer.
 void Bench::check_pose() {
   if (!board.pose() || !board.pose()->is_referenced) return;
   const auto truth = board.control().truth();

@@ -34,7 +34,7 @@ class Bench {
   void pass(double time_s, bool sends_heartbeats = true);
   /// Checks the true quantities at this instant.
   void check_truth();
-  /// Checks rarely read states: restarts, violated rules, and lock-up of the processor.
+  /// Checks for restarts, violated rules, and a lock-up of the processor.
   void check_closely();
   /// Like check_closely(), and checks that the board answers and stores its accepted parameters.
   void check_all();
@@ -76,8 +76,8 @@ class Bench {
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
   protocol::ParameterSet stored{};  ///< values after a restart
-  /// Stop condition, which is polled continuously. Empty while the board starts, because every sitting completes the
-  /// start.
+  /// Stop condition, which is polled continuously. It is empty while the board starts, so that every sitting completes
+  /// the start.
   std::function<bool()> is_over;
   /// True while the cable is unplugged or the program is killed.
   bool device_may_go = false;

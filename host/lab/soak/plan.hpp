@@ -1,9 +1,9 @@
 // Plan of a soak: the kinds of phases, their frequency, and the faults that a board may report in each kind.
 //
-// A reported fault that the kind does not name is a false trip. Phases of normal use therefore avoid faults: the hand
-// stays below the speed limit, except in the phase that tests this limit. Some wrong parameters make a fault-free arm
-// look defective: dimensions, resistances, and gains that cause oscillation. These parameters change only while the
-// force is off, or stay close to the correct values (storm.hpp).
+// A reported fault is a false trip if the kind of the phase does not list this fault. Phases of normal use therefore
+// avoid faults: the hand stays below the speed limit, except in the phase that tests this limit. Some wrong parameters
+// make a fault-free arm look defective: dimensions, resistances, and gains that cause oscillation. These parameters
+// change only while the force is off, or stay close to the correct values (storm.hpp).
 #pragma once
 
 // To add a kind of phase:

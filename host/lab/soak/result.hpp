@@ -28,7 +28,7 @@ struct Losses {
   unsigned long recorded_samples = 0;
 };
 
-/// One board from its start to its end.
+/// The run of one board from start to end.
 struct Sitting {
   unsigned number = 0;  ///< from 1
   double board_time_s = 0;

@@ -15,9 +15,9 @@ using Changes = std::vector<device::ParameterChange>;
 
 enum class Reach : std::uint8_t {
   /// Values that cause no false faults while the force is on. The dimensions of the arm do not change, and walls stay
-  /// near their default positions. Resistances stay within 10 %, because the motor check uses them. Gains are 0.5 to
-  /// 1.2 times their defaults, because higher gains may cause oscillation. Speed limit and host time-out stay above the
-  /// values in use, and at least 4 V remain to drive currents.
+  /// near their default positions. Resistances stay within 10 % of the correct values, because the motor check uses
+  /// them. Gains are 0.5 to 1.2 times their defaults, because higher gains may cause oscillation. Speed limit and host
+  /// time-out stay above the values in use, and at least 4 V remain to drive currents.
   careful,
   whole,  ///< all values that the table allows
 };

@@ -1,5 +1,5 @@
-// A sphere in the middle of the box. The board renders the sphere at its full rate. This program only renews the
-// sphere regularly, so that the sphere disappears after the program exits.
+// A sphere in the middle of the box. The board renders the sphere at the full servo rate. This program renews the
+// sphere regularly. When the program exits, the sphere expires.
 //
 //   Usage: sphere [ADDRESS]     address of the arm for inkwell_open()
 #include <chrono>

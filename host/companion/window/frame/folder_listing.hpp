@@ -30,7 +30,7 @@ FolderListing list_folder(const std::filesystem::path& folder, std::span<const s
 /// Converts typed text to a path. The path is relative to the folder unless the text starts with "/" or "~/".
 std::filesystem::path typed_path(const std::filesystem::path& folder, std::string_view typed);
 
-/// Appends the first ending if the path has none of the endings.
+/// Appends the first extension of `endings` if the path has none of these extensions.
 std::filesystem::path with_ending(std::filesystem::path path, std::span<const std::string> endings);
 
 /// Returns the reason why the file cannot be read or written; empty if no reason is known in advance.

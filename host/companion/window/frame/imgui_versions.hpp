@@ -1,5 +1,5 @@
 // Common names for ImGui 1.86 (Debian 12) and ImGui 1.89.8 or newer (Debian 13). Only this file and key_feed.cpp depend
-// on the version.
+// on the ImGui version.
 #pragma once
 
 #include <cstddef>

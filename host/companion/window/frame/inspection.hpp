@@ -14,8 +14,8 @@
 
 namespace inkwell::window {
 
-// Record the last drawn item under a name with the pane, such as "status/STOP". Without an inspection, the functions do
-// nothing.
+// The functions record the last drawn item under a name that includes the pane, such as "status/STOP". Without an
+// inspection, the functions do nothing.
 void note_item(std::string_view name);
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum);
 void note_text(std::string_view text);

@@ -1,5 +1,5 @@
 // Selects X11 or Wayland. GLFW before 3.4, as in Debian 12, supports only X11. Only window_system.cpp depends on the
-// version.
+// GLFW version.
 #pragma once
 
 namespace inkwell::window {

@@ -60,9 +60,9 @@ inline std::vector<inkwell_device> devices() {
 }
 
 /// An open arm, which the destructor closes. Each function calls the C function of the same name. Each C++ function
-/// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. A running servo
-/// moves with its arm. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do not destroy an arm
-/// in its own servo, because the library cannot close the arm there.
+/// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. Moving an Arm
+/// object also moves its running servo. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do
+/// not destroy an arm in its own servo, because the library cannot close the arm there.
 class Arm {
  public:
   /// Returns the force on the hand. An exception stops the servo, and stop_servo() throws it. Any other cause that has
