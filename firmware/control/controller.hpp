@@ -126,7 +126,7 @@ class Controller {
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
   void limit_and_apply_force(Force requested, const Settings& settings);
-  // Rare code is compiled for size, because the interrupt memory is small.
+  // Rarely executed code is compiled for size, because the interrupt memory is small.
   [[gnu::cold]] Force reduce_driving_part(const Force& requested, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
   [[gnu::cold]] void update_resistance(const Settings& settings);

@@ -148,8 +148,8 @@ ProgramForceLimits program_force(const ParameterSet& set) {
           periods_in(set[Parameter::program_force_expiry_s])};
 }
 
-/// A force jump fades at 4 % of the force limit per millisecond. Such a slow change is not noticeable as a kick. A jump
-/// as large as the force limit fades in 25 ms.
+/// A force jump fades at 4 % of the force limit per millisecond. A change at this rate is not noticeable as a kick. A
+/// jump as large as the force limit fades in 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
 /// Change of the force gain in one period. A ramp time of less than one period results in a step.

@@ -60,7 +60,7 @@
 
 namespace inkwell::registers {
 
-/// Names a peripheral without access to its registers.
+/// Names a peripheral and provides no access to its registers.
 template <template <std::uint32_t> class Map, std::uint32_t base>
 struct Claimable {};
 

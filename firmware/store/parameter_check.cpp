@@ -92,7 +92,7 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
 
 using Written = std::array<bool, parameter_count + protocol::force_law_parameters_maximum>;
 
-/// Returns the parameter of the transaction that caused the contradiction.
+/// Returns the parameter whose change caused the contradiction.
 Parameter find_cause(const Bounds& pair, const Written& written) {
   if (written[static_cast<std::size_t>(pair.lower)]) return pair.lower;
   if (written[static_cast<std::size_t>(pair.upper)]) return pair.upper;
