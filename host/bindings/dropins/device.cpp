@@ -21,7 +21,7 @@ constexpr double angular_smoothing = 0.125;
 /// Below this speed the probe counts as stationary.
 constexpr double rest_m_per_s = 0.1;
 
-// Faults that HDAPI treats as temporary. The force returns automatically once the probe is stationary.
+// HDAPI treats these faults as temporary. The force returns automatically once the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
 /// True if the board has accepted or refused the request. A link error leaves the request undecided.

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Names that programs use for the only arm.
+/// Programs use these names for the only arm.
 constexpr std::string_view default_names[] = {"", "Default Device", "Default PHANToM"};
 
 /// Throws std::runtime_error if the text has the form of an address but is invalid.

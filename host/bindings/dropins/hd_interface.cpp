@@ -21,8 +21,8 @@ Handle current_handle() {
   return runtime().devices.current_handle();
 }
 
-/// A callback that runs for a waiting thread. The callback starts with the current device of the waiting thread.
-/// Afterwards the waiting thread has the current device of the callback.
+/// Runs a callback for a waiting thread. The callback starts with the current device of the waiting thread. Afterwards
+/// the waiting thread has the current device of the callback.
 struct ForCaller {
   HdCallback callback;
   void* user;

@@ -33,7 +33,8 @@ constexpr unsigned short priority = 32767;
 constexpr char type_text[] = "PHANTOM Omni";
 /// Time limit for a tick; the original library waits indefinitely.
 constexpr auto tick_patience = 1s;
-/// Ticks until a force expires. A working program sets a force in each tick, and a hanging program must lose its force.
+/// A force expires after this number of ticks. A working program sets a force in each tick, and a hanging program must
+/// lose its force.
 constexpr int force_ticks = 100;
 constexpr int good = 0, bad = -1;
 /// HDAPI axis of each CHAI3D axis.

@@ -10,7 +10,7 @@
 
 namespace inkwell::dropins {
 
-/// Types in which a parameter may be read, as bits.
+/// Permitted types of a parameter, as bits.
 enum Type : unsigned {
   type_boolean = 1,
   type_integer = 2,

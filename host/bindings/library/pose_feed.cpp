@@ -13,8 +13,8 @@
 namespace inkwell::library {
 namespace {
 
-/// Shortest silence that is reported to a stepped program. A virtual board on a busy computer may compute a pose
-/// slowly.
+/// A silence of this length or longer is reported to a stepped program. A virtual board on a busy computer may compute
+/// a pose slowly.
 constexpr double stepped_silence_s = 2.0;
 
 constexpr char lost_with_the_link[] =

@@ -37,7 +37,7 @@ enum class Loss : std::uint8_t {
   link,     ///< the link is lost, and the connection searches for the board
 };
 
-/// A task that the pose thread executes in each turn. Used in lock step only.
+/// Task of the pose thread in each turn. Used in lock step only.
 class TurnPart {
  public:
   virtual ~TurnPart() = default;

@@ -1,5 +1,5 @@
-// The newest pose that each thread has waited for. The arm stores these poses, because destructors of static objects
-// may call the library after thread-local objects are destroyed.
+// For each thread, the newest pose for which the thread has waited. The arm stores these poses, because destructors of
+// static objects may call the library after thread-local objects are destroyed.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ namespace inkwell::library {
 
 class Turns {
  public:
-  /// The group of the virtual boards that this process has started. They share one clock.
+  /// Returns the group of all virtual boards started by this process. They share one clock.
   static std::shared_ptr<Turns> of_own_boards();
 
   /// A board of another process does not wait for loops, because other programs may use the board.

@@ -60,11 +60,11 @@ Address parse_server(std::string_view text);
 /// The address of an endpoint. Open the device before this call, because the serial number is unknown until then.
 std::string address_of(const Endpoint& endpoint);
 
-/// The arms that match the address; empty for a virtual board that is not started yet. Throws Error if a server does
-/// not answer.
+/// Returns the arms that match the address. Returns an empty list for a virtual board that is not started yet. Throws
+/// Error if a server does not answer.
 std::vector<Endpoint> find_arms(const Address& address);
-/// The only arm that matches the address. If a server answers, waits up to two seconds until the server lists the arm.
-/// Throws NoDevice, or SeveralArms if several arms match.
+/// Returns the only arm that matches the address. If a server answers, waits up to two seconds until the server lists
+/// the arm. Throws NoDevice, or SeveralArms if several arms match.
 Endpoint find_arm(const Address& address);
 
 }  // namespace inkwell::device

@@ -15,7 +15,7 @@ struct BoardStore {
 
 BoardStore read_store(Device& device);
 
-/// The parameters whose current values differ from the stored values, in the order of the table.
+/// Returns the parameters whose current values differ from the stored values, in the order of the table.
 std::vector<protocol::Parameter> not_stored(const protocol::ParameterSet& held, const BoardStore& store);
 
 /// The board did not store or erase the parameters. The previous stored parameters are intact.

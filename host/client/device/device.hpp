@@ -59,7 +59,7 @@ struct Driver {
   std::string program;       ///< program name, printable ASCII
   std::uint32_t process_id;  ///< on the computer of the program
   double driven_s;           ///< board time since it claimed the arm
-  /// Number of the object that holds the claim, from 1 in opening order; none if another process holds the claim.
+  /// Number of the driving object, from 1 in opening order; none if another process holds the claim.
   std::optional<int> object;
   bool is_this_device;  ///< true if `object` is this device
 };
@@ -95,7 +95,7 @@ class Device {
   /// Waits for the next pose report; none on time-out.
   std::optional<Pose> read_pose(std::chrono::milliseconds timeout);
 
-  /// The program that drives the arm; none if no program drives the arm.
+  /// Returns the program that drives the arm, or none if no program drives it.
   std::optional<Driver> driver();
   /// Writes the driver into `driver`. Returns false without waiting if another thread has a request in progress,
   /// because in lock step that thread may wait for the next pose.

@@ -11,7 +11,7 @@
 
 namespace inkwell::device {
 
-/// A name that no table contains. The name may belong to the force law of a device that was not opened yet.
+/// A name is missing in all tables. The name may belong to the force law of a device that was not opened yet.
 class UnknownName : public Error {
  public:
   using Error::Error;

@@ -25,7 +25,7 @@ struct OpenArm {
 /// if no arm is found.
 OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, LockStep* lock_step = nullptr);
 
-/// The parameters that an arm description sets. Throws Error with the line number of a mistake.
+/// Returns the parameters in an arm description. Throws Error with the line number of a mistake.
 std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file);
 
 }  // namespace inkwell::device

@@ -36,7 +36,7 @@ void save_parameters(const std::filesystem::path& file, const protocol::Paramete
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device);
 
-/// The shortest text that parses to exactly this value.
+/// Returns the shortest text that parses to exactly this value.
 std::string format_value(protocol::Parameter parameter, float value);
 /// None if the text is not a number with a decimal point.
 std::optional<float> parse_number(std::string_view text);

@@ -15,7 +15,7 @@ struct ForceRequest {
   std::array<float, 3> force_N{};  ///< on the hand, workspace axes
   protocol::ForceMode mode = protocol::ForceMode::beside_walls;
   int interval_ms = 1;  ///< interval until the next request, 1 to protocol::force_interval_maximum_ms
-  /// Sequence number of the pose that this force answers. Default: the newest pose.
+  /// Sequence number of the answered pose. Default: the newest pose. Default: the newest pose.
   std::optional<std::uint32_t> pose_sequence{};
 };
 
@@ -26,8 +26,8 @@ struct Surface {
   float static_friction = 0.0f;   ///< limit of the tangential force while the probe sticks, relative to the normal
                                   ///< force
   float dynamic_friction = 0.0f;  ///< the same while the probe slides
-  /// Time after which the board removes the shape, unless it is placed again. By default the shape exists while the
-  /// program drives the arm.
+  /// The board removes the shape after this time, unless the shape is placed again. By default the shape exists while
+  /// the program drives the arm.
   float life_s = std::numeric_limits<float>::infinity();
 };
 

@@ -19,7 +19,7 @@ struct QueuedCommand {
 
 enum class StoreTask : std::uint8_t { store, forget };
 
-/// Requests of the caller that the report thread has not sent yet.
+/// Requests of the caller, not yet sent by the report thread.
 struct Requests {
   std::vector<QueuedCommand> commands;
   ParameterRequests parameters;

@@ -46,7 +46,7 @@ struct Endpoint {
   std::optional<std::uint64_t> seed = {};
 };
 
-/// The arms that are connected to this computer by USB.
+/// Returns the arms that are connected to this computer by USB.
 std::vector<Endpoint> find_usb_devices();
 /// The arms exported by a USB/IP server such as a virtual board. Throws Error if the server does not answer. Serial
 /// numbers are known only after open_transport(), because USB/IP device lists do not contain them.

@@ -62,9 +62,9 @@ class OpenTransfers {
   /// The server may already have answered the transfer, so the transfer stays open until the unlink is answered.
   void unlink(std::uint32_t unlink_sequence, std::uint32_t sequence) { unlinks_.emplace(unlink_sequence, sequence); }
 
-  /// The number of data bytes that follow an answer. Throws Disconnected if the answer belongs to no open transfer.
+  /// Returns the number of data bytes after an answer. Throws Disconnected if the answer belongs to no open transfer.
   std::size_t data_length_of(const usbip::ReturnSubmit& answer) const;
-  /// A transfer whose answer has arrived.
+  /// A completed transfer.
   struct Ended {
     OnUsbipCompletion on_completion;
     UsbipCompletion completion;

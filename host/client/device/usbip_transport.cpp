@@ -314,7 +314,7 @@ std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint) {
   return std::make_unique<UsbipTransport>(endpoint);
 }
 
-// The device path that the virtual board's USB/IP server reports.
+// The virtual board's USB/IP server reports this device path.
 constexpr char virtual_board_path[] = "/inkwell_virtual_board/";
 
 std::vector<Endpoint> find_usbip_devices(const SocketAddress& server) {

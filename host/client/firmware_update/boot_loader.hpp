@@ -24,7 +24,7 @@ struct Sector {
 /// Empty if the name has another format.
 std::vector<Sector> parse_memory_layout(std::string_view name);
 
-/// The sectors of `all` that the image uses.
+/// Returns the sectors of `all` that the image uses.
 std::vector<Sector> sectors_of(const Image& image, const std::vector<Sector>& all);
 
 /// Throws Error with the failure that the boot loader reports. ControlChannel may throw other errors.

@@ -9,7 +9,7 @@
 
 namespace inkwell::firmware_update {
 
-/// The segments that have bytes in the file, at their physical addresses. Throws NoImage.
+/// Returns the segments with bytes in the file, at their physical addresses. Throws NoImage.
 std::vector<Segment> load_segments(std::span<const std::byte> elf, const std::string& name);
 
 }  // namespace inkwell::firmware_update

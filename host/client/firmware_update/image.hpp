@@ -67,7 +67,7 @@ inline std::optional<Image> always_the_given(std::string_view) { return {}; }
 
 /// The identity in the first bytes of a flash, if any.
 std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);
-/// Number of flash bytes that `identity_in` needs.
+/// `identity_in` needs this number of flash bytes.
 inline constexpr std::size_t identity_end = protocol::image_identity_offset + sizeof(protocol::ImageIdentity);
 
 /// "firmware 0.1.0 for omni_driver, protocol 11".

@@ -22,8 +22,8 @@ std::string intel_hex(const Image& image);
 /// Arguments of openocd for copying the first bytes of the flash to `installed_file` while the firmware continues to
 /// run.
 std::vector<std::string> openocd_arguments_for_reading(const std::string& interface);
-/// Arguments with which openocd writes the sectors of the image, reads them back, and prints `verified_line`. The
-/// arguments also set the brown-out level, if necessary, and start the firmware.
+/// Returns the arguments with which openocd writes the sectors of the image, reads them back, and prints
+/// `verified_line`. The arguments also set the brown-out level, if necessary, and start the firmware.
 std::vector<std::string> openocd_arguments_for_writing(const std::string& interface);
 inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
                       verified_line[] = "inkwell: the image is verified";

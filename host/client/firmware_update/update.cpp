@@ -19,7 +19,7 @@ using device::Endpoint;
 /// seconds.
 constexpr auto change_patience = 20s;
 constexpr auto look_again = 50ms;
-/// Time in which the system grants access to a new device or finds its driver.
+/// In this time the system grants access to a new device or finds its driver.
 constexpr auto system_patience = 5s;
 
 /// `is_chosen`: the image was chosen based on the board's previous image, which is now erased.

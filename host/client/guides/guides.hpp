@@ -43,7 +43,7 @@ struct CurrentLoopOptions {
   double bandwidth_Hz = bandwidth_default_Hz;
 };
 
-/// Options that a user may choose before a guide starts. Each guide reads only the options that it uses.
+/// The user may choose these options before a guide starts. Each guide reads only the options that it uses.
 struct Choices {
   StopsTrust trust = StopsTrust::limits;
   PotentiometerOptions potentiometers;
@@ -61,7 +61,7 @@ struct Offer {
   Guide start(const Choices& choices = {}) const;
 };
 
-/// The guides in the order in which a new arm needs them.
+/// The guides, in their usual order for a new arm.
 #define INKWELL_GUIDES(X) \
   X(connection)           \
   X(directions)           \

@@ -1,4 +1,4 @@
-// Locations of the installed parts that programs use at run time. A build folder has links at the same relative paths
+// Locations of installed files for programs at run time. A build folder has links at the same relative paths
 // (tools/cmake/installed_paths.cmake), so the same code works in a build folder and in an installation.
 #pragma once
 

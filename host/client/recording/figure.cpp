@@ -41,7 +41,7 @@ bool has_point_each(const Recording& recording, Range shown) {
 
 std::string name_over(Quantity quantity) { return fmt::format("{}_over", name_of(quantity)); }
 
-/// The quantities that the overlaid recording also contains.
+/// Returns the quantities that the overlaid recording also contains.
 std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& quantities) {
   std::vector<Quantity> held;
   if (over == nullptr) return held;

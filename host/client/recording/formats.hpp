@@ -22,7 +22,8 @@ void take_force_law(Recording& recording, std::string_view digits, std::string_v
 
 /// True if the number of a control period in a file is plausible: at most thirty years.
 bool can_be_period(std::int64_t written);
-/// Control period that follows `before` in a file. Files of earlier versions store only the lower 32 bits, which wrap.
+/// Returns the control period that follows `before` in a file. Files of earlier versions store only the lower 32 bits,
+/// which wrap.
 std::int64_t period_after(std::int64_t before, std::int64_t written);
 
 /// Converts step_periods from a file: 1 if missing or invalid, as in a file of an earlier version.

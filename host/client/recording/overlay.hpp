@@ -36,7 +36,7 @@ class Overlay {
 std::pair<std::string, std::string> distinct_names(const std::filesystem::path& one,
                                                    const std::filesystem::path& other);
 
-/// Mark texts that both recordings contain, without duplicates. Common marks can align the recordings.
+/// Returns the mark texts that both recordings contain, without duplicates. Common marks can align the recordings.
 std::vector<std::string> common_marks(const Recording& a, const Recording& b);
 
 }  // namespace inkwell::recording

@@ -53,7 +53,7 @@ struct Recording {
   /// Number of missing samples between the first and the last sample.
   std::uint64_t lost() const;
 
-  /// End of the gap-free range that contains `begin`, at most `end`.
+  /// Returns the end of the gap-free range that contains `begin`, at most `end`.
   std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
   /// Samples of a range in the format of the scope. Missing periods before the range count as lost.
   device::ScopeSamples samples(std::size_t begin, std::size_t end) const;

@@ -15,7 +15,7 @@
 
 namespace inkwell::window {
 
-/// Recording that the window replays after the start.
+/// The window replays this recording after the start.
 struct ReplayRequest {
   std::filesystem::path recording;  ///< empty: no replay
   std::filesystem::path over = {};  ///< recording that is overlaid; empty: none

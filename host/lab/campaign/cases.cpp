@@ -27,8 +27,8 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// Exceptions that the firmware handles: PendSV, the supply detector and the control interrupt of the converters. Crash
-/// handlers are not included. USB is polled in the main loop.
+/// The firmware handles these exceptions: PendSV, the supply detector and the control interrupt of the converters.
+/// Crash handlers are not included. USB is polled in the main loop.
 constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
                                    virtual_board::exception_of(virtual_board::voltage_detector_position),
                                    virtual_board::exception_of(virtual_board::converters_position)};

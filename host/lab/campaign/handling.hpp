@@ -17,7 +17,7 @@ device::Vector3 middle_of_box_m(const protocol::ParameterSet& parameters);
 device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment::BoxWall wall, double force_N);
 /// Target inside the forward wall for this fraction of the force limit.
 device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, double part_of_limit);
-/// Path that swings back and forth around this point, as in CaseSituation::motion.
+/// Returns a path that swings back and forth around this point, as in CaseSituation::motion.
 std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
 /// Path to the middle, then `use_presses` times into the forward and the side wall, then `use_swings` swings
 /// (campaign/run.hpp).

@@ -27,7 +27,7 @@ std::map<std::string, double> fault_free_forces_N(std::span<const Result> result
   return forces_N;
 }
 
-/// Class width for which all classes fit next to each other.
+/// Returns a class width at which all classes fit next to each other.
 double class_width_N(double reach_N) {
   constexpr double widths_N[] = {0.5, 1, 2, 5, 10, 20};
   constexpr double most = 10;

@@ -104,7 +104,7 @@ void add(std::string& where, const std::string& situation) {
   where += situation;
 }
 
-/// The situations in which a case satisfies `counts`.
+/// Returns the situations in which a case satisfies `counts`.
 std::string situations_with(const Groups& groups, const CaseFault& fault,
                             bool (*counts)(CaseSituation, const Result&)) {
   std::string where;
@@ -124,7 +124,7 @@ bool was_off_unreported(CaseSituation situation, const Result& result) {
   return !is_active(situation) && !is_detected(result);
 }
 
-/// The faults that were reported only after their causes were removed.
+/// Returns the faults that were reported only after their causes were removed.
 std::string reported_later(const Groups& groups, const CaseFault& fault) {
   std::set<std::string> names;
   for (const CaseSituation situation : situations)

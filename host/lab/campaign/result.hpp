@@ -11,7 +11,7 @@
 
 namespace inkwell::campaign {
 
-/// State of a fault that was reported before the injection.
+/// State of a fault reported before the injection.
 enum class FirstFault : std::uint8_t {
   none,       ///< there was no earlier fault, or the board could not be read
   reported,   ///< the fault is still reported

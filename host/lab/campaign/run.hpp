@@ -7,7 +7,7 @@
 
 namespace inkwell::campaign {
 
-/// Time after the injection during which bridges and hand are observed.
+/// Bridges and hand are observed for this time after the injection.
 inline constexpr double observed_s = 0.3;
 /// If a fault is undetected with the force on, the use of the arm continues. First the situation continues until a
 /// swinging hand has finished its path. Then the hand presses into the forward wall and the side wall at the force

@@ -22,11 +22,11 @@
 
 namespace inkwell::soak {
 
-/// Faults by which a board can detect wrong encoder counts.
+/// A board can detect wrong encoder counts by these faults.
 inline constexpr protocol::Conditions lost_counts = protocol::condition(protocol::Fault::encoder_implausible) |
                                                     protocol::condition(protocol::Fault::inkwell_implausible);
 
-/// Faults that a disconnected host causes; the board reports the first detected fault.
+/// A disconnected host causes one of these faults. The board reports the first detected fault.
 inline constexpr protocol::Conditions host_gone =
     protocol::condition(protocol::Fault::usb_gone) | protocol::condition(protocol::Fault::host_silent);
 

@@ -56,7 +56,7 @@ unsigned false_trip_count(const Soak& soak);
 /// A line for one phase, or a table for all phases.
 std::string line_of(const Sitting& sitting, const PhaseResult& phase);
 std::string table_of(const Soak& soak);
-/// Command that repeats the sitting of a finding.
+/// Returns the command that repeats the sitting of a finding.
 std::string repeat_command(const Soak& soak, unsigned sitting);
 /// A JSON object and a line feed.
 std::string json_of(const Soak& soak);

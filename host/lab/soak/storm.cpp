@@ -91,7 +91,7 @@ Parameter random_parameter(Random& random, auto condition) {
   return random.pick(some);
 }
 
-/// The entry that makes a transaction illegal; std::nullopt for a duplicated entry.
+/// Returns the entry that makes a transaction illegal, or std::nullopt for a duplicated entry.
 std::optional<device::ParameterChange> illegal_entry(Random& random, const ParameterSet& now, Refusal refusal) {
   const auto any = [](const auto&) { return true; };
   const auto with_choices = [](const auto& row) { return row.kind != ParameterKind::real; };

@@ -22,7 +22,7 @@ enum class Reach : std::uint8_t {
   whole,  ///< all values that the table allows
 };
 
-/// Known parameters that may be changed.
+/// Returns the known parameters that may be changed.
 std::vector<protocol::Parameter> within(Reach reach);
 struct Range {
   float minimum, maximum;

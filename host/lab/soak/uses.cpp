@@ -182,7 +182,7 @@ void note_lost(Bench& bench, const std::vector<Signal>& signals, unsigned long l
     bench.oracle.complain(Complaint::lost_packets, fmt::format("{} samples of {} signals", lost, signals.size()));
 }
 
-/// A file that is removed at the end of its phase.
+/// Removes a file at the end of a phase.
 struct RemovedAtTheEnd {
   std::filesystem::path file;
   ~RemovedAtTheEnd() {

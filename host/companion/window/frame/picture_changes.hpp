@@ -20,7 +20,7 @@ Box common(const Box& a, const Box& b);
 /// Returns the smallest box that contains `a` and `b`.
 Box enclosing(const Box& a, const Box& b);
 
-/// Triangles that are drawn together.
+/// Triangles of one draw call.
 struct DrawnPart {
   Box box;
   std::uint64_t digest = 0;  ///< equal for equal triangles

@@ -11,8 +11,8 @@ namespace {
 
 using Phase = LoggedFault::Phase;
 
-/// Number of answers after which a fault is recorded without a time. After a reset, the period count of an earlier
-/// fault may never be reached.
+/// A fault is recorded without a time after this number of answers. After a reset, the period count of an earlier fault
+/// may never be reached.
 constexpr int patience_answers = 8;
 
 /// True if the fault may stop the control interrupt. A stopped control interrupt does not count periods until the

@@ -1,4 +1,4 @@
-// Signals that a pane requests from the scope stream.
+// Signals requested by a pane from the scope stream.
 #pragma once
 
 #include <span>
