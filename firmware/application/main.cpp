@@ -50,7 +50,7 @@ std::optional<protocol::CrashFacts> read_crash(const drivers::ResetCause& cause)
   return crash;
 }
 
-/// Fault that reports the cause of the last reset.
+/// Returns the fault that reports the cause of the last reset.
 protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;

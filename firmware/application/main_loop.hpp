@@ -1,4 +1,4 @@
-// Main loop tasks that run in each round, in addition to USB.
+// In each round, the main loop runs these tasks in addition to USB.
 #pragma once
 
 #include "firmware/application/background_watch.hpp"

@@ -65,7 +65,7 @@ class Bridges {
   bool heartbeat_is_high() const;
   bool hold_is_high() const;
   bool a_leg_is_high() const;
-  /// State that the control interrupt has set.
+  /// True if the control interrupt has switched the bridges on.
   bool are_on() const { return enabled_; }
 
   /// Returns true if an update occurred after the last begin_period(). If this function returns true at the end of the

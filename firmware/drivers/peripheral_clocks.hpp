@@ -10,7 +10,7 @@ namespace detail {
 
 using registers::RCC;
 
-/// Register field that enables the clock of a peripheral.
+/// Clock enable field of a peripheral.
 template <class Peripheral>
 struct ClockOf;
 // clang-format off

@@ -21,7 +21,7 @@ constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3; 
 /// control interrupt and before the next start of frame. Otherwise the host might poll while no report is loaded.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// Time in which the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
+/// In this time the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
 /// shortly before the start of frame. The interval between sampling and start of frame is at most the sum of a control
 /// period, the longest interrupt and this time. A pose of the next period would be too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;

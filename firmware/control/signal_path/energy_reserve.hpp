@@ -35,7 +35,7 @@ struct EnergyReserve {
 void update_energy(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m,
                    const EnergyLimits& limits);
 
-/// Remaining energy divided by the energy below which the force is reduced.
+/// Returns the remaining energy, relative to the bound below which the force is reduced.
 inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return reserve.left_J * limits.low_reserves_per_J;
 }

@@ -63,7 +63,7 @@ LinkEnds link_ends(const Triple& joint_rad, const Arm& arm);
 /// Probe velocity: J times the joint speeds.
 Vector3 probe_velocity(const Jacobian& jacobian, const Triple& joint_speed_rad_per_s);
 
-/// Joint torques that apply `force_N` to the hand: tau = J^T F, from tau . dq = F . dx.
+/// Returns the joint torques for `force_N` on the hand: tau = J^T F, from tau . dq = F . dx.
 Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
 
 /// Sets the torque of an idle link joint to zero and corrects the torque of the other link joint. `idle` is 1 for joint

@@ -29,7 +29,7 @@ struct PulseRound {
   float dead_V = 0.0f;  ///< voltage drop from the dead time of the bridges
 };
 
-/// Values that determine the pulse voltages.
+/// These values determine the pulse voltages.
 struct PulseScale {
   const Triple& resistance_ohm;
   const Triple& current_limit_A;  ///< a motor with limit 0 is not used

@@ -59,7 +59,7 @@ constexpr auto faults = []() {
   return result;
 }();
 
-/// Conditions that prevent the user from clearing each fault.
+/// The user cannot clear a fault while the condition in its entry is present.
 constexpr auto clearing_blocker = []() {
   std::array<Conditions, protocol::fault_code_end> result{};
   for (const auto& row : protocol::condition_table)
