@@ -73,7 +73,7 @@ struct BlackBoxRow {
   float values[signal_count + force_law_signals_maximum];
 };
 
-/// Number of rows that fit into the device's answer buffer.
+/// The device's answer buffer has space for this number of rows.
 inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) - 8) / sizeof(BlackBoxRow);
 
 /// Feature report, get. Consecutive rows in the order of time.

@@ -21,7 +21,7 @@
 
 namespace inkwell::protocol {
 
-/// Motor current that raises a fault, relative to the current limit of the motor.
+/// A motor current above this multiple of the current limit raises a fault.
 inline constexpr float over_current_ratio = 1.5f;
 /// Largest age of the supply and gimbal measurements.
 inline constexpr float samples_stale_s = 0.001f;

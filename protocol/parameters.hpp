@@ -208,7 +208,7 @@ struct Bounds {
   bool hold_sphere;
 };
 
-/// Conditions that every set of parameters must satisfy, in addition to the range of each parameter.
+/// Every set of parameters must satisfy these conditions, in addition to the range of each parameter.
 inline constexpr Bounds parameter_bounds[] = {
     {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m, true},
     {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m, true},

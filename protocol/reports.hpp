@@ -259,7 +259,7 @@ struct ForceReport {
   float force_N[3];             ///< force on the hand, workspace axes
 };
 
-/// Largest age of the pose that a force report answers. The device refuses a force for an older pose, because the hand
+/// Largest permitted age of the pose in a force report. The device refuses a force for an older pose, because the hand
 /// may have moved since that pose.
 inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
@@ -285,7 +285,7 @@ constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1
   return is_valid ? name : std::string_view{};
 }
 
-/// First protocol version in which the device reports its board name.
+/// Since this protocol version, the device reports its board name.
 inline constexpr std::uint16_t first_version_with_board = 12;
 
 /// Feature report: identity and counters of the device. The position of the fields before the hashes is the same in all

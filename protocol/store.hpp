@@ -106,7 +106,7 @@ constexpr bool may_store(State state) {
 inline constexpr std::uint16_t store_schema = 1;
 /// Number of flash sectors. The records alternate between the sectors.
 inline constexpr std::size_t store_sectors = 2;
-/// Largest number of unknown parameter ids that the report lists.
+/// The report lists at most this number of unknown parameter ids.
 inline constexpr std::size_t store_unknown_ids_maximum = 16;
 
 /// Feature report: the state of the store.

@@ -292,7 +292,7 @@ constexpr Conditions conditions(Predicate is_so) {
   return bits;
 }
 
-/// Faults that invalidate the reference in every state, even if another fault is reported.
+/// These faults invalidate the reference in every state, even if another fault is reported.
 inline constexpr Conditions voiding_conditions = conditions([](const Condition& row) { return row.voids_reference; });
 
 // ---- consistency of the tables -----------------------------------------------------------------------------
