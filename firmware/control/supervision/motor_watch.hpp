@@ -3,9 +3,9 @@
 // The motor equation is u = R i + k w. The voltage is resistance times current plus back EMF. The voltage is the
 // command to the bridge, the current comes from the shunt, and the speed comes from the encoder. A current reading may
 // be frozen, too small, or from another motor. The current loop then applies a voltage that the reading does not
-// explain. An open motor and a stuck bridge leg also cause an unexplained voltage. In all these cases the force is
-// undefined. A voltage that is too small for its current indicates shorted turns or a current reading that is too
-// large.
+// explain. An open motor and a stuck bridge leg also cause an unexplained voltage. The force is undefined as long as a
+// voltage is unexplained. A voltage that is too small for its current indicates shorted turns or a current reading that
+// is too large.
 //
 // Both sides of the equation are compared while the current loops drive the bridges. Differences beyond the tolerance
 // of a healthy motor are integrated over time. This integral is a flux. The equation neglects the inductance. The

@@ -231,8 +231,8 @@ void OtgFs::answer_control() {
 
 // A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. The write then opens
 // the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check and
-// write short. A second check detects a packet that arrived in this time. NAK is set again before the end of the host's
-// next token, at least 4 us after the SETUP packet.
+// write short. A second check detects a packet that arrived between the first check and the write. NAK is set again
+// before the end of the host's next token, at least 4 us after the SETUP packet.
 //
 // Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. If the packet
 // arrived before the write, the write has removed its setup-done word. If the packet arrived after the write, its
