@@ -272,8 +272,8 @@ void Device::care() {
     // inkwell_wait_for_pose() returns a time-out if the board is silent, and INKWELL_DISCONNECTED if the link is lost.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
-    // The force stays off after another program, a lasting fault or a lost link has switched it off. The program must
-    // request the force again.
+    // If another program, a lasting fault or a lost link has switched the force off, the force stays off. The program
+    // must request the force again.
     const bool was_on = is_on;
     if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;
     const bool passes_by = !is_lost && pose.state == INKWELL_FAULT && passes(pose.fault);

@@ -39,7 +39,7 @@ constexpr auto claim_poll_interval = 5ms;
 /// Time limits for the execution of a command and for the decrease of the force to zero.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
-/// The counter in the self-test report stays in 32 bits, because only its differences are used.
+/// The counter in the self-test report is not extended to 64 bits, because only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
 /// A claim that is not renewed expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }

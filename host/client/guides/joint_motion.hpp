@@ -1,4 +1,4 @@
-// Steps of several guides: the stylus rests in the inkwell, or the user turns a joint.
+// Steps that several guides use: the stylus rests in the inkwell, or the user turns a joint.
 #pragma once
 
 #include <array>

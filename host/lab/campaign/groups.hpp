@@ -12,7 +12,7 @@
 
 namespace inkwell::campaign {
 
-/// Grouped by listed fault name and situation.
+/// The results are grouped by listed fault name and situation.
 using Groups = std::map<std::pair<std::string, std::string>, std::vector<Result>>;
 
 inline Groups group(std::span<const Result> results) {

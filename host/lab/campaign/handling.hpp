@@ -19,10 +19,10 @@ device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment
 device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, double part_of_limit);
 /// Returns a path that swings back and forth around this point, as in CaseSituation::motion.
 std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
-/// Path to the middle, then `use_presses` times into the forward and the side wall, then `use_swings` swings
-/// (campaign/run.hpp).
+/// Returns a path to the middle, then `use_presses` presses into the forward and the side wall, and then `use_swings`
+/// swings (campaign/run.hpp).
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters);
-/// Path back along x, then past this point to the other side, faster than the speed limit.
+/// Returns a path back along x and then past this point to the other side, faster than the speed limit.
 std::vector<device::HandWaypoint> fling(const device::Vector3& middle_m);
 /// Grips the stylus at its position or in the inkwell, and moves it to the target.
 void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);

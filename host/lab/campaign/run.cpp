@@ -225,7 +225,7 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
   const double driven_until_s = after.at("bridges_driven_until_s");
   const bool drive = bridges_drive(after);
   if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
-  // The self-test pulses at start-up are intended and are over now.
+  // The intended self-test pulses of the start-up are over at this point.
   const bool may_pulse = the_case.situation == CaseSituation::starting;
   result.bridges_went_on = !result.bridges_were_on && (may_pulse ? drive : driven_until_s > result.injected_at_s);
   result.peak_force_N = reading.peak_force_N;

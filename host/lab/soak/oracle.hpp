@@ -66,8 +66,8 @@ struct Snapshot {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< last time at which a leg was driven high
   unsigned restarts = 0;      ///< since the simulation's start
-  /// Peak force of the motors at the probe since the last snapshot, while a bridge was driven. Means over a control
-  /// period and over a millisecond.
+  /// Peak motor force at the probe since the last snapshot. Only periods with a driven bridge count. Means over a
+  /// control period and over a millisecond.
   double peak_motor_force_N = 0, peak_motor_force_over_ms_N = 0;
 };
 

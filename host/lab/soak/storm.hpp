@@ -31,7 +31,8 @@ Range range_of(protocol::Parameter parameter, Reach reach);
 
 protocol::ParameterSet with(protocol::ParameterSet set, std::span<const device::ParameterChange> changes);
 
-/// At least `count` parameters without contradictory bounds. `now` contains the values of the device.
+/// Returns changes of at least `count` parameters, without contradictory bounds. `now` contains the values of the
+/// device.
 Changes legal_changes(Random& random, const protocol::ParameterSet& now, Reach reach, std::size_t count);
 
 struct Illegal {
