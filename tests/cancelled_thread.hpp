@@ -1,4 +1,4 @@
-// A thread that is canceled during a call.
+// Runs a call in a thread and cancels this thread.
 #pragma once
 
 #include <doctest/doctest.h>

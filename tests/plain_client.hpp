@@ -1,4 +1,4 @@
-// A client that sends and receives raw bytes over TCP on this computer or over a Unix socket.
+// Sends and receives raw bytes over TCP on this computer or over a Unix socket.
 #pragma once
 
 #include <arpa/inet.h>

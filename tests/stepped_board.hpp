@@ -1,4 +1,4 @@
-// A virtual board whose time advances only on request. The same calls produce the same run on any machine.
+// On this virtual board, time advances only on request. The same calls produce the same run on any machine.
 #pragma once
 
 #include "host/client/device/control_client.hpp"

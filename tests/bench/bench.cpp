@@ -17,7 +17,7 @@ using namespace inkwell;
 using namespace std::chrono_literals;
 using protocol::Signal;
 
-/// A board whose host reads every pose and 14 signals.
+/// The host of this board reads every pose and 14 signals.
 class BusyBoard {
  public:
   explicit BusyBoard(device::SimulationMode mode)

@@ -47,7 +47,7 @@ void walls(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(walls_force_N(path.next()));
 }
 
-/// Eight planes that bevel the edges of the box, and a sphere in its center. All shapes have friction.
+/// Eight planes bevel the edges of the box, and a sphere is at the box's center. All shapes have friction.
 control::Shapes nine_shapes() {
   const control::Surface surface{.stiffness_N_per_m = 800.0f,
                                  .m_per_N = 1.0f / 800.0f,

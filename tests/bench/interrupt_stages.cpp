@@ -25,7 +25,7 @@ constexpr std::size_t selected = 31;
 constexpr auto first_stage = static_cast<std::size_t>(Signal::servo_cycles);
 constexpr std::size_t stage_count = static_cast<std::size_t>(Signal::stage_report_cycles) - first_stage + 1;
 
-/// A board with a hand that presses the stylus. Board time advances only in run() and while the device answers.
+/// A hand presses the stylus of this board. Board time advances only in run() and while the device answers a request.
 class PressedBoard {
  public:
   /// `profile`: see VirtualBoardOptions.
@@ -37,8 +37,8 @@ class PressedBoard {
     device_ = device::Device::open(*endpoint);
   }
 
-  /// Presses the probe into three walls and moves it out again. Returns the largest duration of each stage, the total
-  /// first.
+  /// Presses the probe into three walls and moves it out again. Returns the largest total duration, then the largest
+  /// duration of each stage.
   std::array<float, stage_count> press() {
     run(0.5);  // the encoders are referenced
     std::vector<Signal> signals;

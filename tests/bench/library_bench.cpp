@@ -1,5 +1,5 @@
-// Measures the time that the calling thread needs for a call of libinkwell and for a frame of HDAPI. Both run once per
-// pose of a virtual board. Another thread performs the USB transfers.
+// Measures the time that the calling thread needs for a call of libinkwell and for a frame of HDAPI. Each measured call
+// runs once per pose of a virtual board. Another thread performs the USB transfers.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -42,7 +42,7 @@ class Times {
   std::vector<double> taken_us_;
 };
 
-/// A thread that sleeps until wake() is called.
+/// This thread sleeps until wake() is called.
 class Sleeper {
  public:
   ~Sleeper() {

@@ -1,4 +1,5 @@
-// Measures the window on software OpenGL with the virtual board: frames during motion, and processor load at rest.
+// Measures the window's frame rate during motion and its processor load at rest, with software OpenGL and a virtual
+// board.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>

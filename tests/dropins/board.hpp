@@ -1,4 +1,4 @@
-// A virtual board with its simulated hand, for programs that find the board through INKWELL_DEVICE.
+// A virtual board with a simulated hand. Programs find the board through INKWELL_DEVICE.
 #pragma once
 
 #include <chrono>

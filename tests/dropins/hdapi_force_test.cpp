@@ -175,8 +175,8 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
   while (const auto error = hdGetError().errorCode)
     CHECK(error == HD_FORCE_ERROR);  // on a busy computer the frames may be late
 
-  // The force is switched off by a stop of the scheduler and by disabling the capability. A later start of the
-  // scheduler or of the capability does not restore the force.
+  // Stopping the scheduler or disabling the capability switches the force off. Starting the scheduler or enabling the
+  // capability afterwards does not restore the force.
   const bool by_scheduler = frames % 2 == 0;
   if (by_scheduler) {
     hdStopScheduler();

@@ -123,7 +123,8 @@ TEST_CASE("a thread that is cancelled while it waits for the scheduler ends ther
   hdStartScheduler();
   int ticks = 0;
   CHECK(until([&] { return ++ticks == 20; }));
-  // While the scheduler is stopped, the scheduling thread calls its callbacks and may be canceled in a callback.
+  // While the scheduler is stopped, hdScheduleSynchronous() calls the callback in the caller's thread, which may be
+  // canceled.
   hdStopScheduler();
   CHECK(CancelledThread([] {
           hdScheduleSynchronous(

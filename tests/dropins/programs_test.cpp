@@ -1,4 +1,4 @@
-// Starts separate programs that behave like CHAI3D or HDAPI programs, in parallel or with `inkwell run`.
+// Starts programs that behave like CHAI3D or HDAPI programs, also in parallel and with `inkwell run`.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 std::string program(const std::string& name) { return build_directory() + "/" + name; }
 
-/// Rest of the line that begins with this word.
+/// Returns the text between this word and the end of the line.
 std::string value_of(const std::string& text, const std::string& word) {
   const auto begin = text.find(word + " ");
   return begin == std::string::npos
@@ -165,7 +165,7 @@ TEST_CASE("the page's program pulls the hand to the middle of the box until Ente
   board.hold();
   RunningProgram well({program("inkwell"), "run", "--usbip", board.address.substr(6), program("drop-in-well")});
   CHECK(well.read_line() == "Press Enter to end.");
-  // Springs of 300 and 100 N/m, 20 mm apart.
+  // Equilibrium position between springs of 300 and 100 N/m whose rest positions are 20 mm apart.
   const double asked_s = board.time_s();
   while (board.pulled_m(0) > -0.004 && board.time_s() < asked_s + 5.0) {
   }

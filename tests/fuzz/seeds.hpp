@@ -13,9 +13,8 @@ struct Seed {
   Bytes bytes;
 };
 
-/// The target's examples and the files of its folder in the order of their names. A file NAME.hex contains
-/// hexadecimal digits with spaces and '#' comments; other files are raw bytes. Throws std::runtime_error if a file
-/// cannot be read.
+/// The target's examples, then the files of the target's folder, sorted by name. A file NAME.hex contains hexadecimal
+/// digits with spaces and '#' comments; other files are raw bytes. Throws std::runtime_error if a file cannot be read.
 std::vector<Seed> seeds_of(const Target& target);
 
 /// Throws std::runtime_error if the file cannot be read.

@@ -1,4 +1,5 @@
-// The firmware's USB device with a host that sends any packets in any order. The fake port checks the device.
+// The fuzz target for the firmware's USB device. The host sends any packets in any order. The fake port checks the
+// device.
 #include "tests/firmware/usb/device_bench.hpp"
 #include "tests/fuzz/target.hpp"
 

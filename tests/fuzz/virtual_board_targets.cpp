@@ -93,7 +93,7 @@ const Registered control_requests{
       });
     }};
 
-/// A firmware image that a board loads. The memories still contain the previous images.
+/// Fuzz target for firmware images of a virtual board. The memories still contain the previous images.
 const Registered board_image{"board_image",
                              [](Input input) {
                                static Memory memory;

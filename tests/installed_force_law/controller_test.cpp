@@ -1,4 +1,4 @@
-// A force law in the controller: activation, restart, and a force that is not a number.
+// Tests a force law in the controller: activation, restart, and a force that is not a number.
 #include <doctest/doctest.h>
 
 #include <limits>

@@ -1,5 +1,5 @@
-// Every command of every interface, followed immediately by every kind of program exit. A command that has returned
-// must have been executed.
+// Tests every command of every interface, followed immediately by every kind of program exit. A command that has
+// returned must have been executed.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -117,7 +117,7 @@ struct Watched : Board {
       require(set_patience);
     }
   }
-  /// Checks the effect of the command. No other state of the program may remain.
+  /// Checks the effect of the command. The board must have no other state from the program.
   void check(const std::string& command) {
     CHECK(newest().state == INKWELL_READY);
     driver.reset();

@@ -1,4 +1,4 @@
-// Time over which the board interpolates a program's forces.
+// Tests the interpolation time for a program's forces on the board.
 #include <doctest/doctest.h>
 
 #include "host/bindings/library/force_interval.hpp"

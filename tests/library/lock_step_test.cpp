@@ -1,4 +1,4 @@
-// In lock step, no pose is missed, no force is late, and the same seed repeats the run.
+// Tests that in lock step no pose is missed, no force is late, and a run with the same seed is identical.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   arm.make_active();
   SUBCASE("100 recordings during a servo") {
     constexpr int recordings = 100;
-    // The commands that select signals replace two force reports; the effect disappears after 2 ms.
+    // The commands for the signal selection replace two force reports; the effect disappears after 2 ms.
     constexpr std::size_t displaced = 60, rows = 100;
     constexpr double N_per_s = 0.5;
     inkwell_pose begin;

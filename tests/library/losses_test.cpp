@@ -1,5 +1,4 @@
-// Loss of the connection to an open arm: the effect on the arm, its force and its servo. Also covers the force of a
-// previous program.
+// Tests a lost connection to an open arm, with the effect on arm, force and servo.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -31,7 +30,7 @@ int goes_on(inkwell_arm*, const inkwell_pose*, double force_N[3], void*) {
   return 0;
 }
 
-/// A board that receives the force of a servo.
+/// A board with a servo; the servo sends forces.
 struct Driven : Board {
   VirtualArm driver{address};
   inkwell_arm* const arm = driver.arm;
@@ -112,7 +111,7 @@ TEST_CASE("a lost arm comes back, with the force off after a lost link") {
   board.drive();
 }
 
-/// A virtual board that exits and starts again on the same port.
+/// This virtual board exits and starts again on the same port.
 struct Program {
   std::string port = "0";
   std::optional<RunningProgram> board;

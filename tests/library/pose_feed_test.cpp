@@ -13,7 +13,7 @@ namespace {
 
 using library::Loss, library::PoseFeed, library::Servo;
 
-/// A board that passes through a sequence of states.
+/// This board passes through a sequence of states.
 struct Board {
   PoseFeed poses;
   std::uint32_t sequence = 0;

@@ -1,4 +1,4 @@
-// Values that the reader adds to a pose.
+// Tests the values that PoseReader adds to a pose.
 #include <doctest/doctest.h>
 
 #include <cmath>

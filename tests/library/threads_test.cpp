@@ -1,4 +1,4 @@
-// Several threads on one arm, a servo that blocks, and closing an arm while threads use the arm.
+// Tests several threads on one arm, a blocking servo, and closing an arm during calls of other threads.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Lock step: conditions for the start of a turn of virtual boards.
+// Tests when the time of virtual boards advances in lock step.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace {
 
 using library::Loss, library::PoseFeed, library::Turns;
 
-/// A board that sends each pose as soon as it is requested.
+/// This board sends each requested pose immediately.
 class SteppedBoard {
  public:
   SteppedBoard(PoseFeed& poses, std::shared_ptr<Turns> turns, bool is_stepped, std::uint32_t poses_before_open = 1)

@@ -1,4 +1,4 @@
-// The C++ wrapper: arms that are moved, assigned and destroyed while their servo runs.
+// Tests the C++ wrapper: moving, assigning and destroying an arm while its servo runs.
 #include <doctest/doctest.h>
 
 #ifdef __SANITIZE_ADDRESS__
@@ -24,7 +24,7 @@ void let_pass(const Arm& arm) {
   while (arm.wait_for_pose().sequence - begin < poses) continue;
 }
 
-/// Number of servo calls: all calls, and calls during or after the destruction of the servo.
+/// Number of all servo calls, and number of calls during or after the destruction of the servo.
 struct Calls {
   std::atomic<int> all = 0, late = 0;
   std::atomic<bool> is_gone = false;

@@ -1,5 +1,5 @@
-// The window's device connection without a display, with the commands of losses_test.py. The window sends no force; the
-// hand feels a wall of the box.
+// The window's device connection without a display, with the commands of losses_test.py. The window sends no force; a
+// wall of the box produces the force.
 #include <chrono>
 #include <iostream>
 #include <optional>

@@ -32,7 +32,7 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
          name.ends_with(plain + "_per_turn");
 }
 
-/// A parameter table that tests change. All tests share this table, because each table needs 3.5 KB of the target's
+/// A parameter table for changes by tests. All tests share this table, because each table needs 3.5 KB of the target's
 /// memory.
 auto& fresh_table() {
   static auto table = parameter_table;

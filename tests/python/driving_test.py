@@ -33,7 +33,7 @@ class Driving(unittest.TestCase):
         self.assertTrue(self.arm.servo_is_running)
         with self.assertRaisesRegex(inkwell.Refused, "already running on this arm"):
             self.arm.servo(lambda pose: None)
-        # Equilibrium between two springs of 300 and 100 N/m, 20 mm apart.
+        # Equilibrium position between springs of 300 and 100 N/m whose rest positions are 20 mm apart.
         pulled = wait_until(self.arm, lambda pose: abs(pose.position_m[0] - 0.005) < 0.0007
                             and abs(pose.velocity_m_s[0]) < 0.005)
         self.assertAlmostEqual(pulled.force_N[0], 1.5, delta=0.15)
@@ -156,7 +156,7 @@ class Driving(unittest.TestCase):
         make_active(self.arm)
         self.arm.place_shapes(inkwell.Plane(FREE_POINT_M, (0, 0, 1), stiffness_N_per_m=1000))
         self.arm.virtual_hand.move((0, 0, -0.034))
-        # Equilibrium between two springs of 300 and 1000 N/m, 4 mm apart.
+        # Equilibrium position between springs of 300 and 1000 N/m whose rest positions are 4 mm apart.
         wait_until(self.arm, lambda pose: abs(pose.force_N[2] - 0.92) < 0.1 and pose.feels_shapes)
         for wrong, words in (([inkwell.Plane(FREE_POINT_M, (0, 0, 0))], "normal of plane 0"),
                              ([inkwell.Plane((math.nan, 0, 0), (0, 0, 1))], "plane 0"),

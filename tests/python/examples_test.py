@@ -107,7 +107,7 @@ class Examples(unittest.TestCase):
         with running(name, board.address):
             board.let_pass(0.5)  # while the force rises
             damping_Ns_per_m = []
-            # On a busy computer the program may be too slow during one stroke, but not during all strokes.
+            # On a busy computer, the program can be too slow during some strokes, but not during all strokes.
             while not damping_Ns_per_m or abs(damping_Ns_per_m[-1] - 4) > 1:
                 self.assertLess(len(damping_Ns_per_m), 10, damping_Ns_per_m)
                 force_N, velocity_m_s = stroke()

@@ -1,5 +1,5 @@
-// Checks of the main loop: supply ripple, dead encoder wires, shorted bridge wires, and a wrong reference voltage. Each
-// fault is detected in time, and normal use of hand and program raises no fault.
+// Tests the checks by the main loop: supply ripple, dead encoder wires, shorted bridge wires, and a wrong reference
+// voltage. The main loop detects each fault in time, and normal use raises no fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -287,7 +287,7 @@ TEST_CASE(
 
 namespace {
 
-/// Measures the margin between normal use and a fault.
+/// Measures the margin between normal use and the fault threshold.
 class HonestRig : public BoardRig {
  public:
   HonestRig() {

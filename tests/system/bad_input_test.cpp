@@ -148,7 +148,7 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(unlike, {"no `inkwell dance`", "`inkwell --help`"});
     CHECK(unlike.err.find("Did you mean") == std::string::npos);
     check_refused(run_program("inkwell", {"--virtual", "paramters"}), {"no `inkwell paramters`", "mean parameters?"});
-    // The error for the third word proposes no command, because `plot` expects no command there.
+    // The error for the third word proposes no command, because the third word of `plot` is not a command.
     check_refused(run_program("inkwell", {"plot", "push.h5", "parameters"}), {"parameters"});
     check_refused(run_program("inkwell", {"--sead", "info"}), {"--sead"});
   }

@@ -40,7 +40,7 @@ class BoardRig {
   /// Runs until the newest pose satisfies the condition; fails the test after `limit_s` of board time.
   void run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s = 3.0);
 
-  /// With the hand, moves the stylus out of the inkwell and to a point of the workspace.
+  /// Lets the hand move the stylus out of the inkwell and to a point of the workspace.
   void take_to(device::Vector3 target_m, double duration_s = 0.6);
   /// Waits for the reference, then switches the force on.
   void make_active();

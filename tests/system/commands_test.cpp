@@ -28,7 +28,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board in real time, and companion commands that connect to this board.
+/// A board in real time, and companion commands for this board.
 struct BoardAndCompanion {
   device::VirtualBoard board{device::VirtualBoardOptions{}};
   device::ControlClient control = board.control();

@@ -1,5 +1,5 @@
-// The board's time counters wrap: control periods after 59 hours, bus frames after 49 days. The wraps have no effect on
-// hand or program. The image near-wrap.elf starts 3 s and 4 s before these wraps.
+// The board's time counters wrap: control periods after 59 hours, bus frames after 49 days. The wraps must not affect
+// the hand or the program. The image near-wrap.elf starts 3 s and 4 s before these wraps.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A board whose crystal does not have the expected frequency.
+// Tests a board with a crystal of the wrong frequency.
 #include <doctest/doctest.h>
 
 #include "tests/system/program.hpp"

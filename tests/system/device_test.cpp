@@ -87,7 +87,7 @@ TEST_CASE("boards that are started by hand have serial numbers of their own, whi
     const std::string ready = board.read_line();
     port = ready.substr(ready.find("usbip=") + 6);
     port.resize(port.find(' '));
-    // On a busy machine the arm may appear after the time limit of the list.
+    // On a busy machine, the arm can appear after the time limit for listing the devices.
     auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
     for (int again = 0; listed.exit_code != 0 && again < 30; ++again)
       listed = run_program("inkwell", {"devices", "--json", "--usbip", port});

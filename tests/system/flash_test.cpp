@@ -28,7 +28,7 @@ namespace {
 
 std::string image(const std::string& name) { return build_directory() + "/../board/" + name; }
 
-/// A virtual board that runs in real time.
+/// This virtual board runs in real time.
 class FreeBoard {
  public:
   /// `more`: additional options, which override the default image and flash file.

@@ -1,5 +1,5 @@
-// A user-defined force law in the image: every table contains its parameters and signals. The force equals the force of
-// the same source on the PC, and a division by zero raises a fault.
+// A user-defined force law in the image: every table contains its parameters and signals. On the board and on the PC,
+// the law computes the same force. A division by zero raises a fault.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// Conditions that void the reference of the arm: an encoder that jumps, or an inkwell switch that closes outside the
-// inkwell.
+// Tests two reasons for an invalid reference: a jump of an encoder, and a closed inkwell switch outside the inkwell.
 #include <doctest/doctest.h>
 
 #include <string>

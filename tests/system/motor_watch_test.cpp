@@ -93,12 +93,13 @@ class WatchedRig : public BoardRig {
 
   /// Largest sum, relative to the fault threshold MotorWatch::tolerance_sum_V.
   float nearest_V = 0.0f;
-  /// Largest voltage that resistance and speed do not explain, and its largest excess over the tolerance.
+  /// Largest difference between the voltage and the expected voltage, and the largest excess of this difference over
+  /// the tolerance.
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
-  /// Largest current change per control period, and the largest change that current loop and speed do not explain. The
-  /// fault threshold is CurrentJump::tolerance_A.
+  /// Largest current change per control period, and largest difference from the expected change. The fault threshold is
+  /// CurrentJump::tolerance_A.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:

@@ -1,4 +1,5 @@
-// The ports of a running virtual board: accepted and refused clients, and the files that remain after the board's exit.
+// Tests the ports of a virtual board: accepted clients, refused clients, and the remaining files after the board's
+// exit.
 #include <doctest/doctest.h>
 
 #include <signal.h>

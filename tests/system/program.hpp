@@ -25,7 +25,7 @@ struct ProgramResult {
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           std::chrono::seconds limit = hang_guard);
 
-/// A program that runs during the lifetime of this object. The program shares the standard error of the test.
+/// Runs a program during the lifetime of this object. The program shares the standard error of the test.
 class RunningProgram {
  public:
   /// `words`: name or path of the program, and its arguments. `environment`: "NAME=VALUE", added to the environment of

@@ -93,7 +93,7 @@ struct Cycles {
   double mean, longest;
 };
 
-/// Cycles of the control interrupt, the last recorded signal of a run.
+/// Cycles of the control interrupt. This signal is the last signal in each recorded sample.
 Cycles servo_cycles(const Story& story) {
   double sum = 0, longest = 0;
   std::size_t count = 0;

@@ -150,7 +150,7 @@ TEST_CASE(
   const auto heartbeat = instructions_in({"Bridges12begin_period", "Bridges10end_period"});
   const auto heat = instructions_in({"7control11update_heat"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
-  // The motor check also uses this function, in every 128th check of a motor.
+  // The motor check also calls this function, once per 128 checks of a motor.
   const auto resistance = instructions_in({"Controller17update_resistance"});
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {

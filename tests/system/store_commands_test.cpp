@@ -18,7 +18,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board with persistent flash, and companion commands that connect to this board.
+/// A board with persistent flash, and companion commands for this board.
 struct RememberingBoard {
   TemporaryDirectory directory;
   std::string flash = directory.file("flash.bin");

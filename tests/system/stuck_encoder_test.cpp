@@ -1,5 +1,5 @@
-// A stuck encoder is detected from a current that does not move its joint, or from the voltage of a turning motor.
-// Healthy encoders in the same situations raise no fault.
+// Tests the detection of a stuck encoder: a current does not change the count, or the voltage shows that the motor
+// turns. Healthy encoders in the same situations raise no fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,8 +26,7 @@ Fault fault_of(BoardRig& rig) {
   return rig.pose().fault;
 }
 
-/// A program pulls for one second with a force that rises to 6 N, falls and rises again, while the hand holds the
-/// stylus.
+/// A program pulls for one second while the hand holds the stylus. The force rises to 6 N, falls and rises again.
 void pull(BoardRig& rig, const std::array<float, 3>& along) {
   for (int millisecond = 0; millisecond < 1'000; ++millisecond) {
     const float part = std::fmod(0.0015f * static_cast<float>(millisecond), 1.0f);  // phase of the rise and fall

@@ -1,4 +1,4 @@
-// UARTs of the virtual board on this program's pipes, on a pseudo-terminal and on a socket.
+// Tests the UARTs of the virtual board on pipes, on a pseudo-terminal and on a socket.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// The window during disconnections of the device, and recordings and guides in the window.
+// Tests disconnections of the device, recordings and guides in the window.
 #include <doctest/doctest.h>
 
 #include <chrono>

@@ -17,12 +17,12 @@ void look_for(WindowRig& rig, const std::string& text) {
   rig.wait_until("it says " + text, [&](const Sight& now) { return now.says(text); });
 }
 
-/// A text field loses text that is typed before the field has the keyboard focus.
+/// Text is lost if it is typed before the text field has the keyboard focus.
 void wait_for_keyboard(WindowRig& rig, const std::string& field) {
   rig.wait_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
-/// The control that receives the keys; empty without such a control.
+/// Name of the control with the keyboard focus; empty without such a control.
 std::string focused_control(const Sight& sight) {
   for (const auto& each : sight.all.at("items").items())
     if (each.value().at("active")) return each.key();

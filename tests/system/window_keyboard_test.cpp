@@ -35,7 +35,8 @@ void go_to_part(WindowRig& rig, const std::string& part) {
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
-/// Presses the key until the item has the keyboard focus. Returns all items that had the focus, including this item.
+/// Presses the key until the item has the keyboard focus. Returns all items with the focus during this time, including
+/// the last item.
 std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::string& item, int steps_maximum) {
   std::set<std::string> on_the_way;
   for (int step = 0; step < steps_maximum; ++step) {

@@ -62,7 +62,7 @@ std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& othe
   return changed;
 }
 
-/// A shift of the curves by one sample, which may occur after a new read, changes fewer pixels.
+/// A new read can shift the curves by one sample, but this shift changes fewer pixels.
 constexpr std::size_t of_a_sample = 100;
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr float stiff_N_per_m = 1500.0f;
 
 const auto says = [](const std::string& words) { return [words](const Sight& now) { return now.says(words); }; };
 
-/// The window sends one value at its start. The preset increases the number of values to three.
+/// When the window starts, it sends one value. The preset increases the number of values to three.
 void make_stiff(WindowRig& rig) {
   rig.wait_until("one value waits", says("1 value is not stored"));
   rig.click("tuning/Stiff");

@@ -1,4 +1,4 @@
-// Views of the window: event log, dragged signals, formulas, an overlaid recording, large displays.
+// Tests views of the window: event log, dragged signals, formulas, an overlaid recording, large displays.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -54,7 +54,7 @@ struct StageClock {
   }
 };
 
-/// A box far from the arm, so that every step has contact with three walls and reaches the force limit. No motors are
+/// The box is far from the arm, so every step has contact with three walls and reaches the force limit. No motors are
 /// simulated, so no current flows although the joints move.
 protocol::ParameterSet parameters_out_of_box() {
   using enum protocol::Parameter;
@@ -81,7 +81,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2400 instr
   constexpr int steps = 400;
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
-    // An edge in two of three periods on every joint causes the longest search of the velocity windows.
+    // The longest search of the velocity windows occurs with an edge in two of three periods on every joint.
     for (std::int32_t& counts : samples.encoder_counts) counts += i % 3 != 0 ? 1 : 0;
     StageClock clock{counter};
     const std::uint32_t begin = counter.ticks();

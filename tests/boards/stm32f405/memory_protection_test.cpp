@@ -29,7 +29,7 @@ TEST_SUITE("virtual chip: memory protection") {
       ChipUnderTest test("protection", mode);
       const Stop stop = test.chip.run_until(ticks(0.01));
       REQUIRE(test.result(0) == finished);
-      // The test uses three areas: a read-only page, a region above this page whose third subregion is disabled, and 32
+      // The test uses three areas: a read-only page, a region with a disabled third subregion above this page, and 32
       // bytes in another page.
       check_results(test, 1,
                     {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});

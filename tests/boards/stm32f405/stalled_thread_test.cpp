@@ -1,4 +1,4 @@
-// Injected fault: the thread stalls while exceptions are still handled.
+// Tests an injected fault: thread mode stalls, but the processor still handles exceptions.
 #include "tests/boards/stm32f405/chip_fixture.hpp"
 
 using namespace inkwell::virtual_board;

@@ -62,7 +62,7 @@ struct Inputs {
   void pulses(char port, unsigned pin, int count) {
     for (int i = 0; i < count; ++i) pulse(port, pin);
   }
-  /// Returns the numbers of the pulses on B4, counted from 1, at which the first channel captured.
+  /// Returns the number of each pulse on B4 that the first channel captured; the first pulse is number 1.
   std::vector<int> captures(int count) {
     std::vector<int> at;
     for (int i = 1; i <= count; ++i) {

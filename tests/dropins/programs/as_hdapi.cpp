@@ -1,4 +1,4 @@
-// A program that is linked against libHD.so. The program pulls to the right in each tick until it reads a line. With
+// This program is linked to libHD.so. The program pulls to the right in each tick until it reads a line. With
 // `ends-in-a-frame`, the program exits in the middle of a frame. The program prints `drives` when the force is on.
 #include <atomic>
 #include <cstdio>

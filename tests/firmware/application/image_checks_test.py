@@ -11,7 +11,7 @@ PLACEMENT = REPOSITORY
 LINKER_SCRIPT = REPOSITORY / "boards/facts/stm32f405.ld"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
-# The minimum program that the tools accept as a firmware. `work` is the code under test.
+# Smallest program that the tools accept as firmware. `work` is the code under test.
 FRAME = """
 #include "firmware/placement/interrupt.hpp"
 extern "C" {

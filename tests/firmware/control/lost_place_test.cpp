@@ -160,7 +160,7 @@ TEST_CASE("a switch that was closed elsewhere gives no reference before it was s
   tests::run(controller, samples, settings, rest_periods);
   REQUIRE(controller.fault() == Fault::inkwell_implausible);
   REQUIRE(state_after_clearing(controller, samples, settings) == State::unreferenced);
-  // The wire still touches ground, and the arm rests at several positions.
+  // The wire is still shorted to ground, and the arm rests at several positions.
   for (const std::int32_t counts : {600, 900, 0}) {
     tests::move_to(controller, samples, {counts, 0, 0}, settings, step_counts, step_periods);
     tests::run(controller, samples, settings, 3 * rest_periods);

@@ -1,4 +1,4 @@
-// An arm and a host that sends signs of life. The inkwell is near a wall.
+// An arm with a host. The host sends signs of life. The inkwell is near a wall.
 #pragma once
 
 #include "tests/firmware/control/arms.hpp"

@@ -347,7 +347,7 @@ TEST_CASE("what is left of a jump is forgotten when the force goes off") {
   arm.run(2);
   arm.controller.carry_out(tests::command(protocol::Command::enable_force));
   arm.run(21);
-  // 20 of the 5000 periods of the ramp have passed, for the wall's 1 N and the floor's 2 N.
+  // 20 of the 5000 periods of the ramp have passed. The full force is 3 N: 1 N from the wall and 2 N from the floor.
   CHECK(arm.force_N().z == doctest::Approx(3.0f * 20 / 5000).scale(0).epsilon(2e-4));
 }
 

@@ -28,7 +28,8 @@ class SimulatedMotors {
     for (std::size_t i = 0; i < 3; ++i) motors[i].sensor = i;
   }
 
-  /// Runs one control period. The voltages of the previous call act now; the new voltages act in the next period.
+  /// Runs one control period. The voltages of the previous call are applied in this period; the new voltages are
+  /// applied in the next period.
   control::Triple step(const control::Triple& requested_V) {
     control::Triple reading_A{};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// The controller's state transitions while the force rises, reaches its limit and is switched off.
+// Tests the controller's state transitions while the force rises, reaches the force limit and is switched off.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -28,7 +28,7 @@ protocol::CommandReport pulse(Command which, std::uint8_t motor, float amplitude
   return report;
 }
 
-/// Current that force_limit_N allows in the inkwell. The motor alone produces a force along `normal`.
+/// Allowed current in the inkwell, calculated from force_limit_N. The motor alone produces a force along `normal`.
 float test_limit_A(const Settings& settings, std::size_t motor) {
   const auto jacobian = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).jacobian;
   const control::Vector3 normal = control::cross(jacobian.column[(motor + 1) % 3], jacobian.column[(motor + 2) % 3]);

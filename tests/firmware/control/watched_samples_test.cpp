@@ -20,7 +20,7 @@ using protocol::State;
 using tests::run_with_host;
 using tests::settings_near_wall;
 
-/// Samples that must switch off an active controller in the same period.
+/// Each of these samples must switch off an active controller in the same period.
 struct BadSample {
   Fault fault;
   void (*spoil)(Samples&);
@@ -183,7 +183,7 @@ TEST_CASE("a motor that was hot before a restart is as hot after it, and goes on
   CHECK(controller.motor_heat()[1] == doctest::Approx(0.5f * housing).scale(0).epsilon(0.01));
   CHECK(controller.motor_heat()[2] == doctest::Approx(0.125f * (winding + housing)).scale(0).epsilon(0.01));
 
-  // A restart does not change the temperature to which a hot motor must cool.
+  // A hot motor must cool to the same temperature after a restart as without a restart.
   Controller hot{tests::board_limits};
   hot.start_warm({{1.1f, 0.0f, 0.0f}, {1.1f, 0.0f, 0.0f}, 1});
   CHECK(hot.warmth().too_hot == 1);

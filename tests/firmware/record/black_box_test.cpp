@@ -39,7 +39,7 @@ protocol::RequestResult result_of(const protocol::BlackBoxRowsReport& report) {
   return static_cast<protocol::RequestResult>(report.result);
 }
 
-/// A board with memory that survives restarts. Each run has a new sample ring, from fresh_link().
+/// A board with memory for the record; the memory survives restarts. Each run has a new sample ring, from fresh_link().
 struct Board {
   link::BlackBoxMemory<rows_before, rows_from_fault> memory{};
   link::SampleRing* samples = nullptr;
@@ -303,7 +303,7 @@ TEST_CASE("a crash before anything was recorded is told without rows") {
 TEST_CASE("a crash while a row is written costs that row") {
   Board board;
   board.run(1007, State::active);
-  // Row 51 replaces row 46, the oldest.
+  // Row 51 replaces row 46, the oldest row.
   board.memory.ring[51 % rows_before].row.values[7] = 1.0f;
   board.start(Fault::watchdog);
   CHECK(board.periods() == Periods{940, 960, 980, 1000});

@@ -10,7 +10,7 @@ using protocol::SelfTestItem;
 using protocol::SelfTestResult;
 using protocol::State;
 
-/// A board on which a program requests the maximum force in one direction.
+/// A program requests the maximum force in one direction from this board.
 struct PushedBoard : test::SelfTestBoard {
   std::size_t strongest = 0;  ///< motor with the largest current
 
@@ -21,7 +21,7 @@ struct PushedBoard : test::SelfTestBoard {
     run_while(State::testing);
   }
 
-  /// Runs a self-test during which the arm moves. The motors cannot be measured while the arm moves.
+  /// Runs a self-test while the arm moves. The motors cannot be measured while the arm moves.
   void test_while_it_moves() {
     controller.carry_out(tests::command(Command::self_test));
     run(1);

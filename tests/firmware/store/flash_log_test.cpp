@@ -71,7 +71,7 @@ Payload payload_of(std::uint32_t set) {
   return payload;
 }
 
-/// Returns the number of the stored set, or 0 if there is none. The test fails for a set that was never stored.
+/// Returns the number of the stored set, or 0 if no set is stored. The test fails for a set that was never stored.
 std::uint32_t held(const FlashLog& log) {
   if (!log.newest()) return 0;
   const auto payload = log.newest()->payload;

@@ -31,7 +31,7 @@ constexpr Parameter force_limit = Parameter::force_limit_N, link_length = Parame
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 float default_of(Parameter parameter) { return link::image_defaults()[parameter]; }
 
-/// A firmware that has started with the contents of `flash`.
+/// A firmware, started with the contents of `flash`.
 struct Board {
   link::ParameterStore parameters;
   link::StoredParameters stored;

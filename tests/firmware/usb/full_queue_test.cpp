@@ -1,4 +1,4 @@
-// A host that sends commands faster than the control interrupt carries them out.
+// Tests a host that sends commands faster than the control interrupt executes these commands.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/usb/device_bench.hpp"

@@ -39,7 +39,7 @@ Bytes padded_to(std::size_t size, std::span<const std::byte> used) {
   return padded;
 }
 
-/// A device whose driver is program 7.
+/// Program 7 is the driver of this device.
 struct PaddingBench : DeviceBench {
   PaddingBench() {
     configure();

@@ -1,4 +1,5 @@
-// A force law that divides by a parameter, to test a division by zero. The signals of the law show some of its inputs.
+// This force law divides by a parameter, so that tests can cause a division by zero. The signals of the law show some
+// of its inputs.
 #pragma once
 
 #include "firmware/control/signal_path/force_law.hpp"

@@ -65,10 +65,10 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.ask("vCont;s:1").empty());
     CHECK(gdb.run() == "T05thread:1;");
     CHECK((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
-    // GDB treats the handler's breakpoint as a stop instead of a second fault.
+    // With GDB, the handler's breakpoint is a normal stop.
     CHECK(gdb.ask("c").empty());
     CHECK(gdb.run() == "T05thread:1;");
-    // Without GDB the breakpoint is a second fault.
+    // Without GDB, the handler's breakpoint is a second fault.
     CHECK(gdb.session.receive(gdb_packet("D")) == gdb_packet("OK"));
     CHECK(gdb.test.chip.run_until(gdb.test.chip.now() + ticks(0.001)) == Stop::locked_up);
   }

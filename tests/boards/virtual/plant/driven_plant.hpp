@@ -68,7 +68,7 @@ struct DrivenPlant {
     beat();
   }
   void set_enable(bool on) { drive(facts.bridge_enable, on ? PinLevel::high : PinLevel::low); }
-  /// Generates the heartbeat of a control interrupt, unless `is_halted`.
+  /// Generates the heartbeat of a control interrupt if `is_halted` is false.
   void beat() {
     if (is_halted) return;
     drive(facts.bridge_heartbeat, PinLevel::high);

@@ -27,7 +27,7 @@ TEST_CASE("the hand takes the stylus out, moves it with minimum jerk, holds it s
       driven.idle(0.001);
       fastest_m_s = std::max(fastest_m_s, driven.plant.truth(driven.now).velocity_m_s.norm());
     }
-    // The peak speed of a minimum-jerk movement is 15/8 of its mean speed, at its midpoint.
+    // At the midpoint of a minimum-jerk movement, the speed is 15/8 of the mean speed.
     CHECK(fastest_m_s == doctest::Approx(1.875 * (goal - start).norm() / 0.5).scale(0).epsilon(0.1));
     Truth t = driven.plant.truth(driven.now);
     CHECK((t.position_m - goal).norm() < 0.002);
@@ -78,8 +78,8 @@ TEST_CASE("an arm that is let go falls onto its stops and rests") {
 }
 
 TEST_CASE("a wall made by the motors is stable against a stiff hand and keeps still") {
-  // The controller is a proportional-derivative force in the workspace at 20 kHz, converted to duty cycles without a
-  // current loop. The complete plant is simulated between duty cycle and position.
+  // A proportional-derivative controller runs at 20 kHz in workspace coordinates. Its force is converted to duty cycles
+  // without a current loop. The simulation includes the complete plant from duty cycles to position.
   const auto arm = test::omni();
   DrivenPlant driven(arm);
   driven.enable(true);

@@ -32,7 +32,7 @@ TEST_CASE("the meter of the motors tells the force of their torques, in the mean
   for (int step = 0; step < 58; ++step) meter.step({0.0, 0.0, 0.0}, jacobian_m, true);
   CHECK(meter.peak_over_ms_N() == 0.0);
   meter.step({0.0, 0.0, 0.0}, jacobian_m, true);
-  // The magnitudes of one complete period and of two partly covered periods are added.
+  // The force acts during one whole period and during parts of two other periods, and all three magnitudes are added.
   CHECK(meter.peak_over_ms_N() == doctest::Approx(0.2 * (1.0 + 2.0 / 3 + 1.0 / 3) / 60));
   meter.start();
   for (int step = 0; step < 6; ++step) meter.step({0.0, step < 3 ? 0.04 : -0.04, 0.0}, jacobian_m, true);

@@ -14,7 +14,7 @@ using namespace inkwell::test;
 
 namespace {
 
-/// An arm without friction and weight that rotates about its waist axis. The encoder edges are decoded.
+/// An arm without friction and weight, rotating about the waist axis. The encoder edges are decoded.
 struct Swinging {
   Swinging() : arm(weightless()), driven(arm) {
     driven.plant.place({-0.9, 0.8, 0.4}, {20.0, 0.0, 0.0});

@@ -186,7 +186,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.is_halted = true;
     driven.idle(0.0005);
     CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
-    // Neither input level enables the bridges again; only a heartbeat edge does.
+    // A change of the enable input does not enable the bridges again; a heartbeat edge is required.
     driven.set_enable(false);
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::low);
     driven.set_enable(true);

@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server, and a thread that answers and counts requests.
+/// A server; a separate thread answers and counts its requests.
 class AnsweringServer {
  public:
   explicit AnsweringServer(const local::SocketAddress& where = {}) : server_(where) {

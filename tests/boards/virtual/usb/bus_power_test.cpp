@@ -1,4 +1,4 @@
-// The flashed firmware and the power supply through the cable: USB 2.0, section 7.1.5.
+// Tests how the flashed firmware reacts to VBUS (USB 2.0, section 7.1.5).
 #include <doctest/doctest.h>
 
 #include <array>

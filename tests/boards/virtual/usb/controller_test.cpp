@@ -1,4 +1,4 @@
-// The flashed firmware as a multi-axis controller, in addition to poses and scope.
+// Tests the flashed firmware's multi-axis controller in parallel with poses and scope.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 namespace inkwell::virtual_usb_test {
 namespace {
 
-/// Returns the angles of joint 1 in the poses while spikes of this length and period occur on an encoder wire.
+/// Applies spikes of this length and period to an encoder wire, and returns the angles of joint 1 from the poses.
 std::set<float> angles_under_spikes(board::Pin wire, double spike_s, double period_s) {
   FirmwareOnBus bus(flashed_image());
   for (const auto& input : {board::omni_driver.encoders[0].a.pin, board::omni_driver.encoders[0].b.pin})
@@ -40,7 +40,7 @@ TEST_CASE("spikes of 100 ns on an encoder's wire leave the pose alone, longer on
     CAPTURE(wire.number);
     CHECK(angles_under_spikes(wire, 100e-9, 207e-9).size() == 1);
     CHECK(angles_under_spikes(wire, 330e-9, 700e-9).size() == 1);
-    // Half of the time, the encoder count is wrong by one. Each spike is counted up and down.
+    // Half of the time, the encoder count is wrong by one. The firmware counts up and down once per spike.
     CHECK(angles_under_spikes(wire, 1e-6, 2.03e-6).size() == 2);
   }
 }

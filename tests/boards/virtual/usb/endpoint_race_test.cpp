@@ -25,7 +25,8 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
-    // When the driver replaces a waiting pose, it reads the register twice. The second read is part of a modification.
+    // The driver reads the register twice when it replaces a waiting pose. The second read belongs to a
+    // read-modify-write access.
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
@@ -73,7 +74,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     protocol::PoseReport first;
     std::memcpy(&first, packet.data(), sizeof first);
     bus.registers.on_read = {};
-    // The port model does not detect packets that this test reads directly, so this test also requests the next packet.
+    // The host model does not detect this test's direct read, so the test also reads the next packet directly.
     std::optional<protocol::PoseReport> next;
     bus.cable.on_start_of_frame = [&](std::uint16_t) {
       if (next || bus.core.in(own_address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;

@@ -1,5 +1,5 @@
-// The flashed firmware on the virtual chip, and a host that can observe every transaction on the USB cable. All parts
-// run in one program, so that times are measured exactly in board time.
+// The flashed firmware on the virtual chip, with a USB host. The host can observe every transaction on the cable. All
+// parts run in one program, so that times are measured exactly in board time.
 #pragma once
 
 #include <cstdint>
@@ -74,8 +74,8 @@ class Cable : public virtual_board::BusDevice {
   virtual_board::BusDevice& device_;
 };
 
-/// The core's registers on the chip's bus. This object reports each write, and each read before the firmware receives
-/// the value.
+/// The core's registers on the chip's bus. This object reports each register write. It reports each register read
+/// before the firmware receives the value.
 class WatchedRegisters final : public virtual_board::Peripheral {
  public:
   explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
@@ -106,7 +106,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0,
                          virtual_board::ChipOptions options = {});
 
-  /// Connects or disconnects the cable with VBUS; initially connected.
+  /// Plugs in or unplugs the cable, including VBUS. The cable is initially plugged in.
   void plug(bool in);
   /// Enumerates and configures the device. Throws std::runtime_error if the device does not appear within one second.
   void connect();
@@ -119,9 +119,9 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   };
   Answer control(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
                  std::uint16_t length, std::vector<std::byte> data = {});
-  /// From now on, a request of the host for the next pose is always pending.
+  /// From this call on, the host always has a pending request for the next pose.
   void keep_asking_for_poses();
-  /// From now on, a request of the host for the next controller report is always pending.
+  /// From this call on, the host always has a pending request for the next controller report.
   void keep_asking_the_controller();
   /// Selects signals for the scope and reads the scope continuously.
   void stream_scope(std::span<const protocol::Signal> signals);
@@ -131,7 +131,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
     send_report(std::as_bytes(std::span(&report, 1)));
   }
   void stop_asking_for_poses() { asks_for_poses_ = false; }
-  /// Descriptions of the chip rules that the firmware has violated.
+  /// Descriptions of the violated chip rules.
   std::vector<std::string> violations() const;
 
   std::function<void(const protocol::PoseReport&)> on_pose;

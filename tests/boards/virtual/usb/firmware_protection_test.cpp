@@ -46,7 +46,7 @@ protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   return report.crash;
 }
 
-/// After this time the control interrupt runs. The later self-test would fail without motors and store its fault.
+/// After this time the control interrupt runs. Without motors, the later self-test would fail and store a fault.
 constexpr double before_self_test_s = 0.05;
 
 constexpr unsigned control_interrupt = 16 + 18;
@@ -55,8 +55,8 @@ void run_into_control_interrupt(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != control_interrupt) bus.run_for(1e-6);
 }
 
-/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps. A fault would then
-/// have another type.
+/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps, and a masked fault
+/// would have another type.
 void run_into_main_loop(FirmwareOnBus& bus) {
   run_into_control_interrupt(bus);
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);

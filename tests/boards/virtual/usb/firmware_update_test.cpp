@@ -1,4 +1,4 @@
-// The switch from the flashed firmware to the chip's boot loader, an update, and the return to the firmware.
+// Tests the change from the flashed firmware to the chip's boot loader, an update, and the return to the firmware.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Conditions under which board time waits for the host.
+// Tests when board time waits for the host.
 #include <doctest/doctest.h>
 
 #include "boards/virtual/usb/host_pace.hpp"

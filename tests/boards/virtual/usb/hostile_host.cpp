@@ -175,7 +175,8 @@ class HostileHost {
       setup(descriptor_request(kinds[first]));
       pause_s(between(0, 40e-6));
       if (random_() % 2 == 0) continue;
-      // A token completes the stage of this SETUP, and the next SETUP arrives while the answer is prepared.
+      // A token completes the stage of this SETUP packet. The next SETUP packet arrives while the device prepares the
+      // answer.
       random_() % 2 == 0 ? void(in(0, random_() % 2 == 0)) : void(out(0, true, {}));
       pause_s(between(0, 20e-6));
     }

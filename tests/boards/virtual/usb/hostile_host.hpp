@@ -1,5 +1,5 @@
-// A host that violates the protocol: transactions in any order, lost handshakes, repeated SETUP packets, resets at any
-// time. After each batch the device must enumerate and stream normally.
+// A host with protocol errors: transactions in any order, lost handshakes, repeated SETUP packets, resets at any time.
+// After each batch the device must enumerate and stream normally.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ struct HostileOutcome {
   std::uint64_t answers = 0;        ///< to a SETUP that followed another SETUP
   std::uint64_t wrong_answers = 0;  ///< answers to the earlier SETUP
   std::uint64_t missing_answers = 0;
-  /// Number of stalled answers. An answer is stalled if the device refuses the previous SETUP when the next SETUP
-  /// arrives. Firmware can set STALL on endpoint 0 but cannot clear it (RM0090, OTG_FS_DIEPCTL0), so firmware cannot
-  /// prevent this refusal. The next SETUP is answered.
+  /// Number of stalled answers. If the device refuses a SETUP packet when the next SETUP packet arrives, the answer to
+  /// the next packet is a STALL. Firmware can set STALL on endpoint 0 but cannot clear it (RM0090, OTG_FS_DIEPCTL0), so
+  /// firmware cannot prevent this refusal. The device answers the following SETUP packet.
   std::uint64_t stalled_answers = 0;
   std::vector<std::string> failures;  ///< batches after which the device did not work, and violated rules of the chip
 };

@@ -1,4 +1,4 @@
-// The flashed firmware against a host that violates the protocol. `build/pc/usb-trial hostile --cases N` runs more
+// Tests the flashed firmware with a host that violates the protocol. `build/pc/usb-trial hostile --cases N` runs more
 // cases.
 #include <doctest/doctest.h>
 

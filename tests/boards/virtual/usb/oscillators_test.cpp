@@ -1,4 +1,4 @@
-// The flashed firmware with inaccurate oscillators and crystals, within and beyond the limits of the data sheets.
+// Tests the flashed firmware with inaccurate oscillators and crystals, within and beyond the limits of the data sheets.
 #include <doctest/doctest.h>
 
 #include <cstring>

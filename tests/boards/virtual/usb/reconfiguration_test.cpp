@@ -1,4 +1,4 @@
-// The flashed firmware after a repeated configuration, and after a bus reset during pending transfers.
+// Tests the flashed firmware after a repeated configuration, and after a bus reset during pending transfers.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ protocol::CommandReport clear_fault(std::uint8_t token) {
   return report;
 }
 
-/// The firmware, and a host that reads and records poses and controller reports.
+/// The firmware with a host. The host reads and records poses and controller reports.
 struct Host {
   Host() : bus(flashed_image()) {
     bus.connect();

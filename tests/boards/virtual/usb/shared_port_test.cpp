@@ -1,4 +1,4 @@
-// Several programs that share the device of a virtual board.
+// Tests several programs on the device of one virtual board.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -134,7 +134,7 @@ TEST_CASE("parameters that were stored hold after the power was off; others do n
   CHECK(report.out_of_range == 0);
   CHECK(report.stores_left == stores_left);
 
-  // Storing equal values needs no space, but storing a changed value needs space.
+  // Only a changed value needs space in the store.
   CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
   CHECK(board.report().records_written == 1);
   board.set_stiffness(600.0f);
@@ -315,7 +315,7 @@ struct WatchedStarts {
     REQUIRE(board.bus.chip.debug_port().read(place, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
     return values;
   }
-  /// Returns the addresses in the core-coupled memory.
+  /// Returns all addresses of these values in the core-coupled memory.
   std::vector<std::uint32_t> places_of(const std::vector<float>& values) {
     std::vector<float> memory(virtual_board::ccm_bytes / sizeof(float));
     const auto bytes = std::as_writable_bytes(std::span(memory));
@@ -363,8 +363,8 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 
 }  // namespace
 
-// The result of the power cut is created directly in flash, because no other state survives a power cut. A later test
-// cuts the power of the chip itself. Each power cut of the later test costs one self-test.
+// This test writes the result of a power cut directly to the flash, because only the flash survives a power cut. A
+// later test cuts the power of the chip, but needs one self-test per power cut.
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);

@@ -1,4 +1,4 @@
-// A minimal USB/IP client, and a board that runs in a separate thread.
+// A minimal USB/IP client, and a board in a separate thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The device over USB/IP on a loopback socket, as programs on this computer use it.
+// Tests the device over USB/IP on a loopback socket.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>

@@ -110,15 +110,15 @@ TEST_CASE(
   CHECK(still.most_V == doctest::Approx(1.05 * 3.0 + 0.4));
   CHECK(still.least_V == -still.most_V);
   const auto turning = control::voltage_range(1.5f, measured, -2.0f, 0.4f, 16.0f);
-  // On both sides, the range is extended by a quarter of the back-EMF, the tolerance of the torque constant.
+  // The torque constant has a tolerance of 25 %, so both bounds move outward by a quarter of the back-EMF.
   CHECK(turning.most_V == doctest::Approx(still.most_V - 2.0f + 0.5f));
   CHECK(turning.least_V == doctest::Approx(still.least_V - 2.0f - 0.5f));
-  // The range is wider with the resistance from the parameters.
+  // The resistance from the parameters has a larger tolerance, so the range is wider.
   CHECK(control::voltage_range(1.5f, control::Resistance::of(0.0f, 0.0f, 2.0f), 0.0f, 0.4f, 16.0f).most_V ==
         doctest::Approx(1.1075 * 3.0 + 0.4));
   for (const float back_emf_V : {-30.0f, 0.0f, 30.0f}) {
     const auto [least_V, most_V] = control::voltage_range(1.5f, measured, back_emf_V, 0.4f, 3.0f);
-    // With a wrong speed the voltage may brake the motor, but must never reverse the drive.
+    // If the speed is wrong, the voltage may brake the motor, but must not have the opposite sign of the current.
     CHECK(least_V == (back_emf_V > 0.0f ? 0.0f : -3.0f));
     CHECK(most_V == (back_emf_V < 0.0f ? 0.0f : 3.0f));
   }

@@ -49,7 +49,7 @@ TEST_CASE("only what drives the motion gives way, from a quarter of the reserve 
   const Vector3 rest_N = without_drive(force_N, power_W, velocity_m_per_s, 1.0f);
   CHECK(dot(rest_N, velocity_m_per_s) < 2e-3f * power_W);
   CHECK(rest_N.y == force_N.y);  // the component across the motion does not change
-  // At rest there is no direction of motion, so the force does not jump when the hand reverses.
+  // At rest the motion has no direction, so the force does not jump when the hand reverses.
   const Vector3 still_N = without_drive(force_N, 2e-6f, {1e-6f, 0.0f, 0.0f}, 1.0f);
   CHECK(still_N.x == doctest::Approx(force_N.x));
 }

@@ -60,7 +60,7 @@ struct ArmCase {
   Reference reference;
 };
 
-/// Two links in a plane that joint 1 rotates: the general form of all descriptions in boards/arms/.
+/// Two links in one plane, and joint 1 rotates this plane. All descriptions in boards/arms/ have this general form.
 Point family_reference(const Joints& q, const protocol::ParameterSet& set) {
   const double phi_2 = q[1];
   const double phi_3 = q[2] + set[Parameter::elbow_offset_rad] + (set[Parameter::transmission] == 0.0f ? q[1] : 0.0);

@@ -121,7 +121,7 @@ TEST_CASE("late is more than a millisecond after the interval that the program n
   CHECK(!next_after(20));
   CHECK(!next_after(40));
   CHECK(next_after(41));
-  // A pause in which the force expires is not counted as a delay.
+  // A pause is not counted as a delay if the force expires.
   CHECK(!next_after(3000));
 }
 

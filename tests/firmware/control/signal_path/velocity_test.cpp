@@ -87,7 +87,8 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
         if (period > periods / 2)
           worst = std::max(worst, std::abs(estimate.counts_per_period * rate_Hz - sign * counts_per_s) / counts_per_s);
       }
-      // The uncertainty is one period or one count, whichever is less, over a window of 56 periods and four counts.
+      // The window covers at least 56 periods and four counts. The uncertainty is one period or one count, whichever is
+      // smaller.
       const double window_periods = std::max(56.0, 3.9 * rate_Hz / counts_per_s);
       CHECK(worst < 1.0 / window_periods / std::max(1.0, counts_per_s / rate_Hz));
     }

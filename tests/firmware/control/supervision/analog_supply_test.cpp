@@ -20,7 +20,7 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
   return static_cast<std::uint16_t>(std::min(4096.0f * reference_V / analog_supply_V, 4095.0f));
 }
 
-/// Returns the number of checks until detection with this VDDA, on a chip whose VREFINT is `true_V`.
+/// Returns the number of checks until detection with this VDDA; the chip's VREFINT is `true_V`.
 int readings_until_fault(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
   for (int reading = 1; reading < never; ++reading)
@@ -50,7 +50,7 @@ TEST_CASE("a calibration that was never written or is lost makes the watch coars
       CHECK(readings_until_fault(1.12f * nominal_V, reference_V, calibrated_counts) == noticed);
     }
   }
-  // A reference at the limit of the data sheet with a calibration error of 3 per mille is also checked correctly.
+  // VREFINT is at the limit of the data sheet, and its calibration error is 3 per mille.
   CHECK(readings_until_fault(0.94f * nominal_V, 1.18f, counts_of(1.177f, nominal_V)) == noticed);
   CHECK(readings_until_fault(1.06f * nominal_V, 1.24f, counts_of(1.243f, nominal_V)) == noticed);
 }

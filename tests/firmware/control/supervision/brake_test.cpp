@@ -84,7 +84,7 @@ TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
   CHECK_FALSE(shorts(brake, resists_A, limit_A));
   brake.begin();
   CHECK(shorts(brake, resists_A, limit_A));
-  // If the host is silent first, braking is also reduced, because the hand causes the speed.
+  // If the host is silent before the probe is too fast, the brake is also gentle, because the hand causes the speed.
   Brake silent = begun(condition(Fault::host_silent));
   advance(silent, fast, condition(Fault::over_speed));
   CHECK_FALSE(shorts(silent, resists_A, limit_A));

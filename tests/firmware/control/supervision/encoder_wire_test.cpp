@@ -16,7 +16,7 @@ using control::periods_in;
 
 constexpr std::uint32_t never = periods_in(2.0f);
 
-/// Count of a timer in encoder mode if one wire is stuck. Every second edge is counted, alternately up and down.
+/// Count of a timer in encoder mode if one wire is stuck. The timer counts every second edge, alternately up and down.
 std::uint16_t with_dead_wire(std::int64_t count) { return static_cast<std::uint16_t>((count >> 1) & 1); }
 std::uint16_t without_dead_wire(std::int64_t count) { return static_cast<std::uint16_t>(count); }
 

@@ -17,7 +17,7 @@ constexpr float continuous_A = 1.24f;
 
 using protocol::Parameter;
 
-/// Returns a motor model in which all heat is in the winding.
+/// Returns a motor model without a housing: all heat is in the winding.
 protocol::ParameterSet winding_only(float time_constant_s) {
   protocol::ParameterSet set = tests::omni_parameters();
   set[Parameter::continuous_current_1_A] = continuous_A;
@@ -92,7 +92,8 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   set[Parameter::current_limit_1_A] = 0.9f * continuous_A;
   CHECK(control::prepare(set).motors.allowed_A(0, motors.beyond) == 0.9f * continuous_A);
 
-  // A current demand at the limit receives the allowed current, and the heat settles just below its limit.
+  // The requested current equals the current limit. The motor receives the allowed current, and the heat settles just
+  // below the heat limit.
   set[Parameter::winding_time_constant_s] = 1.0f;
   const control::HeatScale slower = control::prepare(set).heat;
   motors = {};

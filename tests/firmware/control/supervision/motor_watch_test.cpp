@@ -176,8 +176,7 @@ TEST_CASE("the model of each arm: its resistances, and the torque constants with
           doctest::Approx(std::max(set[link_2_m], set[link_3_m]) * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
-/// An arm that is pressed into three walls. Each motor needs a different voltage. The reading of motor `lying` does not
-/// change.
+/// An arm pressed into three walls. Each motor needs a different voltage. The reading of motor `lying` does not change.
 struct PressedArm {
   protocol::ParameterSet parameters = [] {
     using enum protocol::Parameter;

@@ -30,7 +30,7 @@ bool is_detected(Counts counts, Current current_A, bool held = false, std::int32
   return false;
 }
 
-/// Returns a current that passes through these values from 0.2 s on, with 0.15 s per change.
+/// Returns a current with these successive values from 0.2 s on; each change takes 0.15 s.
 template <std::size_t size>
 auto through(const std::array<float, size>& currents_A) {
   return [=](float time_s) {
@@ -42,7 +42,7 @@ auto through(const std::array<float, size>& currents_A) {
     return current_A;
   };
 }
-/// Returns a current that changes linearly between 0.2 and 0.7 s.
+/// Returns a current with a linear change between 0.2 and 0.7 s.
 auto rising(float from_A, float to_A) {
   return [=](float time_s) { return from_A + (to_A - from_A) * std::clamp(2.0f * time_s - 0.4f, 0.0f, 1.0f); };
 }
@@ -89,8 +89,8 @@ TEST_CASE("what changed up to the look in which a joint breaks loose does not co
 }
 
 TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
-  // The joint stops at 0.2 s, when the current starts to rise by 8 A. The joint reverses within the allowed time, or
-  // after twice this time.
+  // The joint stops at 0.2 s, when the current starts to rise by 8 A. The joint reverses within the allowed time in the
+  // first run, and after twice the allowed time in the second run.
   for (const float stationary_s : {0.09f, 0.2f}) {
     const auto turning_round = [=](float time_s) {
       return time_s < 0.2f ? static_cast<std::int32_t>(1e4f * time_s)

@@ -1,4 +1,4 @@
-// Reading the black box from a device, also during reads by other programs and during changes of the black box.
+// Tests reading the black box of a device, also while other programs read it and while its contents change.
 #include <doctest/doctest.h>
 
 #include <cstring>

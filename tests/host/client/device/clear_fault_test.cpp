@@ -1,4 +1,4 @@
-// Duration for which the board state is observed before a fault counts as cleared.
+// A fault counts as cleared after the board state has been observed for this duration.
 #include "host/client/device/clear_fault.hpp"
 
 #include <chrono>

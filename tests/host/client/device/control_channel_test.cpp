@@ -1,4 +1,4 @@
-// The request that switches an arm on a USB cable from the firmware to the boot loader.
+// Tests the request to an arm on a USB cable to change from the firmware to the boot loader.
 #include <doctest/doctest.h>
 
 #include <libusb-1.0/libusb.h>

@@ -64,8 +64,8 @@ void answer_as_inkwell(FakeUsbDevice& arm);
 inline constexpr char fake_usb_system[] = "INKWELL_FAKE_USB_SYSTEM";
 
 /// The fake USB of one test. The devices exist until the end of the test. The Windows variant pads written reports to
-/// their declared length and requires a buffer for the largest feature report. The Windows variant also allows one
-/// libusb handle and leaves errno at 0.
+/// their declared length and requires a buffer for the largest feature report. The Windows variant also allows only one
+/// libusb handle, and its functions leave errno at 0.
 class FakeUsb {
  public:
   FakeUsb();
@@ -81,7 +81,7 @@ class FakeUsb {
   void send_bulk(FakeUsbDevice& device, Bytes data);
   void send_report(FakeUsbDevice& device, Bytes report);
   void unplug(FakeUsbDevice& device);
-  /// Switches the failure of bulk transfers on or off.
+  /// If `fails` is true, all bulk transfers fail.
   void set_bulk_fails(FakeUsbDevice& device, bool fails);
   /// Amount of bulk data that no transfer has read yet.
   std::size_t bulk_left(const FakeUsbDevice& device);

@@ -73,7 +73,7 @@ class FakeUsbipServer {
   std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
   /// Changes the content of a feature report that is sent to the client.
   std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
-  /// Number of transactions that the server answers by closing the connection.
+  /// For this number of transactions, the server closes the connection instead of answering.
   std::atomic<int> transactions_to_break_at = 0;
   /// Called before the server closes the connection at a transaction.
   std::function<void()> on_break = [] {};
@@ -102,7 +102,7 @@ class FakeUsbipServer {
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
-  /// The shape reports in their received lengths.
+  /// The received shape reports, each with its received length.
   std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
   /// Number of transfers that the client has canceled.

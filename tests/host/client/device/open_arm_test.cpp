@@ -1,4 +1,4 @@
-// Opening an arm from an address. A script replaces the virtual board and prints the ports of the test's servers.
+// Tests opening an arm by its address. A script replaces the virtual board and prints the ports of the test's servers.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -22,7 +22,7 @@ namespace {
 
 const std::filesystem::path paper_arm = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards/arms/paper.toml";
 
-/// A virtual board that prints the ports of these servers.
+/// A fake virtual board; the program prints the ports of these servers.
 class StandIn {
  public:
   StandIn(std::uint16_t usbip_port, std::uint16_t control_port) {

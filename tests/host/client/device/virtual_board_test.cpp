@@ -21,7 +21,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A program in a temporary folder that is deleted after the test.
+/// A program in a temporary folder. The folder is deleted after the test.
 class Script {
  public:
   explicit Script(const std::string& lines) {

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A device that sends nothing for the requested time.
+/// This device sends nothing for the requested time.
 class SilentTransport final : public device::Transport {
  public:
   explicit SilentTransport(std::vector<std::chrono::milliseconds>& waited) : waited_(waited) {}

@@ -79,7 +79,7 @@ std::string begin_of_flash(const protocol::ImageIdentity& identity) {
   return bytes;
 }
 
-/// An `openocd` script that comes first on PATH. The script supplies the first bytes of the flash, or logs its
+/// A fake `openocd` script in the first folder of PATH. The script supplies the first bytes of the flash, or logs its
 /// arguments, its folder and the files in the folder.
 class FakeOpenocd {
  public:

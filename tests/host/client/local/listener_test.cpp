@@ -37,7 +37,7 @@ mode_t mode_of(const fs::path& file) {
   return status.st_mode & 07777;
 }
 
-/// A socket file that its program did not remove.
+/// Creates a socket file in a program that exits without removing the file.
 void leave_behind(const fs::path& path) {
   const pid_t child = fork();
   if (child == 0) {

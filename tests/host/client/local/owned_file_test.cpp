@@ -48,7 +48,7 @@ std::string refusal(const fs::path& file) {
 
 std::string of_this_process() { return "(process " + std::to_string(getpid()) + ")"; }
 
-/// A process that calls a function and then waits until it is killed.
+/// This process calls a function and then waits for a kill signal.
 class Child {
  public:
   explicit Child(const std::function<void()>& action) {

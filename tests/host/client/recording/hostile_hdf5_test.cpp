@@ -90,7 +90,7 @@ void put_dataset(hid_t file, const char* path, hid_t type, hid_t space, hid_t pr
   H5Dclose(dataset);
 }
 
-/// A file that contains a valid recording until the test changes the file.
+/// A file with a valid recording; the test changes the file.
 struct Spoilt {
   TemporaryDirectory directory;
   fs::path file = directory / "a.h5";

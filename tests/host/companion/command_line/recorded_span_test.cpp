@@ -1,5 +1,4 @@
-// The samples that belong to a recording of a given length, and the number of missing samples at the end of the
-// recording.
+// Tests which samples belong to a recording of a given length, and how many samples are missing at its end.
 #include <doctest/doctest.h>
 
 #include "host/companion/command_line/recorded_span.hpp"

@@ -101,7 +101,7 @@ TEST_CASE("undetected faults are listed with their result during use, compared w
   stuck_later.peak_force_in_use_N = 3.4;
   stuck_later.noticed_in_use_as = "motor_implausible";
   stuck_later.noticed_in_use_s = 1.75;
-  // Only one of the two situations has a fault-free case at the same instant to compare with.
+  // Only one of the two situations has a fault-free case at the same instant for comparison.
   fault_free.energy_in_use_J = 0.04;
   hot.energy_in_use_J = 0.039;
   stuck.energy_in_use_J = 0.0425;

@@ -15,8 +15,8 @@ using protocol::Command;
 
 namespace {
 
-/// A device that executes each command `latency` poses after its arrival. Two poses are 10 ms apart, so the host has to
-/// send a heartbeat for each pose.
+/// This device executes each command `latency` poses after the command's arrival. Two poses are 10 ms apart, so the
+/// host has to send a heartbeat for each pose.
 class SlowTransport final : public device::Transport {
  public:
   SlowTransport(int latency, std::deque<protocol::CommandReport>& received) : latency_(latency), received_(received) {}

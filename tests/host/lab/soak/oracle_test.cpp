@@ -10,7 +10,7 @@ using protocol::State;
 
 namespace {
 
-/// A board that is checked every 5 ms and sends one pose between two checks.
+/// The oracle checks this board every 5 ms, and the board sends one pose between two checks.
 struct Watched {
   Oracle oracle;
   double now_s = 1.0;

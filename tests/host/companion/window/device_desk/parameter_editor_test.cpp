@@ -1,4 +1,4 @@
-// Values that the sliders show and send: the device's values, pending edits, undo, redo and refusals.
+// Tests the values of the sliders: the device's values, pending edits, undo, redo and refusals.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr Parameter stiffness = Parameter::wall_stiffness_N_per_m;
 constexpr Parameter damping = Parameter::wall_damping_Ns_per_m;
 
-// A device that accepts every change.
+// This device accepts every change.
 struct AgreeableDevice {
   protocol::ParameterSet held = protocol::default_parameters();
 
@@ -51,7 +51,8 @@ TEST_CASE("an edit shows at once, is sent once, and gives way to what the device
   REQUIRE(changes.size() == 1);
   CHECK(changes[0] == ParameterChange{stiffness, 100.0f});
   CHECK(editor.take_changes().empty());
-  // The device first answers with the values of another transaction. The edit is still shown for at most one second.
+  // The device first answers with the values of another transaction. The window shows the edit for at most one more
+  // second.
   editor.device_holds(device.held);
   CHECK(editor.shown(stiffness) == 100.0f);
   editor.forget_unconfirmed(0.9);

@@ -7,7 +7,7 @@ using namespace inkwell::window;
 
 namespace {
 
-/// Number of frames drawn in ten seconds by a loop that checks an unchanged state 60 times per second.
+/// Number of frames in ten seconds if a loop checks an unchanged state 60 times per second.
 int frames_drawn(const FrameEvidence& evidence, double drawing_s = 0.0) {
   FrameRhythm rhythm;
   rhythm.took(drawing_s);

@@ -1,4 +1,4 @@
-// Parts of a window that must be redrawn: changed parts, and parts above or below changed parts.
+// Tests which parts of a window are redrawn: changed parts, and parts above or below changed parts.
 #include <doctest/doctest.h>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// The range that the scope shows: the newest samples, the past while paused, or the time around an event.
+// Tests the displayed range of the scope: the newest samples, the past while paused, or the time around an event.
 #include <cmath>
 
 #include <doctest/doctest.h>
