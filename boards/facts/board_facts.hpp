@@ -99,9 +99,9 @@ inline constexpr float encoder_filter_s =
 // ---- bridges -----------------------------------------------------------------------------------------
 
 // Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
-// u) / 2 and (1 - u) / 2. The motor voltage consists of pulses of one sign at twice pwm_Hz. In the middle of each zero
-// vector, the timers reverse, the ADCs sample, and the current crosses its mean. With locked antiphase at the servo
-// rate, the ripple would be 12 times larger.
+// u) / 2 and (1 - u) / 2. The motor voltage is a sequence of pulses at twice pwm_Hz, all with the same sign. In the
+// middle of each zero vector, the current equals its mean. At this time the timers reverse and the ADCs sample. Locked
+// antiphase PWM at the control rate would have 12 times larger ripple.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
@@ -160,7 +160,8 @@ struct Facts {
   /// The heartbeat rises with each control interrupt while the bridges are on, and falls before the end of the
   /// interrupt. The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
-  /// Output of the monostable, connected to the bridge enable inputs. This output is high while the bridges may switch.
+  /// Output of the monostable, connected to the bridge enable inputs. The bridges can switch only while this output is
+  /// high.
   Pin bridge_hold;
   /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. Each pin switches
   /// off the outputs of its timer in hardware (RM0090, "Using the break function").
@@ -193,7 +194,7 @@ struct Facts {
   /// can change.
   float current_pull_down_ohm;
 
-  /// Limits of the hold time. The tolerances of the monostable, resistor and capacitor add up to one sixth.
+  /// Limits of the hold time. The sum of the tolerances of monostable, resistor and capacitor is one sixth.
   constexpr float bridge_hold_shortest_s() const { return bridge_hold_s * 5 / 6; }
   constexpr float bridge_hold_longest_s() const { return bridge_hold_s * 7 / 6; }
 

@@ -13,7 +13,7 @@ inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 /// The period of a clock is numerator / denominator ticks. For most clocks of the chip the denominator is 1, because
 /// the frequency divides ticks_per_s.
 struct Clock {
-  /// A crystal with a frequency deviation leads to a large numerator and denominator.
+  /// If the crystal has a frequency deviation, numerator and denominator are large.
   __extension__ using Wide = unsigned __int128;
 
   std::uint64_t numerator = 0;  ///< 0: the clock is stopped

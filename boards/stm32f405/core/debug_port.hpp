@@ -47,7 +47,7 @@ class DebugPort {
   virtual void detach() = 0;
 
   virtual CoreRegisters core_registers() const = 0;
-  /// Sets the core registers. In xPSR only the flags change.
+  /// Sets the core registers. The function writes only the flags of xPSR.
   virtual void set_core_registers(const CoreRegisters& registers) = 0;
   virtual FloatRegisters float_registers() const = 0;
   virtual void set_float_registers(const FloatRegisters& registers) = 0;

@@ -4,8 +4,8 @@
 // Unicorn 2.0.1 calls its internal functions through the procedure linkage table. A function of the same name in this
 // program replaces the engine's function and calls the original function. The replaced functions translate loads and
 // stores, fill the address cache, perform uncached accesses, and report whether a priority is negative. The
-// replacements check alignment and access rights without cost for allowed accesses. A refused access faults with the
-// program counter and if-then state of its instruction.
+// replacements check alignment and access rights. Allowed accesses remain as fast as without checks. A refused access
+// faults with the program counter and if-then state of its instruction.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class EngineCalls {
   /// True if this load or store instruction requires an aligned address. Called when the engine translates the
   /// instruction.
   virtual bool must_be_aligned(std::uint16_t first, std::uint16_t second) const = 0;
-  /// Called each time that the engine translates the instruction at `address`.
+  /// Called at each translation of the instruction at `address` by the engine.
   virtual void translates(std::uint32_t address) = 0;
 
   /// While a Use object exists, the engine on this thread calls the functions of its EngineCalls object.

@@ -88,8 +88,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
                                xpsr.padded.with(aligned) | current_exception_;
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
-  // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Firmware can detect the early stacking
-  // only in its stack memory. Refused stacking is repeated at the next FPU instruction.
+  // FPU registers are stacked immediately, even if FPCCR selects lazy stacking. Only the contents of the stack memory
+  // reveal the early stacking to firmware. Refused stacking is repeated at the next FPU instruction.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
   if (stacks) {
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
@@ -237,7 +237,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
   write(UC_ARM_REG_XPSR_NZCVQG, (status & (xpsr.flags() | xpsr.if_then())) | xpsr.thumb.mask() | exception);
-  // APSR is written last, because this write makes Unicorn update its internal copies of the flags.
+  // Unicorn updates its internal copies of the flags when APSR is written, so APSR is written last.
   write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());
   program_counter_ = words[6];
   resume_if_then_block(status);

@@ -95,7 +95,7 @@ Stop Execution::run_slices(Ticks when) {
   auto& timeline = machine_.timeline;
   for (;;) {
     if (state_ == State::runs) timeline.catch_up(processor_.now());
-    // The processor is already stopped here. Advancing the circuit early therefore avoids a later stop.
+    // Because the processor is already stopped, advancing the circuit now avoids a later stop.
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;

@@ -73,7 +73,7 @@ class ChipState {
 class TriggerLines {
  public:
   virtual ~TriggerLines() = default;
-  /// Call this when the USB core OTG_FS receives a start of frame.
+  /// Call this when OTG_FS, the USB core, receives a start of frame.
   virtual void usb_start_of_frame() = 0;
 };
 

@@ -107,7 +107,7 @@ struct Machine {
     last_advance = now;
     circuit.advance(now);
   }
-  /// Maximum delay of DMA writes to memory in fast mode without DMA interrupts. This delay reduces the number of
+  /// Maximum delay of DMA writes to memory in fast mode without DMA interrupts. The delay reduces the number of
   /// processor stops.
   Ticks transfer_lag() const { return options.mode == Mode::exact ? 0 : 10 * (ticks_per_s / 1'000'000); }
 };

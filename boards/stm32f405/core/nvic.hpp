@@ -42,7 +42,8 @@ class Nvic final : public InterruptController {
     changed_ = true;
   }
 
-  /// While `late` is true, calls `on_held` when the exception becomes pending. The exception then waits for let_go().
+  /// While `late` is true, the Nvic object calls `on_held` when the exception becomes pending. The exception then waits
+  /// for let_go().
   void hold_back(unsigned exception, bool late) { assign(late_, exception, late); }
   void let_go(unsigned exception) {
     assign(held_, exception, false);

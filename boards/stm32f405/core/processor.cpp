@@ -133,7 +133,7 @@ void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
   if (address < flash_base || address >= flash_base + flash_bytes) return;
   const std::uint64_t alias = address - flash_base;
   uc_ctl_remove_cache(engine_, alias, alias + bytes);
-  // All prices are discarded, because a block that starts before the changed range may overlap the range.
+  // All block prices are discarded, because a block may start before the changed range and overlap the range.
   timing_.forget();
 }
 
@@ -246,7 +246,8 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   self.last_code_address_ = start;
   self.instructions_ += block.instructions;
   cycles += self.timing_.wait_for_flash(block, cycles, self.register_reader()) + block.cycles;
-  // Operands that the block computes are unknown at its entry, so the mean divide time is used.
+  // If the block itself computes the operands, the operands are unknown at block entry, and the mean divide time is
+  // used.
   if (block.has_divides)
     for (const auto& divide : block.divides)
       cycles += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
@@ -293,7 +294,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   return true;
 }
 
-// In exact mode, adds the cycles that an instruction waits for the flash and for operands. The instruction starts
+// In exact mode, adds the cycles during which an instruction waits for flash or operands. The instruction starts
 // `after_cycles` after the start of its block.
 [[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
   const auto& requests = block_->requests;

@@ -96,7 +96,7 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Call this after a change of instructions in memory.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
   /// Schedules forget_code() for the start of the next slice. During a slice, forget_code() would make the engine fetch
-  /// from the range, and the memory protection unit may refuse this fetch.
+  /// from the range. The memory protection unit might refuse this fetch.
   void forget_code_later(std::uint32_t address, std::uint32_t bytes) { to_forget_.push_back({address, bytes}); }
 
   std::uint64_t cycles() const { return cycles_; }
@@ -208,12 +208,12 @@ class Processor final : public ClockUser, private EngineCalls {
 
   /// True if the instruction at `address` divides by zero outside of if-then blocks.
   bool divides_by_zero(std::uint32_t address) const;
-  /// In fast mode, true if the block contains divide instructions without a hook. The hooks are added after the slice.
+  /// In fast mode, true if a divide instruction of the block has no hook. The hooks are added after the slice.
   bool has_new_divides(const BlockPrice& block);
   void hook_new_divides();
   static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   bool masks_open();
-  /// Unicorn loses the if-then state when it stops inside an if-then block.
+  /// If Unicorn stops inside an if-then block, the if-then state is lost.
   bool in_if_then_block(std::uint32_t address) const;
   bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
   /// Handles an exception return into the middle of an if-then block, for example after a fault in the block.
@@ -238,7 +238,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
   /// True if no access to the frame can be refused.
   bool takes_any_frame(std::uint32_t address, std::uint32_t bytes) const;
-  /// Reason why the words of a frame cannot be accessed, or nothing.
+  /// Reason why a word of a frame cannot be accessed; nothing if all words can be accessed.
   std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
   /// Makes an unprivileged thread privileged, so that the model can write registers that the thread may not write.
   void lift_privilege();

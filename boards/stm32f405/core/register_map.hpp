@@ -3,7 +3,7 @@
 // The maps are independent of the firmware's register maps, so that one mistake cannot affect both maps. The script
 // tools/check/check_registers.py compares both sets of maps with the manufacturer's chip description.
 //
-// CrcRegisters in crc.hpp is a short example. A map contains only registers and fields, so code can read the map as an
+// CrcRegisters in crc.hpp is a short example. A map contains only registers and fields, so code can access a map as an
 // array of entries. Maps are compile-time constants, so `crc.cr.reset.in(word)` compiles to a mask. Register and field
 // names are from the reference manual.
 #pragma once

@@ -1,4 +1,4 @@
-// Private peripheral bus of the Cortex-M4 (ARMv7-M, B3.2, B3.3, C1.6, C1.8). The model contains the system control
+// Private peripheral bus of the Cortex-M4 (ARMv7-M, B3.2, B3.3, C1.6, C1.8). The model consists of the system control
 // block, SysTick, the floating-point context registers, the cycle counter and some debug registers.
 #pragma once
 

@@ -2,8 +2,8 @@
 //
 // Each timed part (timer, converter, watchdog) sets two times. `due` is the time of its next internal step. `wake` is
 // the time at which the step affects the processor (interrupt, reset, memory). The processor runs up to the earliest
-// `wake`. Steps before the earliest `wake` wait until a part is accessed, and are then executed in order of time. PWM
-// edges therefore do not stop the processor.
+// `wake`. Steps before the earliest `wake` are delayed until a part is accessed. The delayed steps are then executed in
+// order of time. PWM edges therefore do not stop the processor.
 #pragma once
 
 #include <algorithm>
@@ -100,7 +100,7 @@ class EventQueue final : public Scheduler, public TimedPart {
   void cancel(Id id) override { alive_.erase(id); }
   void step(Ticks now) override {
     while (!queue_.empty() && queue_.top().when <= now) {
-      // The event can be moved out of the queue, because the queue order depends only on time and number.
+      // Moving the event out of the queue is safe, because the queue order depends only on time and number.
       Event event = std::move(const_cast<Event&>(queue_.top()));
       queue_.pop();
       if (alive_.erase(event.id) != 0) event.action();

@@ -14,8 +14,9 @@ bool is_of_devices(std::uint32_t address) {
 
 }  // namespace
 
-// The memory protection unit of Unicorn is not used, because Unicorn does not know which addresses respond. The engine
-// caches the access rights of each page. In pages that contain an MPU region boundary, the engine checks each access.
+// Unicorn's memory protection unit is not used, because Unicorn cannot distinguish mapped and unmapped addresses. The
+// engine caches the access rights of each page. In pages that contain an MPU region boundary, the engine checks each
+// access.
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
@@ -50,7 +51,7 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
-  // A negative result makes the engine check each access, including alignment.
+  // If the result is negative, the engine checks each access, including alignment.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;

@@ -13,7 +13,7 @@ namespace inkwell::virtual_board {
 
 class SystemControl;
 
-/// A block of 32-bit registers. A narrow read returns part of the word, and a narrow write replaces part of the word
+/// A block of 32-bit registers. A narrow read returns a part of the word. A narrow write replaces a part of the word
 /// from stored().
 class RegisterBlock : public Peripheral {
  public:
@@ -34,7 +34,6 @@ class RegisterBlock : public Peripheral {
   virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
   /// Returns the register value without the side effects of a read.
   virtual std::uint32_t stored(std::uint32_t) const { return 0; }
-  /// Returns shown<...>() of the register map.
   virtual std::span<const MapEntry> registers() const { return {}; }
 };
 

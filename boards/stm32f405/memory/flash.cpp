@@ -126,8 +126,8 @@ void FlashController::hold_up() {
   }
 }
 
-// After interrupted programming, each bit to be cleared may be 0 or 1. After an interrupted erase, each word of the
-// sector may be unchanged, erased, or random.
+// If programming is interrupted, each bit to be cleared is randomly 0 or 1. If an erase is interrupted, each word of
+// the sector is unchanged, erased, or random.
 void FlashController::tear() {
   const auto& before = operation_->before;
   std::uint8_t* place = machine_.memory.flash() + operation_->offset;

@@ -44,8 +44,8 @@ inline constexpr auto data_checksums = [] {
   return table;
 }();
 
-/// Number of stuffed bits in the identifier, the payload and the checksum of a data packet. The last bit of the
-/// synchronization pattern is a 1 bit, which also counts.
+/// Number of stuffed bits in the identifier, the payload and the checksum of a data packet. The count of consecutive 1
+/// bits starts with the last bit of the synchronization pattern.
 inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
   constexpr std::uint8_t data0_identifier = 0xC3, data1_identifier = 0x4B;
   unsigned ones = 1, stuffed = 0, checksum = 0xFFFF;

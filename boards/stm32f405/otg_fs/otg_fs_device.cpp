@@ -299,7 +299,7 @@ bool OtgFsDevice::clock_is_exact() const {
   return chip_.usb_Hz() >= nominal_Hz - tolerance_Hz && chip_.usb_Hz() <= nominal_Hz + tolerance_Hz;
 }
 
-// Checks all conditions under which a host can detect the device.
+// Checks all conditions for a host to detect the device.
 void OtgFsDevice::check_connection() {
   if (!pulled_up_) return;
   if (!pins_connected()) rules_.violate(Rule::usb_pins);

@@ -45,7 +45,7 @@ class Adc final : public TimedPart {
   /// In an interleaved mode, starts the regular group of a slave converter at `when`.
   void start_regular_at(Ticks when);
   unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
-  /// True if the processor must stop for the result of this group.
+  /// True if the processor must stop when this group has a result.
   bool injected_matters() const { return adc.cr1.jeocie.in(cr1_); }
   bool regular_matters() const { return adc.cr1.eocie.in(cr1_) || adc.cr2.dma.in(cr2_); }
   std::uint32_t status() const { return sr_; }

@@ -17,7 +17,7 @@ class DmaController final : public RegisterBlock {
   void reset() override;
   /// Handles a request on a channel of a stream. Returns false if the stream does not accept the request.
   bool request(unsigned stream, unsigned channel);
-  /// True if the stream is enabled for the channel and has an interrupt enabled.
+  /// True if the stream is enabled for the channel and an interrupt of the stream is enabled.
   bool interrupts_for(unsigned index, unsigned channel) const {
     const std::uint32_t control = streams_[index].control;
     return dma.cr.en.in(control) && dma.cr.chsel.of(control) == channel &&

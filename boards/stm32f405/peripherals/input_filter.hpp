@@ -1,6 +1,6 @@
 // Digital filter of a timer input (RM0090, TIMx_CCMR1: ICxF).
 //
-// The filter computes the time at which a stable level passes, so no time steps are needed.
+// The filter computes when a stable level passes, so no time steps are needed.
 #pragma once
 
 #include <cstdint>

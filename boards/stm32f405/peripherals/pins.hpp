@@ -57,7 +57,7 @@ class Pins final : public InputPins {
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
   void hold(char port, unsigned pin, PinLevel level) override;
-  /// While `inverted` is true, inverts the level that the circuit drives.
+  /// While `inverted` is true, the level from the circuit is inverted.
   void invert(unsigned port, unsigned pin, bool inverted);
   /// Electrical level at the pin.
   PinLevel level(unsigned port, unsigned pin) const;

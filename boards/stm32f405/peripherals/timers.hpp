@@ -51,7 +51,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   /// Stops the counter. TIM1 and TIM8 also switch their outputs off (RM0090, "Debug support for timers").
   void freeze(bool frozen) override;
 
-  /// Sets the level of an input pin; the level changed at `when`.
+  /// Sets the level of an input pin from `when` on.
   void input_changed(unsigned line, bool high, Ticks when);
   /// Connects a pin to this timer. The initial level is not counted as an edge.
   void connect_input(unsigned line, bool high);
@@ -197,9 +197,9 @@ class Timers final : public TriggerLines {
     timer(timer_number).input_changed(line, high, when);
   }
   void trigger_from(unsigned master, bool level, bool is_pulse);
-  /// True if a slave timer uses the trigger output of `master` to start or step its counter.
+  /// True if the trigger output of `master` starts or steps the counter of a slave timer.
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }
-  /// Sets the master of `slave`; 0 means none.
+  /// Sets the master of `slave`; 0 means no master.
   void set_slave(unsigned slave, unsigned master);
   void plan_again();
   void clock_failed() {

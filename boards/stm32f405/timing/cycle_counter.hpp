@@ -61,7 +61,7 @@ class CycleCounter {
   }
 
  private:
-  /// Hundreds of blocks run in each control period, so the members used in each run share cache lines.
+  /// Hundreds of blocks run in each control period, so the members for each block run share cache lines.
   struct alignas(64) Known {
     bool is_current = false;  ///< the code has not been read again since the pricing
     BlockPrice price;

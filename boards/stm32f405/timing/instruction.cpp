@@ -289,7 +289,7 @@ void decode_multiply(Instruction& it, std::uint32_t first, std::uint32_t second)
   it.written = static_cast<std::uint16_t>(it.written | one(bits(second, 15, 12)));
 }
 
-/// Decodes ADR, MOVW and MOVT, with which code computes table addresses.
+/// Decodes ADR, MOVW and MOVT, because code computes table addresses with these instructions.
 void decode_constant(Instruction& it, std::uint32_t first, std::uint32_t second, std::uint32_t address) {
   const std::uint32_t sort = first & 0xFBF0, low = bits(second, 14, 12) << 8 | (second & 0xFF);
   const std::uint32_t twelve = (first & 0x0400) << 1 | low;

@@ -64,7 +64,8 @@ inline constexpr std::size_t reset_causes = 7;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;
-  /// Cycles of the longest handler run, including entry and return, excluding the exceptions that preempted the run.
+  /// Cycles of the longest handler run, including entry and return, but without the exceptions that preempted the
+  /// handler.
   std::uint64_t longest_cycles = 0;
 };
 
@@ -136,7 +137,7 @@ class Chip {
   /// Stops the core for `duration`, like a long bus wait. The peripherals continue.
   void stall(Ticks duration);
   /// Stops thread mode for `duration`, like an endless loop; exceptions are still handled. If the program masks
-  /// exceptions, the stop begins only after the instruction that unmasks the exceptions.
+  /// exceptions, thread mode stops only after the instruction that unmasks the exceptions.
   void stall_thread(Ticks duration);
   /// Halts the core for `duration` like a debug probe. The peripherals selected in DBGMCU_APBx_FZ also freeze. Board
   /// time continues, unlike during a halt by debug_port().

@@ -28,7 +28,7 @@ InjectedFault kind(InjectedFault fault) {
   }
 }
 
-/// True if the fault is instantaneous. A second instantaneous fault adds to the first fault.
+/// True if the fault is momentary. A second momentary fault adds to the first fault.
 bool is_momentary(InjectedFault fault) {
   return fault == InjectedFault::encoder_slip || fault == InjectedFault::program_astray ||
          fault == InjectedFault::ram_bit || fault == InjectedFault::flash_bit;

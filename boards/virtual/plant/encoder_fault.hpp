@@ -1,4 +1,4 @@
-// Encoder faults with intact wires: a disc that does not turn, lost counts, or a slipping disc.
+// Encoder faults with intact wires: a stuck disc, lost counts, or a slipping disc.
 #pragma once
 
 #include <algorithm>

@@ -11,8 +11,8 @@
 namespace inkwell::virtual_board {
 
 /// Measures the force F that satisfies J^T F = tau. The mean over one control period removes the current ripple, which
-/// a hand cannot perceive. The mean over one millisecond removes short pushes, which a hand hardly perceives. Steps in
-/// which no leg is driven high are excluded, because the motors only brake in these steps.
+/// a hand cannot perceive. The mean over one millisecond removes short pushes, which a hand hardly perceives. A step is
+/// excluded if no leg is driven high, because the motors only brake in this step.
 class MotorForceMeter {
  public:
   static constexpr unsigned steps_per_period = 3, steps_per_ms = 60;

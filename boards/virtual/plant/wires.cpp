@@ -106,8 +106,8 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
   return read_V;
 }
 
-// For a broken wire, returns a source without impedance, because the voltage of a broken wire already includes its time
-// constant.
+// For a broken wire, returns a source without impedance, because the voltage already includes the time constant of the
+// broken wire.
 AnalogSource Wires::analog_source(char port, unsigned pin) const {
   return states_[index({port, pin})].fault == WireFault::intact ? circuit_.analog_source(port, pin) : AnalogSource{};
 }

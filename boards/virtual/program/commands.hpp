@@ -9,10 +9,10 @@ namespace inkwell::virtual_board {
 
 class Simulation;
 
-/// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. The
-/// simulation sends the reply to `run` after the duration of the run.
+/// Executes one command line of a client and returns the reply: {"ok":true,...} or {"ok":false,"error":"sentence"}. For
+/// the command `run`, the simulation sends the reply after the duration of the run.
 nlohmann::json carry_out(const std::string& line, Simulation& simulation);
-/// Executes a command line in the middle of a frame, while board time waits for a program. Commands that change the
+/// Executes a command line while board time waits for a program in the middle of a USB frame. Commands that change the
 /// board are refused.
 nlohmann::json carry_out_within_frame(const std::string& line, Simulation& simulation);
 

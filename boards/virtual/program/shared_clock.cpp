@@ -14,7 +14,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Byte after the slots, which a joining board locks.
+/// A joining board locks the byte after the last slot.
 constexpr off_t joining = SharedClock::boards_maximum;
 
 struct flock lock_of(off_t byte, short type) {

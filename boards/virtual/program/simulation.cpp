@@ -118,7 +118,7 @@ void Simulation::serve(ControlRequest request) {
   request.reply.set_value(std::move(reply));
 }
 
-/// Executes commands while board time waits in the middle of a frame until a program reads its transfers.
+/// While board time waits in the middle of a frame for a program, executes the pending commands.
 void Simulation::answer_within_frame() {
   while (auto request = server_.take(Clock::time_point::min()))
     request->reply.set_value(carry_out_within_frame(request->line, *this));
@@ -159,7 +159,7 @@ void Simulation::start_pacing() {
   pace_board_ = board_.chip().now();
 }
 
-// Sleeps while board time is ahead of real time. A large lag of board time is dropped and counted, because the user
+// Sleeps while board time is ahead of real time. A large lag of board time is counted but not made up, because the user
 // would otherwise see the arm in fast motion.
 void Simulation::pace() {
   const double board_s = seconds(board_.chip().now() - pace_board_);

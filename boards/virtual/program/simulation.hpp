@@ -46,8 +46,8 @@ class Simulation {
   void resume();
   void quit() { quit_ = true; }
   bool is_running_for() const { return run_.has_value(); }
-  /// Runs for `duration_s`, then replies to the present request. Afterward board time is paused, or on standby if it
-  /// was on standby before this call.
+  /// Runs for `duration_s`, then replies to the present request. Afterward board time is paused, or on standby if board
+  /// time was on standby before this call.
   void run_for(double duration_s);
 
  private:

@@ -29,7 +29,7 @@ std::string link_of_socket(std::uint16_t port) {
     std::string number, local, ignored, inode;
     words >> number >> local;
     for (int i = 0; i < 7; ++i) words >> ignored;
-    // The list may still contain a closed connection of this port, with inode 0.
+    // The list may still contain a closed connection of this port; a closed connection has the inode 0.
     const bool is_open = words >> inode && inode != "0";
     if (is_open && local == address.str()) return "socket:[" + inode + "]";
   }

@@ -6,7 +6,8 @@
 
 namespace inkwell::virtual_board {
 
-/// Registers and bus interface of the OTG_FS core. A running boot loader answers the bus instead of the core.
+/// Registers and bus interface of the OTG_FS core. While the boot loader runs, bus transactions go to the boot loader,
+/// not to the core.
 class Connector final : public Peripheral, public BusDevice {
  public:
   explicit Connector(const ChipConnections& chip) : core_(chip) {}

@@ -69,7 +69,7 @@ void HostController::select_alternate(const ConfigurationDescription& configurat
     if (endpoint.interface == interface && endpoint.alternate == alternate) open(endpoint);
 }
 
-// Completes the transfers of a removed pipe with the status that a driver on the host expects.
+// Completes the transfers of a removed pipe with the status that host drivers expect.
 void HostController::close(Pipe& pipe) {
   std::deque<Urb> urbs = std::move(pipe.urbs);
   pipe = Pipe{};

@@ -51,8 +51,8 @@ bool HostPace::is_waited_for_without_limit() const {
 bool HostPace::waits_for_board() const {
   const auto has_requested = [](const Endpoint& one) { return one.most > 0; };
   if (std::ranges::none_of(in_endpoints_, has_requested)) return has_control_transfer();
-  // A streaming host renews its requests in time. With a host that submits single requests, board time passes only
-  // while a request is pending.
+  // A streaming host renews its requests in time. If the host submits single requests, board time passes only while a
+  // request is pending.
   return std::ranges::none_of(in_endpoints_, [](const Endpoint& one) { return one.most == 1 && one.requests == 0; });
 }
 

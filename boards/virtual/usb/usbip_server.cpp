@@ -27,8 +27,8 @@ constexpr std::size_t connections_maximum = 16;
 /// Largest number of simultaneous importers of the device (SharedPort).
 constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
-/// Largest number of unsent bytes per client. A client that exceeds this limit is disconnected, because it does not
-/// read.
+/// Largest number of unsent bytes per client. A client above this limit is disconnected, because such a client does not
+/// read its data.
 constexpr std::size_t unsent_maximum = 64u << 20;
 
 }  // namespace

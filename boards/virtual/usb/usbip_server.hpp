@@ -59,7 +59,7 @@ class UsbIpServer {
   // For the simulation thread.
   /// Appends the received orders to `orders`. The call is fast if no orders have been received.
   void take(std::vector<Order>& orders);
-  /// Waits until all earlier answers are sent, and all data from before this call is converted to orders.
+  /// Waits until all earlier answers are sent and all earlier data is converted to orders.
   void exchange_all();
   /// Waits for orders. Returns false if no order has been received at `deadline`.
   bool wait_for_order(std::chrono::steady_clock::time_point deadline);

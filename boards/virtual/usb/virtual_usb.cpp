@@ -69,8 +69,8 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     orders.clear();
   }
 
-  /// Waits while the condition is true for a program. A wait without time limit continues only while `goes_on` returns
-  /// true.
+  /// Waits as long as the condition is true for any program. A wait without time limit continues only while `goes_on`
+  /// returns true.
   void wait_while(Condition condition, const std::function<bool()>& goes_on) {
     if (!any(condition)) return;
     std::optional<bool> was_limited;
