@@ -1,4 +1,4 @@
-// Exact conversion between clock cycles and ticks of board time.
+// Clocks of the chip, with exact conversion between clock cycles and ticks of board time.
 #pragma once
 
 #include <cstdint>
@@ -40,6 +40,32 @@ struct Clock {
   }
   /// Number of whole `divider`-cycle periods within `time`.
   std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
+};
+
+/// Configured frequencies in Hz, 0 for stopped clocks.
+struct Clocks {
+  std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
+  std::uint32_t timer1_Hz;  ///< timers on APB1
+  std::uint32_t timer2_Hz;  ///< timers on APB2
+  std::uint32_t usb_Hz;     ///< PLL48CLK
+};
+
+/// Current clocks (RM0090, figure "Clock tree").
+struct ClockTree {
+  Clock hclk, pclk1, pclk2, timer1, timer2, usb, low_speed_internal;
+  Clocks frequencies{};
+  bool operator==(const ClockTree& other) const {
+    return hclk == other.hclk && pclk1 == other.pclk1 && pclk2 == other.pclk2 && timer1 == other.timer1 &&
+           timer2 == other.timer2 && usb == other.usb;
+  }
+};
+
+/// Interface for models that must react to a clock change.
+class ClockUser {
+ public:
+  virtual ~ClockUser() = default;
+  virtual void before_clock_change() = 0;  ///< update up to now with the old clock
+  virtual void after_clock_change() = 0;   ///< continue from now with the new clock
 };
 
 }  // namespace inkwell::virtual_board

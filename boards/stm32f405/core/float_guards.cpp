@@ -1,12 +1,14 @@
 // Hooks for FPU instructions. An FPU instruction raises a fault while the FPU is off or pending lazy stacking is
 // refused.
+#include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
 
 template <class Function>
-void for_each_float_instruction(const Memory& memory, std::uint32_t address, std::uint32_t bytes, Function&& visit) {
+void for_each_float_instruction(const AddressSpace& memory, std::uint32_t address, std::uint32_t bytes,
+                                Function&& visit) {
   for (std::uint32_t at = address; at < address + bytes;) {
     const std::uint16_t first = memory.half_word(at);
     const bool wide = is_wide(first);

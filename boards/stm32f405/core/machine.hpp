@@ -4,17 +4,19 @@
 #include <array>
 #include <cstdint>
 #include <vector>
-#include "boards/stm32f405/wiring/chip.hpp"
 
+#include "boards/stm32f405/core/address_space.hpp"
+#include "boards/stm32f405/core/chip_options.hpp"
 #include "boards/stm32f405/core/clock.hpp"
+#include "boards/stm32f405/core/counters.hpp"
 #include "boards/stm32f405/core/debug_halt.hpp"
 #include "boards/stm32f405/core/debugging.hpp"
 #include "boards/stm32f405/core/log.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 #include "boards/stm32f405/core/memory_protection.hpp"
 #include "boards/stm32f405/core/nvic.hpp"
 #include "boards/stm32f405/core/timeline.hpp"
 #include "boards/stm32f405/core/violations.hpp"
-#include "boards/stm32f405/memory/memory.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -28,16 +30,6 @@ class Processor;
 class Rcc;
 class Timers;
 
-/// Current clocks (RM0090, figure "Clock tree").
-struct ClockTree {
-  Clock hclk, pclk1, pclk2, timer1, timer2, usb, low_speed_internal;
-  Clocks frequencies{};
-  bool operator==(const ClockTree& other) const {
-    return hclk == other.hclk && pclk1 == other.pclk1 && pclk2 == other.pclk2 && timer1 == other.timer1 &&
-           timer2 == other.timer2 && usb == other.usb;
-  }
-};
-
 /// Stack space reserved for the FPU registers at exception entry, and the state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
@@ -45,24 +37,16 @@ struct FloatFrame {
   bool privileged, in_thread;
 };
 
-/// Interface for models that must react to a clock change.
-class ClockUser {
- public:
-  virtual ~ClockUser() = default;
-  virtual void before_clock_change() = 0;  ///< update up to now with the old clock
-  virtual void after_clock_change() = 0;   ///< continue from now with the new clock
-};
-
 struct Machine {
-  Machine(Circuit& the_circuit, const ChipOptions& the_options)
-      : circuit(the_circuit), options(the_options), log(the_options.log) {}
+  Machine(Circuit& the_circuit, const ChipOptions& the_options, AddressSpace& the_memory)
+      : circuit(the_circuit), options(the_options), log(the_options.log), memory(the_memory) {}
 
   Circuit& circuit;
   ChipOptions options;
   Log log;
   Violations violations{*this};
   Timeline timeline;
-  Memory memory;
+  AddressSpace& memory;
   MemoryProtection memory_protection;
   Nvic nvic;
   ClockTree clocks;

@@ -7,7 +7,6 @@
 #include <utility>
 #include "boards/stm32f405/core/exception_numbers.hpp"
 #include "boards/stm32f405/core/interfaces.hpp"
-#include "boards/stm32f405/wiring/chip.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "boards/stm32f405/core/engine_calls.hpp"
-#include "boards/stm32f405/memory/memory.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -4,9 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/xpsr.hpp"
-#include "boards/stm32f405/memory/bus.hpp"
-#include "boards/stm32f405/memory/flash.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -36,8 +35,10 @@ enum : std::uint32_t {
 
 }  // namespace
 
-Processor::Processor(Machine& machine, Bus& bus)
+Processor::Processor(Machine& machine, const BusWindows& windows, FlashPort& flash)
     : machine_(machine),
+      windows_(windows),
+      flash_port_(flash),
       timing_(machine.options.pricing, {flash_base, flash_bytes, sram_base, sram_bytes},
               [&memory = machine.memory](std::uint32_t address) { return memory.word(address); }),
       register_bus_(timing_.costs()) {
@@ -45,7 +46,7 @@ Processor::Processor(Machine& machine, Bus& bus)
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // The Cortex-M4 model already selects the M profile; UC_MODE_MCLASS would select another CPU model.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "emulate a Cortex-M4");
-  map_memories(bus);
+  map_memories();
   check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "add a block hook");
   if (machine.options.mode == Mode::exact) check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "add a code hook");
   check(add_hook(engine_, UC_HOOK_INTR, interrupt_hook, this), "report exceptions");
@@ -57,7 +58,7 @@ Processor::~Processor() {
   if (engine_ != nullptr) uc_close(engine_);
 }
 
-void Processor::map_memories(Bus& bus) {
+void Processor::map_memories() {
   auto& memory = machine_.memory;
   const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
     check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
@@ -66,8 +67,9 @@ void Processor::map_memories(Bus& bus) {
   // used regions are therefore mapped first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
   map(ccm_base, ccm_bytes, UC_PROT_ALL, memory.ccm());
-  for (const auto& window : Bus::windows)
-    check(uc_mmio_map(engine_, window.base, window.bytes, window.read, &bus, window.write, &bus), "map the registers");
+  for (const auto& window : windows_.list)
+    check(uc_mmio_map(engine_, window.base, window.bytes, window.read, windows_.bus, window.write, windows_.bus),
+          "map the registers");
   map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
   map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
   map(system_base, system_bytes, UC_PROT_ALL, memory.system());
@@ -375,7 +377,7 @@ bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address,
   const auto place = static_cast<std::uint32_t>(address);
   if (self.refusal_of(place, Access::store, self.role())) return true;  // the fault follows
   const auto bytes = static_cast<unsigned>(size);
-  if (const auto content = self.machine_.flash->program(place, static_cast<std::uint32_t>(value), bytes)) {
+  if (const auto content = self.flash_port_.program(place, static_cast<std::uint32_t>(value), bytes)) {
     self.flash_stores_.push_back({place, *content, bytes});
     self.end_slice();
   }

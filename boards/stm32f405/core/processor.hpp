@@ -11,18 +11,16 @@
 #include <set>
 #include <string>
 #include <vector>
-#include "boards/stm32f405/timing/cycle_counter.hpp"
-#include "boards/stm32f405/timing/peripheral_bus.hpp"
-#include "boards/stm32f405/wiring/chip.hpp"
 
+#include "boards/stm32f405/core/bus_windows.hpp"
 #include "boards/stm32f405/core/engine_calls.hpp"
+#include "boards/stm32f405/core/flash_port.hpp"
 #include "boards/stm32f405/core/machine.hpp"
 #include "boards/stm32f405/core/plain_stores.hpp"
+#include "boards/stm32f405/timing/cycle_counter.hpp"
+#include "boards/stm32f405/timing/peripheral_bus.hpp"
 
 namespace inkwell::virtual_board {
-
-class Bus;
-class SystemControl;
 
 /// Reason why the processor stopped.
 enum class Outcome : std::uint8_t {
@@ -48,7 +46,7 @@ enum class Outcome : std::uint8_t {
 
 class Processor final : public ClockUser, private EngineCalls {
  public:
-  Processor(Machine& machine, Bus& bus);
+  Processor(Machine& machine, const BusWindows& windows, FlashPort& flash);
   ~Processor() override;
   Processor(const Processor&) = delete;
   Processor& operator=(const Processor&) = delete;
@@ -261,7 +259,7 @@ class Processor final : public ClockUser, private EngineCalls {
   }
   /// Additional cycles of a divide with its present operands, compared with the shortest divide.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
-  void map_memories(Bus& bus);
+  void map_memories();
   void map_holes();
   void stop() {
     stopped_ = true;
@@ -276,6 +274,8 @@ class Processor final : public ClockUser, private EngineCalls {
   bool start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table);
 
   Machine& machine_;
+  const BusWindows windows_;
+  FlashPort& flash_port_;
   uc_engine* engine_ = nullptr;
   std::uint64_t cycles_ = 0, instructions_ = 0, stop_cycle_ = 0, slept_cycles_ = 0;
   Ticks anchor_time_ = 0;

@@ -1,4 +1,5 @@
 // Access of a debugger to the processor: registers, breakpoints and watch points.
+#include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 #include "boards/stm32f405/core/xpsr.hpp"
 

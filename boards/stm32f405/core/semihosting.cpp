@@ -22,7 +22,7 @@ constexpr std::uint32_t failure = 0xFFFF'FFFF;
 constexpr std::uint32_t text_limit = 64 * 1024;
 }  // namespace
 
-SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parameter, const Memory& memory,
+SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parameter, const AddressSpace& memory,
                                    const std::function<void(std::uint8_t)>& console) {
   const auto put = [&](std::uint32_t address, std::uint32_t bytes) {
     const std::uint8_t* text = memory.at(address, bytes);

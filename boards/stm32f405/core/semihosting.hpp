@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "boards/stm32f405/memory/memory.hpp"
+#include "boards/stm32f405/core/address_space.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -16,7 +16,7 @@ struct SemihostingAnswer {
 };
 
 /// `operation` and `parameter` are the values of R0 and R1 at BKPT 0xAB.
-SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parameter, const Memory& memory,
+SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parameter, const AddressSpace& memory,
                                    const std::function<void(std::uint8_t)>& console);
 
 }  // namespace inkwell::virtual_board

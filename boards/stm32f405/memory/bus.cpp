@@ -5,9 +5,9 @@
 #include <cstring>
 #include <string_view>
 
+#include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 #include "boards/stm32f405/core/system_control.hpp"
-#include "boards/stm32f405/peripherals/rcc.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -31,7 +31,7 @@ void write_window(uc_engine*, std::uint64_t offset, unsigned size, std::uint64_t
 }
 
 template <std::uint32_t base, std::uint32_t bytes>
-constexpr Bus::Window window() {
+constexpr BusWindow window() {
   return {base, bytes, read_window<base>, write_window<base>};
 }
 
@@ -51,7 +51,7 @@ unsigned narrowest_write(std::string_view name) {
 
 }  // namespace
 
-const Bus::Window Bus::windows[6] = {
+const BusWindow Bus::all_windows[6] = {
     window<apb_base, apb_bytes>(),
     window<private_base, private_bytes>(),
     window<ahb2_base, ahb2_bytes>(),
@@ -60,8 +60,12 @@ const Bus::Window Bus::windows[6] = {
     window<external_base, external_bytes>(),
 };
 
-Bus::Bus(Machine& machine, SystemControl& system_control)
-    : machine_(machine), system_control_(system_control), apb_and_ahb1_(apb_bytes / 1024), ahb2_(ahb2_bytes / 1024) {}
+Bus::Bus(Machine& machine, SystemControl& system_control, const StartingClock& starting_clock)
+    : machine_(machine),
+      system_control_(system_control),
+      starting_clock_(starting_clock),
+      apb_and_ahb1_(apb_bytes / 1024),
+      ahb2_(ahb2_bytes / 1024) {}
 
 void Bus::add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
               const std::uint32_t* enable_register, std::uint32_t enable_mask) {
@@ -103,7 +107,7 @@ Bus::Slot* Bus::slot_at(std::uint32_t address) {
 bool Bus::is_clocked(const Slot& slot, std::uint32_t) {
   if (slot.enable_register == nullptr) return true;
   if ((*slot.enable_register & slot.enable_mask) != 0) {
-    if (!machine_.rcc->is_fresh(slot.enable_register, slot.enable_mask, access_began_)) return true;
+    if (!starting_clock_.includes(slot.enable_register, slot.enable_mask, access_began_)) return true;
     machine_.violations.violate(Rule::clock_fresh, slot.name);
     return false;
   }

@@ -67,7 +67,7 @@ std::string range_of(std::uint32_t base, std::uint32_t bytes) {
 
 /// Checks the initial stack pointer and the reset vector at the start of the flash (ARMv7-M, B1.5.5). Returns a
 /// warning about the stack pointer, or an empty string.
-std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
+std::string check_vectors(const Image& image, const std::string& name, AddressSpace& memory) {
   const std::uint32_t stack = image.word(flash_base), reset = image.word(flash_base + 4);
   const std::string table = "at " + hexadecimal(flash_base) +
                             ", from which the processor loads the initial stack pointer and " +
@@ -91,7 +91,7 @@ std::string check_vectors(const Image& image, const std::string& name, Memory& m
 }
 
 /// Erases the sectors of the segment. Other sectors remain unchanged.
-void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
+void erase_sectors_of(const Elf32_Phdr& segment, AddressSpace& memory) {
   const std::uint32_t first = segment.p_paddr - flash_base;
   for (unsigned i = 0; i < flash_sectors; ++i) {
     const auto [offset, bytes] = flash_sector(i);
@@ -101,7 +101,7 @@ void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
 
 }  // namespace
 
-std::string program_elf(std::span<const char> file, const std::string& name, Memory& memory) {
+std::string program_elf(std::span<const char> file, const std::string& name, AddressSpace& memory) {
   if (file.size() < SELFMAG || std::memcmp(file.data(), ELFMAG, SELFMAG) != 0)
     throw ChipError(name + " is not an ELF file. Give the .elf that the linker writes, not a .bin or .hex.");
 

@@ -9,7 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/core/flash_port.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -41,24 +42,21 @@ struct FlashRegisters {
 };
 inline constexpr FlashRegisters flash_map;
 
-class FlashController final : public RegisterBlock, public TimedPart, public ClockUser {
+class FlashController final : public RegisterBlock, public TimedPart, public ClockUser, public FlashPort {
  public:
   explicit FlashController(Machine& machine);
   void reset() override;
   void step(Ticks now) override;
   void before_clock_change() override {}
   void after_clock_change() override { check_wait_states(); }
-  /// Handles a store to the flash by the processor. Returns the resulting contents, or nothing if the address is
-  /// outside of the flash (bus fault).
-  std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size);
+  std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size) override;
   /// Typical falling and rising thresholds of the brown-out reset (data sheet).
   struct Threshold {
     double falling_V, rising_V;
   };
   Threshold brown_out() const;
   bool busy() const { return flash_map.sr.bsy.in(status_); }
-  /// Makes the core wait for the end of the flash operation.
-  void hold_up();
+  void hold_up() override;
   /// Number of erase and program operations since construction.
   std::uint64_t operations() const { return operations_; }
   /// Interrupts the power during flash operation number `operation`, counted from 1; 0 disables the interruption. Power

@@ -1,33 +1,7 @@
 #include "boards/stm32f405/memory/memory.hpp"
 
-#include <cstdio>
-
 namespace inkwell::virtual_board {
 
-std::string hexadecimal(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(value));
-  return text;
-}
-
-Memory::Memory() : flash_(flash_bytes, 0xFF), sram_(sram_bytes), ccm_(ccm_bytes), system_(system_bytes, 0xFF) {}
-
-std::uint8_t* Memory::at(std::uint32_t address, std::uint32_t bytes) {
-  const auto within = [&](std::uint32_t base, std::vector<std::uint8_t>& memory) -> std::uint8_t* {
-    const std::uint32_t offset = address - base;
-    return address >= base && offset < memory.size() && bytes <= memory.size() - offset ? memory.data() + offset
-                                                                                        : nullptr;
-  };
-  if (address >= sram_base) return within(sram_base, sram_);
-  if (address >= system_base) return within(system_base, system_);
-  if (address >= ccm_base) return within(ccm_base, ccm_);
-  if (address >= flash_base) return within(flash_base, flash_);
-  return within(0, flash_);  // BOOT0 low: the flash is also mapped at 0
-}
-
-std::uint8_t* Memory::ram_at(std::uint32_t address, std::uint32_t bytes) {
-  const bool is_ram = address >= sram_base || (address >= ccm_base && address < system_base);
-  return is_ram ? at(address, bytes) : nullptr;
-}
+MemoryBytes::MemoryBytes() : flash(flash_bytes, 0xFF), sram(sram_bytes), ccm(ccm_bytes), system(system_bytes, 0xFF) {}
 
 }  // namespace inkwell::virtual_board

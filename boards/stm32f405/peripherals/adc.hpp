@@ -7,7 +7,7 @@
 #include <deque>
 #include <string>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/adc_map.hpp"
 
 namespace inkwell::virtual_board {

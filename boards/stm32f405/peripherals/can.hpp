@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/can_map.hpp"
 #include "boards/stm32f405/peripherals/can_reception.hpp"
 

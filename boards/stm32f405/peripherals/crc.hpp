@@ -1,7 +1,7 @@
 // Cyclic redundancy check of words, polynomial 0x04C11DB7 (RM0090, "CRC calculation unit").
 #pragma once
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -2,7 +2,7 @@
 // pins. Not modeled: waveforms, timer triggers and DMA.
 #pragma once
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 

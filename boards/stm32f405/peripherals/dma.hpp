@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/dma_map.hpp"
 
 namespace inkwell::virtual_board {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
 #include "boards/stm32f405/peripherals/gpio_map.hpp"
 

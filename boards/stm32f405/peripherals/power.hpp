@@ -1,7 +1,7 @@
 // Power control (RM0090, PWR). The voltage regulator is always ready.
 #pragma once
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/exti.hpp"
 #include "boards/stm32f405/peripherals/rcc.hpp"
 

@@ -1,7 +1,7 @@
 // Random number generator (RM0090, RNG). The same seed leads to the same numbers.
 #pragma once
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -33,7 +33,10 @@ constexpr unsigned apb_divider(std::uint32_t field) { return (field & 4) != 0 ? 
 
 }  // namespace
 
-Rcc::Rcc(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) { machine.rcc = this; }
+Rcc::Rcc(Machine& machine, StartingClock& starting_clock)
+    : machine_(machine), starting_clock_(starting_clock), slot_(machine.timeline.add(*this)) {
+  machine.rcc = this;
+}
 
 void Rcc::reset() {
   words_.fill(0);
@@ -181,9 +184,7 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   std::uint32_t cycles = 2;
   if (offset == rcc_map.apb1enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk1_Hz;
   if (offset == rcc_map.apb2enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk2_Hz;
-  fresh_until_ = machine_.processor->cycles() + cycles;
-  fresh_offset_ = offset;
-  fresh_mask_ = risen;
+  starting_clock_.start(enable_register(offset), risen, machine_.processor->cycles() + cycles);
 }
 
 void Rcc::switch_system_clock() {

@@ -6,14 +6,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/core/counters.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
+#include "boards/stm32f405/memory/starting_clock.hpp"
 #include "boards/stm32f405/peripherals/rcc_map.hpp"
 
 namespace inkwell::virtual_board {
 
 class Rcc final : public RegisterBlock, public TimedPart {
  public:
-  explicit Rcc(Machine& machine);
+  Rcc(Machine& machine, StartingClock& starting_clock);
 
   void reset() override;
   /// Frequency of RTCCLK; 0 until the selected oscillator is ready.
@@ -27,10 +29,6 @@ class Rcc final : public RegisterBlock, public TimedPart {
   }
   /// Starts the low-speed internal oscillator for the independent watchdog.
   void start_low_speed_internal() { words_[rcc_map.csr / 4] |= rcc_map.csr.lsion.mask(); }
-  /// True if the clock of a peripheral is enabled but has not started yet.
-  bool is_fresh(const std::uint32_t* enable, std::uint32_t mask, std::uint64_t cycle) const {
-    return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
-  }
   void step(Ticks now) override;
   /// Stops or restarts the crystal, for example to simulate a broken solder joint. If the crystal stops while the clock
   /// security system is on (RM0090, "Clock security system"), the chip switches to HSI, raises NMI and triggers the
@@ -70,6 +68,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void update_tree();
 
   Machine& machine_;
+  StartingClock& starting_clock_;
   Timeline::Slot slot_;
   std::array<std::uint32_t, bytes / 4> words_{};
   std::array<Ticks, oscillators> ready_at_{};
@@ -78,8 +77,6 @@ class Rcc final : public RegisterBlock, public TimedPart {
   Clocks nominal_{};  ///< with a crystal at its nominal frequency
   bool voltage_scale_1_ = true;
   bool crystal_swings_ = true, crystal_failed_ = false;  ///< crystal_failed_ is CIR.CSSF
-  std::uint64_t fresh_until_ = 0;                        ///< in core cycles
-  std::uint32_t fresh_offset_ = 0, fresh_mask_ = 0;
   std::vector<ResetLine> resets_;
 };
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -10,7 +10,7 @@
 #include <deque>
 #include <limits>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
 #include "boards/stm32f405/peripherals/input_filter.hpp"
 #include "boards/stm32f405/peripherals/timer_map.hpp"

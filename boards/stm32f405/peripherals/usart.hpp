@@ -6,7 +6,7 @@
 #include <deque>
 #include <functional>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 
 namespace inkwell::virtual_board {
 

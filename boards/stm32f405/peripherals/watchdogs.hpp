@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/rcc.hpp"
 
 namespace inkwell::virtual_board {

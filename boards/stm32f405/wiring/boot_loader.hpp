@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 #include "boards/stm32f405/wiring/chip.hpp"
 
 namespace inkwell::virtual_board {

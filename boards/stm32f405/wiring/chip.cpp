@@ -2,9 +2,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "boards/stm32f405/core/execution.hpp"
 #include "boards/stm32f405/peripherals/power.hpp"
 #include "boards/stm32f405/wiring/boot_loader.hpp"
+#include "boards/stm32f405/wiring/execution.hpp"
 #include "boards/stm32f405/wiring/parts.hpp"
 
 namespace inkwell::virtual_board {

@@ -5,83 +5,26 @@
 // circuit run in the thread that calls run_until().
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
 #include "boards/stm32f405/core/chip_error.hpp"
+#include "boards/stm32f405/core/chip_options.hpp"
+#include "boards/stm32f405/core/clock.hpp"
+#include "boards/stm32f405/core/counters.hpp"
 #include "boards/stm32f405/core/debug_port.hpp"
-#include "boards/stm32f405/core/exception_numbers.hpp"
 #include "boards/stm32f405/core/interfaces.hpp"
 #include "boards/stm32f405/core/rules.hpp"
-#include "boards/stm32f405/memory/loader_order.hpp"
-#include "boards/stm32f405/timing/costs.hpp"
+#include "boards/stm32f405/wiring/loader_order.hpp"
 
 namespace inkwell::virtual_board {
-
-enum class Mode : std::uint8_t {
-  exact,  ///< interrupts can occur at any instruction
-  fast,   ///< interrupts occur between basic blocks; several times faster
-};
-
-struct ChipOptions {
-  Mode mode = Mode::fast;
-  Pricing pricing = Pricing::likely;
-  std::uint32_t crystal_Hz = 8'000'000;          ///< nominal frequency of HSE
-  std::int32_t crystal_ppm = 0;                  ///< deviation from the nominal frequency
-  std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz (data sheet)
-  unsigned brown_out_level = 0;                  ///< option bytes: 0 (off, as in a new chip) to 3
-  bool slowest_flash = false;  ///< longest erase and program times of the data sheet instead of the typical times
-  std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
-  std::uint32_t random_seed = 1;  ///< for the RNG peripheral and for flash operations that a reset interrupts
-  /// Receives each line of the log (without a newline). By default the log goes to stderr.
-  std::function<void(const std::string&)> log;
-  /// Returns the name of the function at `address` for log lines, or an empty string. By default log lines contain no
-  /// function names.
-  std::function<std::string(std::uint32_t address)> name_of_code;
-  /// Called before each instruction in exact mode. `cycles` is the number of cycles that the processor has run.
-  std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
-};
-
-/// Reset flags in the order of RCC_CSR bits 26 to 31, then bit 25.
-enum class ResetCause : std::uint8_t {
-  pin,
-  power_on,
-  software,
-  independent_watchdog,
-  window_watchdog,
-  low_power,
-  brown_out
-};
-inline constexpr std::size_t reset_causes = 7;
-
-struct ExceptionCounters {
-  std::uint64_t count = 0;
-  /// Cycles of the longest handler run, including entry and return, but without the exceptions that preempted the
-  /// handler.
-  std::uint64_t longest_cycles = 0;
-};
-
-/// Counts since construction or since the last clear_counters().
-struct Counters {
-  std::uint64_t instructions = 0;
-  std::uint64_t cycles = 0;  ///< without sleep
-  Ticks duration = 0;
-  Ticks asleep = 0;
-  std::array<ExceptionCounters, exception_numbers> exceptions{};
-  std::array<std::uint32_t, reset_causes> resets{};  ///< by ResetCause
-  std::uint32_t all_resets() const { return std::accumulate(resets.begin(), resets.end(), 0u); }
-  double sleep_share() const {
-    return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration);
-  }
-};
 
 /// Reason why run_until() returned.
 enum class Stop : std::uint8_t {
@@ -90,14 +33,6 @@ enum class Stop : std::uint8_t {
   locked_up,  ///< time reached with a locked-up processor; only reset() or a watchdog resumes it; see lockup_reason()
   requested,  ///< request_stop()
   debugger,   ///< a breakpoint, a watch point or the end of a step; see debug_port()
-};
-
-/// Configured frequencies in Hz, 0 for stopped clocks.
-struct Clocks {
-  std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
-  std::uint32_t timer1_Hz;  ///< timers on APB1
-  std::uint32_t timer2_Hz;  ///< timers on APB2
-  std::uint32_t usb_Hz;     ///< PLL48CLK
 };
 
 struct Fault {

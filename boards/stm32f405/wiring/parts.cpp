@@ -88,7 +88,7 @@ void ChipParts::put(std::uint32_t base, const std::string& name, Peripheral& per
   rcc.add_reset(reset_register_of(clock.enable_register), clock.mask, peripheral);
 }
 
-ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options) {
+ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options, memory) {
   machine.processor = &processor;
   machine.log.code = [this] {
     const std::uint32_t address = processor.code_address();

@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "boards/stm32f405/core/chip_debug_port.hpp"
-#include "boards/stm32f405/core/execution.hpp"
 #include "boards/stm32f405/core/machine.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 #include "boards/stm32f405/core/system_control.hpp"
 #include "boards/stm32f405/memory/bus.hpp"
 #include "boards/stm32f405/memory/flash.hpp"
+#include "boards/stm32f405/memory/memory.hpp"
+#include "boards/stm32f405/memory/starting_clock.hpp"
 #include "boards/stm32f405/peripherals/adc.hpp"
 #include "boards/stm32f405/peripherals/dma.hpp"
 #include "boards/stm32f405/peripherals/exti.hpp"
@@ -26,6 +26,8 @@
 #include "boards/stm32f405/peripherals/spi.hpp"
 #include "boards/stm32f405/peripherals/timers.hpp"
 #include "boards/stm32f405/peripherals/usart.hpp"
+#include "boards/stm32f405/wiring/chip_debug_port.hpp"
+#include "boards/stm32f405/wiring/execution.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -44,11 +46,13 @@ struct ChipParts : ChipState {
     return machine.pins->has_function(static_cast<unsigned>(port - 'A'), pin, alternate_function);
   }
 
+  Memory memory;
+  StartingClock starting_clock;
   Machine machine;
   EventQueue events{machine.timeline};
   SystemControl system_control{machine};
-  Bus bus{machine, system_control};
-  Rcc rcc{machine};
+  Bus bus{machine, system_control, starting_clock};
+  Rcc rcc{machine, starting_clock};
   FlashController flash{machine};
   Exti exti{machine};
   Adcs adcs{machine};
@@ -57,8 +61,8 @@ struct ChipParts : ChipState {
   Pins pins{machine};
   std::deque<Usart> usarts;  ///< by number - 1
   std::deque<Spi> spis;      ///< by number - 1
-  Processor processor{machine, bus};
-  Execution execution{machine, processor, bus, system_control, rcc};
+  Processor processor{machine, Bus::windows_of(bus), flash};
+  Execution execution{machine, processor, bus, flash, system_control, rcc};
   ChipDebugPort debug_port{machine, processor, execution, bus, system_control};
 
  private:

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

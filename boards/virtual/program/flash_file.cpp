@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 #include "protocol/image_identity.hpp"
 
 #include "boards/virtual/program/log.hpp"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "boards/stm32f405/core/debug_port.hpp"
-#include "boards/stm32f405/memory/loader_order.hpp"
 #include "boards/stm32f405/otg_fs/bus.hpp"
+#include "boards/stm32f405/wiring/loader_order.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <set>
 
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 
 #include "tests/boards/stm32f405/chip_fixture.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "boards/stm32f405/core/debug_port.hpp"
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 #include "protocol/black_box.hpp"
 
 #include "tests/boards/virtual/usb/firmware_on_bus.hpp"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "boards/stm32f405/memory/memory_map.hpp"
+#include "boards/stm32f405/core/memory_map.hpp"
 #include "firmware/store/flash_log.hpp"
 #include "protocol/store.hpp"
 

@@ -1,4 +1,4 @@
-#include "boards/stm32f405/core/execution.hpp"
+#include "boards/stm32f405/wiring/execution.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "boards/stm32f405/core/semihosting.hpp"
-#include "boards/stm32f405/memory/flash.hpp"
 #include "boards/stm32f405/wiring/boot_loader.hpp"
 
 namespace inkwell::virtual_board {
@@ -120,7 +119,7 @@ Stop Execution::run_slices(Ticks when) {
     }
     // While the flash is busy, its vectors and instructions cannot be read. The end of the flash operation is a wake
     // event.
-    if (machine_.flash->busy() && Processor::is_in_flash(system_control_.vector_table())) {
+    if (flash_.busy() && Processor::is_in_flash(system_control_.vector_table())) {
       stall_until(when, never);
       continue;
     }

@@ -5,20 +5,27 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include "boards/stm32f405/wiring/chip.hpp"
 
 #include "boards/stm32f405/core/machine.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 #include "boards/stm32f405/core/system_control.hpp"
 #include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/memory/flash.hpp"
 #include "boards/stm32f405/peripherals/rcc.hpp"
+#include "boards/stm32f405/wiring/chip.hpp"
 
 namespace inkwell::virtual_board {
 
 class Execution {
  public:
-  Execution(Machine& machine, Processor& processor, Bus& bus, SystemControl& system_control, Rcc& rcc)
-      : machine_(machine), processor_(processor), bus_(bus), system_control_(system_control), rcc_(rcc) {}
+  Execution(Machine& machine, Processor& processor, Bus& bus, const FlashController& flash,
+            SystemControl& system_control, Rcc& rcc)
+      : machine_(machine),
+        processor_(processor),
+        bus_(bus),
+        flash_(flash),
+        system_control_(system_control),
+        rcc_(rcc) {}
 
   Stop run_until(Ticks when);
   void reset(ResetCause cause);
@@ -76,6 +83,7 @@ class Execution {
   Machine& machine_;
   Processor& processor_;
   Bus& bus_;
+  const FlashController& flash_;
   SystemControl& system_control_;
   Rcc& rcc_;
   State state_ = State::runs;

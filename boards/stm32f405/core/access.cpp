@@ -1,8 +1,6 @@
 // Detection of faulting accesses (ARMv7-M, A3.2.1, B3.1, B3.5). An access faults if its address is unmapped or
 // misaligned, or if the memory protection unit refuses the access.
 #include "boards/stm32f405/core/processor.hpp"
-#include "boards/stm32f405/memory/bus.hpp"
-#include "boards/stm32f405/memory/flash.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -28,7 +26,7 @@ std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access acces
     return fetch ? Outcome::execute_never : Outcome::protected_data;
   const bool is_core_coupled = address - ccm_base < ccm_bytes;
   const bool answers = (fetch ? machine_.memory.at(address, 1) != nullptr && !is_core_coupled
-                              : machine_.memory.at(address, 1) != nullptr || Bus::answers(address)) &&
+                              : machine_.memory.at(address, 1) != nullptr || windows_.answer(address)) &&
                        (core_coupled_on_ || !is_core_coupled) &&
                        (access != Access::store || address - system_base >= system_bytes);
   if (answers) return {};
@@ -44,7 +42,7 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
     return true;
   }
   // An interrupt cannot abort a read that has started.
-  if (access == Access::load && flash_is_busy_ && is_in_flash(address)) machine_.flash->hold_up();
+  if (access == Access::load && flash_is_busy_ && is_in_flash(address)) flash_port_.hold_up();
   return false;
 }
 

@@ -1,12 +1,12 @@
-#include "boards/stm32f405/core/chip_debug_port.hpp"
+#include "boards/stm32f405/wiring/chip_debug_port.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "boards/stm32f405/core/execution.hpp"
 #include "boards/stm32f405/core/processor.hpp"
 #include "boards/stm32f405/core/system_control.hpp"
 #include "boards/stm32f405/memory/bus.hpp"
+#include "boards/stm32f405/wiring/execution.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
