@@ -1,5 +1,5 @@
 """docs/architecture.md names every folder and all that it uses, the README those at the top; and the test that says so
-notices when it does not.
+notices when it does not. Each file of the index exists and contains its identifier.
 
     architecture_test.py TARGET_GRAPH...
 """
@@ -34,6 +34,23 @@ class Architecture(unittest.TestCase):
         table = architecture.read_table((REPOSITORY / "docs/architecture.md").read_text())
         self.assertEqual(list(dict.fromkeys(folder.split("/")[0] for folder in table)),
                          re.findall(r"^    (\w+)/ ", section, re.MULTILINE))
+
+
+class Index(unittest.TestCase):
+    """The table "Where is it": thing, file, identifier."""
+
+    def test_each_file_contains_its_identifier(self):
+        section = (REPOSITORY / "docs/architecture.md").read_text().split("## Where is it")[1].split("\n## ")[0]
+        lines = [line for line in section.splitlines() if line.startswith("| ")][2:]
+        rows = [re.fullmatch(r"\| ([^|]+) \| \[(\S+)\]\(\.\./(\S+)\) \| `(\S+)` \|", line) for line in lines]
+        self.assertGreater(len(rows), 20)
+        for line, row in zip(lines, rows):
+            with self.subTest(line):
+                self.assertIsNotNone(row)
+                self.assertEqual(row[2], row[3])
+                self.assertRegex((REPOSITORY / row[2]).read_text(), rf"(?<!\w){re.escape(row[4])}(?!\w)")
+        things = [row[1] for row in rows]
+        self.assertEqual(things, sorted(things, key=lambda thing: thing.lower()))
 
 
 class Differences(unittest.TestCase):
