@@ -1,5 +1,8 @@
 #include "host/lab/campaign/reasons.hpp"
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "boards/stm32f405/core/exception_numbers.hpp"
@@ -67,6 +70,138 @@ constexpr std::string_view break_of_tim8 =
     "Only the break input of TIM8 reads this pin, and only while the bridges are on. The self-test pulses switch the "
     "bridges on.";
 
+constexpr std::string_view no_second_sensor =
+    "No second sensor measures the joint, and the voltage tolerance of a motor is larger than the effect. The "
+    "board detects an angle far beyond its stop, a jump of 16 counts, and a closed inkwell switch outside the "
+    "inkwell.";
+constexpr std::string_view within_motor_tolerance =
+    "Voltage, reading and speed agree within the tolerance of a healthy motor.";
+constexpr std::string_view sensor_at_rail =
+    "No reason is known: a healthy sensor cannot produce a reading at its rail.";
+constexpr std::string_view no_current_requested =
+    "No current is requested from this motor, so the motor check cannot find a missing current.";
+constexpr std::string_view other_switch_off =
+    "The other switch of the leg, which would trip the bridge, was not turned on.";
+constexpr std::string_view capacitors_buffer = "The capacitors buffer the supply for this time.";
+constexpr std::string_view no_current_flows =
+    "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check "
+    "once a current is requested.";
+constexpr std::string_view bridges_are_off =
+    "The bridges are off and no current flows. The next self-test detects the fault.";
+constexpr std::string_view bridge_trips_later =
+    "The bridge trips when the other switch of the leg turns on. This occurs in the next self-test, or when "
+    "the force is switched on.";
+
+struct Reason {
+  InjectedFault fault;
+  std::string_view text;
+};
+
+template <std::size_t count>
+constexpr std::optional<std::string_view> reason_in(const std::array<Reason, count>& table, InjectedFault fault) {
+  for (const Reason& row : table)
+    if (row.fault == fault) return row.text;
+  return std::nullopt;
+}
+
+/// Reasons with the force on that depend only on the fault.
+constexpr auto reasons_with_force = std::to_array<Reason>({
+    {InjectedFault::wires_shorted, "The two wires had the same level, or no check compares them."},
+    {InjectedFault::wire_spikes, "The input filters and repeated reads tolerate the spikes."},
+    {InjectedFault::encoder_stuck,
+     "A stuck encoder is detected only when the motor turns or its force changes repeatedly while the count "
+     "does not change."},
+    {InjectedFault::encoder_lost_counts, no_second_sensor},
+    {InjectedFault::encoder_slip, no_second_sensor},
+    {InjectedFault::shunt_gain,
+     "Voltage, reading and speed agree within the tolerance of a healthy motor. The next self-test detects the "
+     "fault."},
+    {InjectedFault::shunt_offset, within_motor_tolerance},
+    {InjectedFault::shunt_frozen, within_motor_tolerance},
+    {InjectedFault::shunt_high, sensor_at_rail},
+    {InjectedFault::shunt_low, sensor_at_rail},
+    {InjectedFault::motor_open, no_current_requested},
+    {InjectedFault::leg_open, no_current_requested},
+    {InjectedFault::motor_shorted,
+     "With a small current, the motor voltage stays within the tolerance of a healthy motor. The next "
+     "self-test detects the fault."},
+    {InjectedFault::motor_hot,
+     "The current loop compensates for the higher resistance. The motor voltage stays within the tolerance of "
+     "a healthy motor, or at its limit. No sensor measures the torque."},
+    {InjectedFault::leg_high, other_switch_off},
+    {InjectedFault::leg_low, other_switch_off},
+    {InjectedFault::leg_slow,
+     "The current loop compensates for the delay, and the voltage loss of the leg is within the tolerance of a "
+     "healthy leg."},
+    {InjectedFault::bridge_fault, "No reason is known: the break inputs of the timers monitor the wire."},
+    {InjectedFault::supply_sag, capacitors_buffer},
+    {InjectedFault::supply_spike, capacitors_buffer},
+    {InjectedFault::supply_cut, capacitors_buffer},
+    {InjectedFault::supply_ripple,
+     "The ripple is below 1 V, which healthy motors can cause, or it has lasted too few periods."},
+    {InjectedFault::logic_sag, "The voltage is above 2.9 V."},
+    {InjectedFault::analog_sag,
+     "The deviation is within the tolerance of a healthy regulator and of the reference voltage."},
+    {InjectedFault::crystal_stop, "No reason is known: the clock security system detects a stopped crystal."},
+    {InjectedFault::crystal_drift,
+     "The deviation is within the tolerance of the clock and of USB, and no second clock is compared."},
+    {InjectedFault::usb_cut, host_is_missed},
+    {InjectedFault::host_silent, "A force that is already decreasing does not need a host."},
+    {InjectedFault::core_stalled, "No reason is known: the heartbeat stops with the core, and the watchdog expires."},
+    {InjectedFault::core_halted, "No reason is known: the heartbeat and the timers stop with the core."},
+    {InjectedFault::main_loop_stalled, "No reason is known: the control interrupt monitors the main loop."},
+    {InjectedFault::program_astray,
+     "The code at the target address returned to the main loop and changed nothing that is checked."},
+    {InjectedFault::adc_stopped, "No reason is known: the firmware checks that each current conversion is new."},
+    {InjectedFault::dma_stopped, "No reason is known: the age of the supply and gimbal readings is monitored."},
+    {InjectedFault::ram_bit,
+     "In the RAM, only the interrupt code, its tables and the settings are checked. The changed byte was not "
+     "used, or was overwritten before its use."},
+    {InjectedFault::flash_bit,
+     "The bit was outside the image, either in the sectors of the stored parameters or in unused flash."},
+});
+
+constexpr bool depends_on_place(InjectedFault fault) {
+  using enum InjectedFault;
+  return fault == wire_open || fault == wire_low || fault == wire_high || fault == wire_frozen ||
+         fault == exception_lost || fault == exception_late;
+}
+constexpr bool every_fault_has_a_reason() {
+  for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
+    const auto fault = static_cast<InjectedFault>(i);
+    if (reason_in(reasons_with_force, fault).has_value() == depends_on_place(fault)) return false;
+  }
+  return true;
+}
+static_assert(every_fault_has_a_reason(), "reasons_with_force: each fault whose place does not matter needs a row");
+
+/// Reasons with the force off that depend only on the fault, for faults with another reason than with the force on.
+constexpr auto reasons_without_force = std::to_array<Reason>({
+    {InjectedFault::wires_shorted,
+     "The two wires have the same level while the bridges are off and the hand keeps the joint stationary."},
+    {InjectedFault::encoder_stuck, "The hand keeps the joint stationary, and no motor turns it."},
+    {InjectedFault::encoder_lost_counts, "The hand keeps the joint stationary, so no counts occur that could be lost."},
+    {InjectedFault::encoder_slip,
+     "Without a reference, the slip has no effect. During a self-test or another fault, the reference is "
+     "cleared without a fault. The inkwell then provides a new reference."},
+    {InjectedFault::shunt_gain, no_current_flows},
+    {InjectedFault::shunt_frozen, no_current_flows},
+    {InjectedFault::motor_hot,
+     "A motor that is 100 K hotter passes the self-test, and no other function drives it without force."},
+    {InjectedFault::motor_open, bridges_are_off},
+    {InjectedFault::motor_shorted, bridges_are_off},
+    {InjectedFault::leg_open, bridges_are_off},
+    {InjectedFault::leg_slow, bridges_are_off},
+    {InjectedFault::leg_high, bridge_trips_later},
+    {InjectedFault::leg_low, bridge_trips_later},
+    {InjectedFault::crystal_drift, no_force_to_lose},
+    {InjectedFault::usb_cut, no_force_to_lose},
+    {InjectedFault::host_silent, "A silent host is detected only while the force is on."},
+    {InjectedFault::core_halted,
+     "A halted core cannot report a fault. Afterwards it continued normally, because the bridges were off and "
+     "nothing had moved."},
+});
+
 /// Whether the self-test's pulses detect the fault. A fault that occurs after the pulses can stay undetected.
 bool is_tested_by_pulses(const CaseFault& put_in) {
   switch (*put_in.fault) {
@@ -124,74 +259,13 @@ std::string_view reason_with_force(const CaseFault& put_in) {
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen: return reason_of_wire(of);
-    case InjectedFault::wires_shorted: return "The two wires had the same level, or no check compares them.";
-    case InjectedFault::wire_spikes: return "The input filters and repeated reads tolerate the spikes.";
-    case InjectedFault::encoder_stuck:
-      return "A stuck encoder is detected only when the motor turns or its force changes repeatedly while the count "
-             "does not change.";
-    case InjectedFault::encoder_lost_counts:
-    case InjectedFault::encoder_slip:
-      return "No second sensor measures the joint, and the voltage tolerance of a motor is larger than the effect. The "
-             "board detects an angle far beyond its stop, a jump of 16 counts, and a closed inkwell switch outside the "
-             "inkwell.";
-    case InjectedFault::shunt_gain:
-      return "Voltage, reading and speed agree within the tolerance of a healthy motor. The next self-test detects the "
-             "fault.";
-    case InjectedFault::shunt_offset:
-    case InjectedFault::shunt_frozen:
-      return "Voltage, reading and speed agree within the tolerance of a healthy motor.";
-    case InjectedFault::shunt_high:
-    case InjectedFault::shunt_low: return "No reason is known: a healthy sensor cannot produce a reading at its rail.";
-    case InjectedFault::motor_open:
-    case InjectedFault::leg_open:
-      return "No current is requested from this motor, so the motor check cannot find a missing current.";
-    case InjectedFault::motor_shorted:
-      return "With a small current, the motor voltage stays within the tolerance of a healthy motor. The next "
-             "self-test detects the fault.";
-    case InjectedFault::motor_hot:
-      return "The current loop compensates for the higher resistance. The motor voltage stays within the tolerance of "
-             "a healthy motor, or at its limit. No sensor measures the torque.";
-    case InjectedFault::leg_high:
-    case InjectedFault::leg_low: return "The other switch of the leg, which would trip the bridge, was not turned on.";
-    case InjectedFault::leg_slow:
-      return "The current loop compensates for the delay, and the voltage loss of the leg is within the tolerance of a "
-             "healthy leg.";
-    case InjectedFault::bridge_fault: return "No reason is known: the break inputs of the timers monitor the wire.";
-    case InjectedFault::supply_sag:
-    case InjectedFault::supply_spike:
-    case InjectedFault::supply_cut: return "The capacitors buffer the supply for this time.";
-    case InjectedFault::supply_ripple:
-      return "The ripple is below 1 V, which healthy motors can cause, or it has lasted too few periods.";
-    case InjectedFault::logic_sag: return "The voltage is above 2.9 V.";
-    case InjectedFault::analog_sag:
-      return "The deviation is within the tolerance of a healthy regulator and of the reference voltage.";
-    case InjectedFault::crystal_stop: return "No reason is known: the clock security system detects a stopped crystal.";
-    case InjectedFault::crystal_drift:
-      return "The deviation is within the tolerance of the clock and of USB, and no second clock is compared.";
-    case InjectedFault::usb_cut: return host_is_missed;
-    case InjectedFault::host_silent: return "A force that is already decreasing does not need a host.";
-    case InjectedFault::core_stalled:
-      return "No reason is known: the heartbeat stops with the core, and the watchdog expires.";
-    case InjectedFault::core_halted: return "No reason is known: the heartbeat and the timers stop with the core.";
-    case InjectedFault::main_loop_stalled: return "No reason is known: the control interrupt monitors the main loop.";
-    case InjectedFault::program_astray:
-      return "The code at the target address returned to the main loop and changed nothing that is checked.";
     case InjectedFault::exception_lost:
       return reason_of_exception(of,
                                  "No reason is known: the heartbeat and the watchdog depend on the control interrupt.");
     case InjectedFault::exception_late:
       return reason_of_exception(of, "The delay is shorter than the delay that the firmware detects.");
-    case InjectedFault::adc_stopped:
-      return "No reason is known: the firmware checks that each current conversion is new.";
-    case InjectedFault::dma_stopped:
-      return "No reason is known: the age of the supply and gimbal readings is monitored.";
-    case InjectedFault::ram_bit:
-      return "In the RAM, only the interrupt code, its tables and the settings are checked. The changed byte was not "
-             "used, or was overwritten before its use.";
-    case InjectedFault::flash_bit:
-      return "The bit was outside the image, either in the sectors of the stored parameters or in unused flash.";
+    default: return reason_in(reasons_with_force, *put_in.fault).value_or("");
   }
-  return "";
 }
 
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
@@ -201,6 +275,7 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
   const std::string_view of = put_in.of;
   const bool is_starting = situation == CaseSituation::starting;
   if (is_tested_by_pulses(put_in) && (is_starting || situation == CaseSituation::testing)) return pulses_were_over;
+  if (const auto reason = reason_in(reasons_without_force, fault)) return *reason;
   switch (fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
@@ -209,29 +284,6 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
     case InjectedFault::wire_spikes:
       if (of == "bridge_fault_tim8") return break_of_tim8;
       return reason_with_force(put_in);
-    case InjectedFault::wires_shorted:
-      return "The two wires have the same level while the bridges are off and the hand keeps the joint stationary.";
-    case InjectedFault::encoder_stuck: return "The hand keeps the joint stationary, and no motor turns it.";
-    case InjectedFault::encoder_lost_counts:
-      return "The hand keeps the joint stationary, so no counts occur that could be lost.";
-    case InjectedFault::encoder_slip:
-      return "Without a reference, the slip has no effect. During a self-test or another fault, the reference is "
-             "cleared without a fault. The inkwell then provides a new reference.";
-    case InjectedFault::shunt_gain:
-    case InjectedFault::shunt_frozen:
-      return "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check "
-             "once a current is requested.";
-    case InjectedFault::motor_hot:
-      return "A motor that is 100 K hotter passes the self-test, and no other function drives it without force.";
-    case InjectedFault::motor_open:
-    case InjectedFault::motor_shorted:
-    case InjectedFault::leg_open:
-    case InjectedFault::leg_slow:
-      return "The bridges are off and no current flows. The next self-test detects the fault.";
-    case InjectedFault::leg_high:
-    case InjectedFault::leg_low:
-      return "The bridge trips when the other switch of the leg turns on. This occurs in the next self-test, or when "
-             "the force is switched on.";
     case InjectedFault::supply_spike:
       if (situation != CaseSituation::fault && situation != CaseSituation::update) return reason_with_force(put_in);
       return "The supply is not monitored during another fault or in the boot loader, and it is valid again "
@@ -239,9 +291,6 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
     case InjectedFault::logic_sag:
       if (!is_starting && situation != CaseSituation::update) return reason_with_force(put_in);
       return chip_is_frozen;
-    case InjectedFault::crystal_drift:
-    case InjectedFault::usb_cut: return no_force_to_lose;
-    case InjectedFault::host_silent: return "A silent host is detected only while the force is on.";
     case InjectedFault::core_stalled: return is_starting ? not_begun : reason_with_force(put_in);
     case InjectedFault::main_loop_stalled:
       if (put_in.amount) return stalled_unwatched;
@@ -250,9 +299,6 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
       if (!is_starting) return reason_with_force(put_in);
       return "The code at the target address returned to the main loop and changed nothing that is checked. If the "
              "fault occurred before the watchdog started, the firmware hung with the bridges off until the reset.";
-    case InjectedFault::core_halted:
-      return "A halted core cannot report a fault. Afterwards it continued normally, because the bridges were off and "
-             "nothing had moved.";
     default: return reason_with_force(put_in);
   }
 }
