@@ -59,6 +59,11 @@ def run(*command: str) -> str:
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
+def readable(text: str) -> str:
+    """Replaces each symbol in a text by the C++ name of its function, without parameters."""
+    return subprocess.run(["arm-none-eabi-c++filt", "-p"], input=text, check=True, capture_output=True, text=True).stdout
+
+
 # ---- stack of one instruction ----------------------------------------------------------------------------------
 
 

@@ -3,15 +3,16 @@
 
     tools/check/check_image.py build/board/inkwell.elf
 
-Prints the size of the image. Prints one line per error and returns exit code 1 if there are errors.
+Prints the free memory of the image. Prints one line per error and returns exit code 1 if there are errors.
 """
 
 import argparse
+import pathlib
 import re
 import subprocess
 import sys
 
-from call_graph import Image, Unreadable, read_image, run
+from call_graph import Image, Unreadable, read_image, readable, run
 from interrupt_rules import broken_interrupt_rules
 
 # Functions that the firmware image must not contain, and the cause of each function. Patterns of whole symbol names.
@@ -31,6 +32,24 @@ def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
     """Size and address of each section that occupies memory."""
     rows = re.findall(r"^(\.\S+)\s+(\d+)\s+(\d+)$", run("arm-none-eabi-size", "-A", elf), re.MULTILINE)
     return {name: (int(size), int(address)) for name, size, address in rows if int(address) != 0}
+
+
+# The regions of the linker script whose space is scarce, with their names in the output.
+REGIONS = {"INTERRUPT": "interrupt code", "TABLES": "interrupt tables", "RAM": "RAM", "CORE_COUPLED": "core-coupled RAM"}
+LINKER_SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "boards/facts/stm32f405.ld"
+
+
+def free_memory(sections: dict[str, tuple[int, int]]) -> str:
+    """Used and free bytes of each region in REGIONS."""
+    texts = []
+    script = LINKER_SCRIPT.read_text()
+    for region, name in REGIONS.items():
+        memory = re.search(rf"^ +{region} \(\w+\) *: ORIGIN = (0x[0-9A-F]+), LENGTH = (\d+)K", script, re.MULTILINE)
+        begin, room = int(memory[1], 16), 1024 * int(memory[2])
+        used = max((address + size - begin for size, address in sections.values() if begin <= address < begin + room),
+                   default=0)
+        texts.append(f"{name} {used} of {room} bytes, {room - used} left")
+    return "; ".join(texts)
 
 
 def forbidden_symbols(image: Image) -> list[str]:
@@ -53,15 +72,12 @@ def main() -> int:
         print(f"cannot read {arguments.elf} as the firmware's image: {error}", file=sys.stderr)
         return 2
 
-    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".interrupt_text", ".interrupt_tables", ".text", ".data", ".data.ccm"))
-    core_coupled = sum(size for size, address in sections.values() if address >> 16 == 0x1000)
-    ram = sum(size for size, address in sections.values() if address >> 24 == 0x20)
-    print(f"image: {in_flash} bytes; core-coupled memory {core_coupled}, main memory {ram}")
+    print(f"{pathlib.Path(arguments.elf).name}: {free_memory(sections)}")
 
     size, address = sections.get(".interrupt_text", (0, 0))
     problems = forbidden_symbols(image) + broken_interrupt_rules(image, range(address, address + size))
     for problem in problems:
-        print(f"ERROR: {problem}", file=sys.stderr)
+        print(f"ERROR: {readable(problem)}", file=sys.stderr)
     return 1 if problems else 0
 
 

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tomllib
 
-from call_graph import Function, read_functions, run
+from call_graph import Function, read_functions, readable, run
 from interrupt_rules import LEAVES, outer_loops, paths_of
 
 # With eight planes, a sphere and three contacts with friction, more than 3500 of the 8400 cycles of a period remain. A
@@ -180,7 +180,7 @@ def main() -> int:
             raise Refused(f"the force law may take {cycles} cycles in a control period, but only {BUDGET_CYCLES} are left for "
                           "it. Do less in it, or spread it over several periods with its State.")
     except Refused as refusal:
-        print(f"ERROR: {refusal}", file=sys.stderr)
+        print(f"ERROR: {readable(str(refusal))}", file=sys.stderr)
         return 1
     return 0
 

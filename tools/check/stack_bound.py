@@ -13,7 +13,7 @@ import argparse
 import subprocess
 import sys
 
-from call_graph import Image, Unreadable, read_image
+from call_graph import Image, Unreadable, read_image, readable
 
 # On exception entry the processor stacks 26 words, including the floating-point registers, and one alignment word.
 EXCEPTION_FRAME_BYTES = 27 * 4
@@ -77,12 +77,6 @@ def deepest_path(image: Image, start: str) -> tuple[int, list[str]]:
     return visit(start)
 
 
-def readable(names: list[str]) -> list[str]:
-    text = subprocess.run(["arm-none-eabi-c++filt", "-p"], input="\n".join(names), capture_output=True, text=True,
-                          check=True).stdout
-    return text.splitlines()
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description="Bounds the stack of the firmware.")
     parser.add_argument("elf", help="the linked image")
@@ -98,22 +92,22 @@ def main() -> int:
     print("stack, in bytes:")
     for start in ("reset_handler", *image.interrupts):
         if cycle := find_direct_cycle(image, start):
-            problems.append("recursion: " + " -> ".join(readable(cycle)))
+            problems.append("recursion: " + " -> ".join(cycle))
             continue
         used, path = deepest_path(image, start)
         bound += used + (EXCEPTION_FRAME_BYTES if start != "reset_handler" else 0)
         print(f"  {start}: {used}, by")
-        for name, shown in zip(path, readable(path)):
+        for name, shown in zip(path, readable("\n".join(path)).splitlines()):
             print(f"    {image.functions[name].stack_bytes:5}  {shown}")
         for name in sorted(image.reachable(start) - MAY_SET_STACK):
             if image.functions[name].moves_stack:
-                problems.append(f"{readable([name])[0]} moves the stack by an amount that is not a constant")
+                problems.append(f"{name} moves the stack by an amount that is not a constant")
     room = image.symbols["stack_top"] - image.symbols["stack_bottom"]
     print(f"  bound with {len(image.interrupts) + 1} exception frames of {EXCEPTION_FRAME_BYTES}: {bound} of {room}")
     if bound > room:
         problems.append(f"the stack needs {bound} bytes, but the linker script (boards/facts/stm32f405.ld) gives {room}")
     for problem in problems:
-        print(f"ERROR: {problem}", file=sys.stderr)
+        print(f"ERROR: {readable(problem)}", file=sys.stderr)
     return 1 if problems else 0
 
 

@@ -1,6 +1,7 @@
 """The checks of the firmware image find errors in small images that are built with these errors."""
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -49,6 +50,28 @@ class ImageChecks(unittest.TestCase):
     def test_a_sound_image_passes(self):
         for result in self.check("void work() { value = value * 2.0f; }"):
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_the_free_memory_is_printed(self):
+        line = r"image\.elf: interrupt code (\d+) of 16384 bytes, (\d+) left; interrupt tables 0 of 2048 bytes, 2048 left; " \
+               r"RAM (\d+) of 114688 bytes, (\d+) left; core-coupled RAM 8192 of 63488 bytes, 55296 left"
+        source = "[[gnu::used]] char memory[%d];\nvoid work() { value = value * 2.0f; }"
+        small, large = (re.fullmatch(line, self.check(source % size)[0].stdout.strip()) for size in (1000, 3000))
+        self.assertIsNotNone(small)
+        for code, code_left, ram, ram_left in (small.groups(), large.groups()):
+            self.assertEqual((int(code) + int(code_left), int(ram) + int(ram_left)), (16384, 114688))
+        self.assertEqual(int(large[3]) - int(small[3]), 2000)
+
+    def test_errors_contain_the_names_of_the_source(self):
+        check_image, _ = self.check("namespace haptic { [[gnu::noipa]] void other(int) { sink = 1; } }\n"
+                                    "void work() { haptic::other(2); sink = 2; }")
+        self.assert_refused(check_image, "work runs in an interrupt and calls haptic::other which lies outside")
+        _, stack_bound = self.check("namespace haptic {\n"
+                                    "[[gnu::noipa]] int other(int n);\n"
+                                    "[[gnu::noipa]] int one(int n) { return n ? other(n - 1) + sink : 0; }\n"
+                                    "[[gnu::noipa]] int other(int n) { return n ? one(n - 1) + sink : 1; }\n"
+                                    "}\n"
+                                    "void work() { sink = haptic::one(sink); }")
+        self.assert_refused(stack_bound, "recursion: haptic::one -> haptic::other -> haptic::one")
 
     def test_heap_is_found(self):
         check_image, _ = self.check("void work() { delete[] new char[static_cast<unsigned>(sink)]; }\n"
