@@ -20,7 +20,8 @@
 // (4) For a choice other than no and yes, add the names to choice_names() in
 //     host/companion/window/panes/tuning_pane.cpp.
 // (5) Add a member to control::Settings (settings.hpp) and compute the member in firmware/control/settings.cpp.
-//     control::Controller passes the settings to the signal path.
+//     control::Controller passes the settings to the signal path. If the parameter changes the wall force, also change
+//     the independent wall law of the experiment's summary (host/lab/experiment/summary.cpp).
 // (6) Choose a default that does not change the force, so that existing tests pass unchanged.
 // (7) Build `board` and `pc-tests`. PC programs refuse a firmware that was built with another table.
 //
