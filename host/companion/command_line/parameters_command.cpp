@@ -191,6 +191,77 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
   return 0;
 }
 
+/// Adds subcommands to `inkwell parameters`. A change has the flag --store.
+struct Subcommands {
+  CLI::App& command;
+  const Place& place;
+  std::shared_ptr<bool> store = std::make_shared<bool>(false);
+
+  CLI::App* add(const char* name, const char* help, const char* examples, std::function<int()> run) const {
+    auto* subcommand = command.add_subcommand(name, help);
+    add_examples(*subcommand, examples);
+    subcommand->callback([place = place, run] { place.action = run; });
+    return subcommand;
+  }
+  CLI::App* add_change(const char* name, const char* help, const char* examples, std::function<int()> run) const {
+    auto* subcommand = add(name, help, examples, std::move(run));
+    subcommand->add_flag("--store", *store, "Also store the parameters on the board, so that they survive power loss");
+    return subcommand;
+  }
+};
+
+void add_get_and_set(const Subcommands& subcommands, const DeviceOptions& options) {
+  const auto words = std::make_shared<std::vector<std::string>>();
+  subcommands
+      .add("get", "Prints the values of one or more parameters",
+           "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",
+           [&options, words] { return get(options, *words); })
+      ->add_option("NAME", *words, "Parameter names")
+      ->required();
+  subcommands
+      .add_change("set", "Changes parameters in one transaction: all of them take effect together, or none",
+                  "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+                  "inkwell parameters set wall_stiffness_N_per_m=600 --store",
+                  [&options, words, store = subcommands.store] { return set(options, *words, *store); })
+      ->add_option("ASSIGNMENT", *words,
+                   "NAME=VALUE: a parameter and its new value, in the unit at the end of its name")
+      ->required();
+  subcommands.add_change("defaults", "Sets every parameter to its default", "inkwell parameters defaults",
+                         [&options, store = subcommands.store] { return restore_defaults(options, *store); });
+}
+
+void add_file_commands(const Subcommands& subcommands, const DeviceOptions& options) {
+  const auto file = std::make_shared<std::string>();
+  subcommands
+      .add_change("load", "Sends the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
+                  [&options, file, store = subcommands.store] {
+                    const auto [loaded, connection] = load_and_complain(options, *file);
+                    return send(options, *connection, loaded.changes, *store);
+                  })
+      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
+      ->required();
+  const auto overwrite = std::make_shared<bool>(false);
+  auto* save_command =
+      subcommands.add("save", "Writes the device's parameters to a TOML file",
+                      "inkwell parameters save soft.toml\ninkwell parameters save soft.toml --overwrite",
+                      [&options, file, overwrite] { return save(options, *file, *overwrite); });
+  save_command->add_option("FILE", *file, "New file to write; - is standard output")->required();
+  save_command->add_flag("--overwrite", *overwrite, "Replace an existing file");
+  subcommands
+      .add("diff", "Shows the differences between a TOML file and the device", "inkwell parameters diff soft.toml",
+           [&options, file] { return show_differences(options, *file); })
+      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
+      ->required();
+  subcommands
+      .add_change("arm", "Sends the geometry, limits and box of an arm description in one transaction",
+                  "inkwell parameters arm boards/arms/paper.toml",
+                  [&options, file, store = subcommands.store] {
+                    return send(options, connect(options), device::arm_parameters(*file), *store);
+                  })
+      ->add_option("FILE", *file, "Arm description, such as boards/arms/paper.toml")
+      ->required();
+}
+
 }  // namespace
 
 void add_parameters_command(const Place& place) {
@@ -212,56 +283,9 @@ void add_parameters_command(const Place& place) {
                "inkwell parameters save soft.toml\n"
                "inkwell parameters store");
 
-  const auto words = std::make_shared<std::vector<std::string>>();
-  const auto file = std::make_shared<std::string>();
-  const auto add = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
-    auto* subcommand = command->add_subcommand(name, help);
-    add_examples(*subcommand, examples);
-    subcommand->callback([place, run] { place.action = run; });
-    return subcommand;
-  };
-  add("get", "Prints the values of one or more parameters",
-      "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",
-      [&options, words] { return get(options, *words); })
-      ->add_option("NAME", *words, "Parameter names")
-      ->required();
-  const auto store = std::make_shared<bool>(false);
-  const auto add_change = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
-    auto* subcommand = add(name, help, examples, std::move(run));
-    subcommand->add_flag("--store", *store, "Also store the parameters on the board, so that they survive power loss");
-    return subcommand;
-  };
-  add_change("set", "Changes parameters in one transaction: all of them take effect together, or none",
-             "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
-             "inkwell parameters set wall_stiffness_N_per_m=600 --store",
-             [&options, words, store] { return set(options, *words, *store); })
-      ->add_option("ASSIGNMENT", *words,
-                   "NAME=VALUE: a parameter and its new value, in the unit at the end of its name")
-      ->required();
-  add_change("defaults", "Sets every parameter to its default", "inkwell parameters defaults",
-             [&options, store] { return restore_defaults(options, *store); });
-  add_change("load", "Sends the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
-             [&options, file, store] {
-               const auto [loaded, connection] = load_and_complain(options, *file);
-               return send(options, *connection, loaded.changes, *store);
-             })
-      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
-      ->required();
-  const auto overwrite = std::make_shared<bool>(false);
-  auto* save_command = add("save", "Writes the device's parameters to a TOML file",
-                           "inkwell parameters save soft.toml\ninkwell parameters save soft.toml --overwrite",
-                           [&options, file, overwrite] { return save(options, *file, *overwrite); });
-  save_command->add_option("FILE", *file, "New file to write; - is standard output")->required();
-  save_command->add_flag("--overwrite", *overwrite, "Replace an existing file");
-  add("diff", "Shows the differences between a TOML file and the device", "inkwell parameters diff soft.toml",
-      [&options, file] { return show_differences(options, *file); })
-      ->add_option("FILE", *file, "File written by `inkwell parameters save`")
-      ->required();
-  add_change("arm", "Sends the geometry, limits and box of an arm description in one transaction",
-             "inkwell parameters arm boards/arms/paper.toml",
-             [&options, file, store] { return send(options, connect(options), device::arm_parameters(*file), *store); })
-      ->add_option("FILE", *file, "Arm description, such as boards/arms/paper.toml")
-      ->required();
+  const Subcommands subcommands{*command, place};
+  add_get_and_set(subcommands, options);
+  add_file_commands(subcommands, options);
   add_store_commands(*command, place);
 }
 
