@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "protocol/bit_set.hpp"
 #include "protocol/faults.hpp"
 
 namespace inkwell::protocol {
@@ -127,12 +128,12 @@ inline constexpr auto event_table = std::to_array<EventInfo>({
 });
 
 /// Set of events, as one bit per event.
-using Events = std::uint32_t;
+using Events = BitSet<Event>;
 template <class... More>
 constexpr Events events(More... some) {
-  return (0u | ... | static_cast<Events>(some));
+  return Events((0u | ... | static_cast<std::uint32_t>(some)));
 }
-constexpr Events when(Event event, bool is_so) { return is_so ? static_cast<Events>(event) : 0u; }
+constexpr Events when(Event event, bool is_so) { return is_so ? events(event) : Events(); }
 
 /// State transition. A transition is open if all events of `needs` and no event of `unless` are present.
 struct StateTransition {
@@ -146,41 +147,41 @@ struct StateTransition {
 /// Rows with the same `from` are consecutive, and the supervisor follows the first open transition among them. A fault
 /// has precedence and leads to `fault` from each state except `fault` and `update`.
 inline constexpr auto transition_table = std::to_array<StateTransition>({
-    {State::starting, State::update, events(Event::update), 0},
-    {State::starting, State::testing, events(Event::measured), 0},
-    {State::testing, State::update, events(Event::update), 0},
-    {State::testing, State::unreferenced, events(Event::tested), 0},
-    {State::unreferenced, State::update, events(Event::update), 0},
-    {State::unreferenced, State::testing, events(Event::self_test), 0},
-    {State::unreferenced, State::ready, events(Event::referenced), 0},
-    {State::ready, State::update, events(Event::update), 0},
-    {State::ready, State::unreferenced, 0, events(Event::referenced)},
-    {State::ready, State::testing, events(Event::self_test), 0},
+    {State::starting, State::update, events(Event::update), {}},
+    {State::starting, State::testing, events(Event::measured), {}},
+    {State::testing, State::update, events(Event::update), {}},
+    {State::testing, State::unreferenced, events(Event::tested), {}},
+    {State::unreferenced, State::update, events(Event::update), {}},
+    {State::unreferenced, State::testing, events(Event::self_test), {}},
+    {State::unreferenced, State::ready, events(Event::referenced), {}},
+    {State::ready, State::update, events(Event::update), {}},
+    {State::ready, State::unreferenced, {}, events(Event::referenced)},
+    {State::ready, State::testing, events(Event::self_test), {}},
     {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
-    {State::ramping, State::update, events(Event::update), 0},
-    {State::ramping, State::ready, events(Event::stop), 0},
-    {State::ramping, State::landing, events(Event::disable), 0},
-    {State::ramping, State::active, events(Event::risen), 0},
-    {State::active, State::update, events(Event::update), 0},
-    {State::active, State::ready, events(Event::stop), 0},
-    {State::active, State::landing, events(Event::disable), 0},
-    {State::active, State::limited, events(Event::held_back), 0},
-    {State::limited, State::update, events(Event::update), 0},
-    {State::limited, State::ready, events(Event::stop), 0},
-    {State::limited, State::landing, events(Event::disable), 0},
-    {State::limited, State::active, 0, events(Event::held_back)},
-    {State::landing, State::update, events(Event::update), 0},
-    {State::landing, State::ready, events(Event::stop), 0},
+    {State::ramping, State::update, events(Event::update), {}},
+    {State::ramping, State::ready, events(Event::stop), {}},
+    {State::ramping, State::landing, events(Event::disable), {}},
+    {State::ramping, State::active, events(Event::risen), {}},
+    {State::active, State::update, events(Event::update), {}},
+    {State::active, State::ready, events(Event::stop), {}},
+    {State::active, State::landing, events(Event::disable), {}},
+    {State::active, State::limited, events(Event::held_back), {}},
+    {State::limited, State::update, events(Event::update), {}},
+    {State::limited, State::ready, events(Event::stop), {}},
+    {State::limited, State::landing, events(Event::disable), {}},
+    {State::limited, State::active, {}, events(Event::held_back)},
+    {State::landing, State::update, events(Event::update), {}},
+    {State::landing, State::ready, events(Event::stop), {}},
     {State::landing, State::ramping, events(Event::enable), events(Event::disable)},
-    {State::landing, State::ready, events(Event::landed), 0},
-    {State::fault, State::update, events(Event::update), 0},
+    {State::landing, State::ready, events(Event::landed), {}},
+    {State::fault, State::update, events(Event::update), {}},
     {State::fault, State::starting, events(Event::clear), events(Event::cause, Event::measured)},
     {State::fault, State::testing, events(Event::clear, Event::measured), events(Event::cause, Event::tested)},
     {State::fault, State::testing, events(Event::self_test, Event::measured), events(Event::cause, Event::tested)},
     {State::fault, State::unreferenced, events(Event::clear, Event::tested), events(Event::cause, Event::referenced)},
     {State::fault, State::ready, events(Event::clear, Event::tested, Event::referenced), events(Event::cause)},
     {State::update, State::fault, events(Event::raised), events(Event::update)},
-    {State::update, State::starting, 0, events(Event::update, Event::measured)},
+    {State::update, State::starting, {}, events(Event::update, Event::measured)},
     {State::update, State::testing, events(Event::measured), events(Event::update, Event::tested)},
     {State::update, State::unreferenced, events(Event::tested), events(Event::update, Event::referenced)},
     {State::update, State::ready, events(Event::tested, Event::referenced), events(Event::update)},
@@ -258,7 +259,7 @@ inline constexpr auto condition_table = []() {
 }();
 
 /// Set of rows of condition_table, as one bit per row. Bit 0 is the first row.
-using Conditions = std::uint32_t;
+using Conditions = BitSet<Condition>;
 static_assert(condition_table.size() <= 32);
 
 namespace detail {
@@ -278,17 +279,17 @@ constexpr std::size_t place_of(Fault fault) {
   const auto code = static_cast<std::size_t>(fault);
   return code < detail::places.size() ? detail::places[code] : condition_table.size();
 }
-constexpr Conditions condition(Fault fault) { return 1u << place_of(fault); }
+constexpr Conditions condition(Fault fault) { return Conditions(1u << place_of(fault)); }
 constexpr Conditions condition(Fault fault, bool is_found) {
-  return static_cast<Conditions>(is_found) << place_of(fault);
+  return Conditions(static_cast<std::uint32_t>(is_found) << place_of(fault));
 }
 
 /// Returns the set of rows for which `is_so` returns true.
 template <class Predicate>
 constexpr Conditions conditions(Predicate is_so) {
-  Conditions bits = 0;
+  Conditions bits;
   for (std::size_t i = 0; i < condition_table.size(); ++i)
-    if (is_so(condition_table[i])) bits |= 1u << i;
+    if (is_so(condition_table[i])) bits |= Conditions(1u << i);
   return bits;
 }
 

@@ -322,7 +322,7 @@ void Controller::regulate_currents(const Settings& settings) {
 /// too fast or the host is silent. The test pulse also stops when the exchanged energy exceeds the energy reserve.
 void Controller::follow_test(protocol::Conditions found, const Settings& settings) {
   constexpr protocol::Conditions ends = condition(Fault::over_speed) | condition(Fault::host_silent);
-  if ((found & ends) != 0) {
+  if ((found & ends).any()) {
     test_.end();
     drive_ = {};
     return;
@@ -417,8 +417,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   note(Event::held_back, limits_ != 0);
   // These faults void the inkwell reference even while another fault is active. The reference is not restored when the
   // user clears a fault.
-  if ((found & protocol::voiding_conditions) != 0 && reference_.valid) [[unlikely]]
-    forget(reference_, (found & condition(Fault::inkwell_implausible)) != 0);
+  if ((found & protocol::voiding_conditions).any() && reference_.valid) [[unlikely]]
+    forget(reference_, (found & condition(Fault::inkwell_implausible)).any());
   if (!stays_unchanged(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
   pending_ = {.events = lasting_events_};
@@ -444,7 +444,7 @@ void Controller::change_state(const Supervisor& next) {
   pulses_.stop();
   if (next.state == State::testing) {
     ++self_tests_;
-    lasting_events_ = 0;
+    lasting_events_ = {};
   }
   if (force_was_on && next.state == State::fault)
     brake_.begin();

@@ -167,8 +167,8 @@ class Controller {
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
-  Situation pending_;                    ///< external requests and faults since the previous period
-  protocol::Events lasting_events_ = 0;  ///< events requested in every period
+  Situation pending_;                ///< external requests and faults since the previous period
+  protocol::Events lasting_events_;  ///< events requested in every period
   bool force_is_on_ = false;
   Brake brake_;
   float force_gain_ = 0.0f;

@@ -48,8 +48,8 @@ struct Link {
   BlackBox black_box;
   SelfTest self_test;
   ServoStatus status;
-  Shared<bool> update_requested{false};                ///< the host requested the boot loader
-  Shared<protocol::Conditions> found_in_main_loop{0};  ///< faults that tolerate a delay of one control period
+  Shared<bool> update_requested{false};                 ///< the host requested the boot loader
+  Shared<protocol::Conditions> found_in_main_loop{{}};  ///< faults that tolerate a delay of one control period
 };
 
 }  // namespace inkwell::link

@@ -16,7 +16,7 @@ void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Conditions f
   // A speed that is not a number does not count as fast.
   const bool is_fast = speed_squared_m2_per_s2 > Brake::speed_m_per_s * Brake::speed_m_per_s;
   brake.remaining_periods = is_fast && may_brake(found) ? brake.remaining_periods - 1 : 0;
-  if ((found & gentle) != 0) brake.is_gentle = true;
+  if ((found & gentle).any()) brake.is_gentle = true;
 }
 
 bool shorts(const Brake& brake, const Triple& current_A, const Triple& limit_A) {

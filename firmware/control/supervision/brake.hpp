@@ -35,7 +35,7 @@ struct Brake {
 
 /// Returns true if none of these faults requires coasting. The motors may then be shorted.
 constexpr bool may_brake(protocol::Conditions found) {
-  return (found & protocol::conditions([](const auto& row) { return row.off == protocol::Off::coast; })) == 0;
+  return !(found & protocol::conditions([](const auto& row) { return row.off == protocol::Off::coast; })).any();
 }
 
 /// Call this function once per control period, including the first period of braking. `speed_squared_m2_per_s2` is the

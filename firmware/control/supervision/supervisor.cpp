@@ -10,6 +10,7 @@ namespace {
 
 using protocol::Conditions;
 using protocol::Event;
+using protocol::Events;
 using protocol::Fault;
 using protocol::State;
 using protocol::StateTransition;
@@ -17,32 +18,37 @@ using protocol::StateTransition;
 /// The table is copied, because a table in a header may be in flash.
 constexpr auto transitions = protocol::transition_table;
 
-/// The table is indexed by state, so that an interrupt reads only one row.
+/// Part of the tables that belongs to one state, so that an interrupt reads only one row.
 struct OfState {
-  Conditions monitored = 0;
-  protocol::Events idle_events = 0;  ///< values of the `key_events` events for which every transition is closed
-  protocol::Events key_events = 0;
+  Conditions monitored;
+  Events key_events;   ///< key events of all transitions from the state
+  Events idle_events;  ///< values of the key events for which every transition is closed
   const StateTransition* transitions_begin = nullptr;
   const StateTransition* transitions_end = nullptr;
 };
 
+/// One event that keeps the transition closed: a needed event that is missing, or an excluded event that is present.
+/// The last such event in the event list is the rarest one, and is therefore used.
+constexpr Events key_event(const StateTransition& transition) {
+  return Events(std::bit_floor((transition.needs.any() ? transition.needs : transition.unless).bits()));
+}
+
+constexpr OfState rows_of(State state) {
+  OfState rows;
+  rows.monitored = protocol::conditions([state](const auto& row) { return row.monitored_in.contains(state); });
+  for (const StateTransition& transition : transitions) {
+    if (transition.from != state) continue;
+    if (rows.transitions_begin == nullptr) rows.transitions_begin = &transition;
+    rows.transitions_end = &transition + 1;
+    rows.key_events |= key_event(transition);
+    if (!transition.needs.any()) rows.idle_events |= key_event(transition);
+  }
+  return rows;
+}
+
 constexpr auto of_state = []() {
   std::array<OfState, protocol::state_count> result{};
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto state = static_cast<State>(i);
-    OfState& here = result[i];
-    here.monitored = protocol::conditions([state](const auto& row) { return row.monitored_in.contains(state); });
-    for (const StateTransition& transition : transitions) {
-      if (transition.from != state) continue;
-      if (here.transitions_begin == nullptr) here.transitions_begin = &transition;
-      here.transitions_end = &transition + 1;
-      // A transition is impossible if a needed event is missing or if an excluded event occurs. The last event in the
-      // event list is used, because it is the rarest event.
-      const protocol::Events key = std::bit_floor(transition.needs != 0 ? transition.needs : transition.unless);
-      here.key_events |= key;
-      if (transition.needs == 0) here.idle_events |= key;
-    }
-  }
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = rows_of(static_cast<State>(i));
   return result;
 }();
 
@@ -72,17 +78,18 @@ constexpr auto clearing_blocker = []() {
 
 bool stays_unchanged(State state, const Situation& situation) {
   const OfState& here = of_state[static_cast<std::size_t>(state)];
-  return ((situation.found & here.monitored) | ((situation.events ^ here.idle_events) & here.key_events)) == 0;
+  return ((situation.found & here.monitored).bits() |
+          ((situation.events ^ here.idle_events) & here.key_events).bits()) == 0;
 }
 
 Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
   const OfState& here = of_state[static_cast<std::size_t>(supervisor.state)];
-  if (const Conditions found = situation.found & here.monitored; found != 0) [[unlikely]]
-    return {State::fault, faults[static_cast<std::size_t>(std::countr_zero(found))]};
-  protocol::Events now = situation.events;
+  if (const Conditions found = situation.found & here.monitored; found.any()) [[unlikely]]
+    return {State::fault, faults[static_cast<std::size_t>(std::countr_zero(found.bits()))]};
+  Events now = situation.events;
   if (supervisor.state == State::fault) [[unlikely]]
     now |= protocol::when(Event::cause,
-                          (situation.found & clearing_blocker[static_cast<std::size_t>(supervisor.fault)]) != 0);
+                          (situation.found & clearing_blocker[static_cast<std::size_t>(supervisor.fault)]).any());
   // In the state `update` the reported fault is still stored.
   now |= protocol::when(Event::raised, supervisor.fault != Fault::none);
   for (const StateTransition* transition = here.transitions_begin; transition != here.transitions_end; ++transition)

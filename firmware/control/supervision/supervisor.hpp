@@ -7,8 +7,8 @@ namespace inkwell::control {
 
 /// Conditions in this period, and requests since the previous period.
 struct Situation {
-  protocol::Events events = 0;
-  protocol::Conditions found = 0;  ///< includes faults that the state does not watch
+  protocol::Events events;
+  protocol::Conditions found;  ///< includes faults that the state does not watch
 };
 
 struct Supervisor {

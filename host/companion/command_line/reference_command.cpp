@@ -64,7 +64,7 @@ void print_reports() {
 std::string names_of(protocol::Events events) {
   std::vector<std::string_view> names;
   for (const auto& row : protocol::event_table)
-    if ((events & static_cast<protocol::Events>(row.event)) != 0) names.push_back(row.name);
+    if ((events & protocol::events(row.event)).any()) names.push_back(row.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

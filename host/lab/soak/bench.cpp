@@ -223,7 +223,7 @@ void Bench::dock() {
     if (board.is(State::fault)) {
       rested_s = 0;
       const protocol::Fault reported_fault = board.pose()->fault;
-      if ((lost_counts & protocol::condition(reported_fault)) == 0) continue;
+      if (!(lost_counts & protocol::condition(reported_fault)).any()) continue;
       board.command(Command::clear_fault);
       // The inkwell switch must also open once before this fault is cleared.
       if (reported_fault == protocol::Fault::inkwell_implausible) {

@@ -138,17 +138,17 @@ bool Oracle::see_counts(unsigned restarts, unsigned long broken_rules, const std
 }
 
 void Oracle::require_report_of(protocol::Conditions faults) {
-  if (std::ranges::any_of(reported_, [&](Fault fault) { return (faults & protocol::condition(fault)) != 0; })) return;
+  if (std::ranges::any_of(reported_, [&](Fault fault) { return (faults & protocol::condition(fault)).any(); })) return;
   std::vector<std::string_view> names;
   for (const protocol::Condition& row : protocol::condition_table)
-    if ((faults & protocol::condition(row.fault)) != 0) names.push_back(protocol::info(row.fault).name);
+    if ((faults & protocol::condition(row.fault)).any()) names.push_back(protocol::info(row.fault).name);
   complain(Complaint::missed_fault, fmt::format("{} was not reported", fmt::join(names, " or ")));
 }
 
 void Oracle::note_report(Fault fault) {
   reported_.push_back(fault);
   ++faults_reported_[std::string(protocol::info(fault).name)];
-  if ((allowed_faults_ & protocol::condition(fault)) == 0)
+  if (!(allowed_faults_ & protocol::condition(fault)).any())
     complain(Complaint::false_trip, fmt::format("{}", protocol::info(fault).name));
 }
 

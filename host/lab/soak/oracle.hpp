@@ -86,7 +86,7 @@ class Oracle {
 
   void begin(unsigned phase, Kind kind);
   /// The cause is cleared, so any further fault report in this phase is an error.
-  void allow_no_fault() { allowed_faults_ = 0; }
+  void allow_no_fault() { allowed_faults_ = {}; }
   /// The cause is cleared, but the reference may be wrong. Lost counts may be reported until the next reference.
   void allow_lost_counts() { allowed_faults_ = lost_counts; }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
@@ -146,7 +146,7 @@ class Oracle {
 
   unsigned phase_ = 0;
   Kind kind_ = Kind::docking;
-  protocol::Conditions allowed_faults_ = 0;
+  protocol::Conditions allowed_faults_;
   Disturbance disturbance_ = Disturbance::none;
   std::vector<protocol::Fault> reported_;  ///< in this phase
   double now_s_ = 0;

@@ -33,25 +33,25 @@ inline constexpr protocol::Conditions host_gone =
 // clang-format off
 /// X(name, cards in a deck, faults that may be reported, description)
 #define INKWELL_SOAK_KINDS(X) \
-  X(docking, 1, 0, "The stylus is put into the inkwell and removed, then the force is switched on.") \
-  X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.") \
-  X(walls, 2, 0, "The hand presses into walls and slides along them, with up to the force limit.") \
-  X(fast, 1, 0, "The hand moves fast, below the speed limit.") \
-  X(program, 2, 0, "A program sends forces in every mode and places shapes.") \
-  X(scope, 1, 0, "The scope runs and changes its signals.") \
-  X(recording, 1, 0, "The scope is recorded into a file, and the file is read.") \
-  X(live_storm, 2, 0, "Legal and illegal parameter changes are sent with the force on.") \
+  X(docking, 1, {}, "The stylus is put into the inkwell and removed, then the force is switched on.") \
+  X(free_space, 1, {}, "The hand wanders through free space, presses buttons, turns the stylus.") \
+  X(walls, 2, {}, "The hand presses into walls and slides along them, with up to the force limit.") \
+  X(fast, 1, {}, "The hand moves fast, below the speed limit.") \
+  X(program, 2, {}, "A program sends forces in every mode and places shapes.") \
+  X(scope, 1, {}, "The scope runs and changes its signals.") \
+  X(recording, 1, {}, "The scope is recorded into a file, and the file is read.") \
+  X(live_storm, 2, {}, "Legal and illegal parameter changes are sent with the force on.") \
   X(wide_storm, 1, lost_counts, \
     "Legal and illegal values of all parameters are sent with the force off, including joint stops and scales.") \
-  X(store, 1, 0, "Parameters are stored, restored and erased. The board also restarts, even during a write.") \
+  X(store, 1, {}, "Parameters are stored, restored and erased. The board also restarts, even during a write.") \
   X(cable, 1, host_gone, "The cable is unplugged and plugged in again.") \
   X(silence, 1, protocol::condition(protocol::Fault::host_silent), \
     "The host is silent for shorter and longer than the time-out.") \
   X(killed, 1, host_gone, "The program is killed while the force is on.") \
-  X(reset, 1, 0, "The board is reset at any time.") \
+  X(reset, 1, {}, "The board is reset at any time.") \
   X(too_fast, 1, protocol::condition(protocol::Fault::over_speed), \
     "The hand is faster than a speed limit that was lowered.") \
-  X(fault, 4, ~protocol::Conditions{0}, "A fault from the table is injected and removed.")
+  X(fault, 4, ~protocol::Conditions(), "A fault from the table is injected and removed.")
 // clang-format on
 
 enum class Kind : std::uint8_t {

@@ -1,6 +1,8 @@
 // Compares every cell of the supervisor's tables with a separate copy in this file.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "firmware/control/supervision/supervisor.hpp"
@@ -18,10 +20,21 @@ using protocol::events;
 using protocol::Fault;
 using protocol::State;
 
+// Events and conditions must not be mixed up.
+template <class First, class Second>
+concept Situates = requires {
+  Situation{First(), Second()};
+};
+static_assert(Situates<Events, protocol::Conditions>);
+static_assert(!Situates<protocol::Conditions, Events>);
+static_assert(!Situates<std::uint32_t, protocol::Conditions> && !Situates<Events, std::uint32_t>);
+static_assert(!std::is_constructible_v<Events, protocol::Conditions>);
+static_assert(!std::is_constructible_v<protocol::Conditions, Events>);
+
 constexpr Events good = events(Event::measured, Event::tested, Event::referenced);
 
 Supervisor in(State state) { return {state, Fault::none}; }
-State next(State state, Events now) { return advance(in(state), {now, 0}).state; }
+State next(State state, Events now) { return advance(in(state), {now, {}}).state; }
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
 TEST_CASE("what has no row in the table of what is watched has a place behind it") {
@@ -53,7 +66,7 @@ TEST_CASE("a limit is told once the force has risen, for as long as it holds") {
 TEST_CASE("from every state with force stop leads to ready and disable to landing, whatever else was asked") {
   for (const State state : {State::ready, State::ramping, State::active, State::limited, State::landing})
     for (const Events also :
-         {Events{0}, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)}) {
+         {Events(), events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)}) {
       CHECK(next(state, good | events(Event::disable) | also) == (state == State::ready ? state : State::landing));
       CHECK(next(state, good | events(Event::stop) | also) == State::ready);
       CHECK(next(state, good | events(Event::stop, Event::disable) | also) == State::ready);
@@ -79,10 +92,10 @@ TEST_CASE("a test on command begins while the force is off, and in a fault only 
     CHECK(next(state, asked) != State::testing);
   const Supervisor failed = faulty(Fault::self_test_failed);
   const Events untested = events(Event::measured, Event::referenced, Event::self_test);
-  CHECK(advance(failed, {untested, 0}) == in(State::testing));
+  CHECK(advance(failed, {untested, {}}) == in(State::testing));
   CHECK(advance(faulty(Fault::supply_low), {untested, condition(Fault::supply_low)}) == faulty(Fault::supply_low));
-  CHECK(advance(faulty(Fault::over_speed), {asked, 0}) == faulty(Fault::over_speed));
-  CHECK(advance(failed, {events(Event::referenced, Event::self_test), 0}) == failed);
+  CHECK(advance(faulty(Fault::over_speed), {asked, {}}) == faulty(Fault::over_speed));
+  CHECK(advance(failed, {events(Event::referenced, Event::self_test), {}}) == failed);
 }
 
 TEST_CASE("for the boot loader every state is left, and the device is where it was if the host thinks better of it") {
@@ -91,7 +104,7 @@ TEST_CASE("for the boot loader every state is left, and the device is where it w
     CHECK(next(state, good | events(Event::update)) == State::update);
     CHECK(next(state, good | events(Event::update, Event::enable, Event::clear)) == State::update);
   }
-  CHECK(next(State::update, 0) == State::starting);
+  CHECK(next(State::update, {}) == State::starting);
   CHECK(next(State::update, events(Event::measured)) == State::testing);
   CHECK(next(State::update, events(Event::measured, Event::tested)) == State::unreferenced);
   CHECK(next(State::update, good) == State::ready);
@@ -102,11 +115,11 @@ TEST_CASE("the boot loader takes no fault away: it is there again if the device 
     const auto fault = static_cast<Fault>(row.code);
     if (fault == Fault::none) continue;
     CAPTURE(row.name);
-    const Supervisor leaving = advance(faulty(fault), {good | events(Event::update), 0});
+    const Supervisor leaving = advance(faulty(fault), {good | events(Event::update), {}});
     CHECK(leaving == Supervisor{State::update, fault});
-    CHECK(advance(leaving, {good | events(Event::update, Event::clear), 0}) == leaving);
-    for (const Events now : {Events{0}, events(Event::measured), events(Event::measured, Event::tested), good})
-      CHECK(advance(leaving, {now, 0}) == faulty(fault));
+    CHECK(advance(leaving, {good | events(Event::update, Event::clear), {}}) == leaving);
+    for (const Events now : {Events(), events(Event::measured), events(Event::measured, Event::tested), good})
+      CHECK(advance(leaving, {now, {}}) == faulty(fault));
   }
 }
 
@@ -163,7 +176,7 @@ TEST_CASE("each fault is looked for in its states and in no other") {
       CAPTURE(static_cast<int>(row.fault));
       CAPTURE(static_cast<int>(state));
       Events now = good;
-      if (state == State::starting) now = 0;
+      if (state == State::starting) now = {};
       if (state == State::testing) now = events(Event::measured);
       if (state == State::unreferenced) now = events(Event::measured, Event::tested);
       if (state == State::limited) now |= events(Event::held_back);
@@ -179,9 +192,9 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
     const Supervisor found = faulty(row.fault);
-    CHECK(advance(found, {good, 0}) == found);
-    CHECK(advance(found, {good | events(Event::enable), 0}) == found);
-    CHECK(advance(found, {clear, 0}) == in(State::ready));
+    CHECK(advance(found, {good, {}}) == found);
+    CHECK(advance(found, {good | events(Event::enable), {}}) == found);
+    CHECK(advance(found, {clear, {}}) == in(State::ready));
     CHECK(advance(found, {clear, condition(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
     // The condition of a second fault does not prevent clearing the first fault. The second fault is raised afterwards.
     const Fault other = row.fault == Fault::supply_low ? Fault::supply_high : Fault::supply_low;
@@ -192,7 +205,7 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
 TEST_CASE("the place of the arm is void after faults that an encoder may have brought about, and after no other") {
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
-    CHECK(((protocol::voiding_conditions & condition(row.fault)) != 0) ==
+    CHECK((protocol::voiding_conditions & condition(row.fault)).any() ==
           (row.fault == Fault::encoder_implausible || row.fault == Fault::encoder_wire ||
            row.fault == Fault::motor_implausible || row.fault == Fault::inkwell_implausible));
   }
@@ -200,10 +213,10 @@ TEST_CASE("the place of the arm is void after faults that an encoder may have br
 
 TEST_CASE("where a cleared fault leads to") {
   const Supervisor found = faulty(Fault::processor_fault);
-  CHECK(advance(found, {events(Event::clear), 0}) == in(State::starting));
-  CHECK(advance(found, {events(Event::clear, Event::measured), 0}) == in(State::testing));
-  CHECK(advance(found, {events(Event::clear, Event::measured, Event::tested), 0}) == in(State::unreferenced));
-  CHECK(advance(found, {good | events(Event::clear), 0}) == in(State::ready));
+  CHECK(advance(found, {events(Event::clear), {}}) == in(State::starting));
+  CHECK(advance(found, {events(Event::clear, Event::measured), {}}) == in(State::testing));
+  CHECK(advance(found, {events(Event::clear, Event::measured, Event::tested), {}}) == in(State::unreferenced));
+  CHECK(advance(found, {good | events(Event::clear), {}}) == in(State::ready));
 }
 
 TEST_CASE("of several faults the one that explains the others is shown, and the first one stays") {
@@ -219,17 +232,18 @@ TEST_CASE("of several faults the one that explains the others is shown, and the 
 TEST_CASE("the short look never says that a state stays which the tables leave") {
   int stays = 0;
   for (std::size_t i = 0; i < protocol::state_count; ++i)
-    for (Events now = 0; now < 2u * events(Event::self_test); ++now)
-      for (const auto found : {protocol::Conditions{0}, condition(Fault::over_speed), condition(Fault::supply_low),
+    for (std::uint32_t bits = 0; bits < 2u * events(Event::self_test).bits(); ++bits)
+      for (const auto found : {protocol::Conditions(), condition(Fault::over_speed), condition(Fault::supply_low),
                                condition(Fault::crystal_failed)}) {
+        const Events now(bits);
         const Supervisor here{static_cast<State>(i), Fault::none};
         if (!control::stays_unchanged(here.state, {now, found})) continue;
         ++stays;
         CHECK(advance(here, {now, found}) == here);
       }
   CHECK(stays > 1'000);
-  CHECK(control::stays_unchanged(State::active, {good | events(Event::risen), 0}));
-  CHECK(control::stays_unchanged(State::limited, {good | events(Event::risen, Event::held_back), 0}));
+  CHECK(control::stays_unchanged(State::active, {good | events(Event::risen), {}}));
+  CHECK(control::stays_unchanged(State::limited, {good | events(Event::risen, Event::held_back), {}}));
 }
 
 }  // namespace
