@@ -39,6 +39,21 @@ auto& fresh_table() {
   return table = parameter_table;
 }
 
+/// Help text of a signal whose value is a sum of bits: the text `begin` and all bits of the table.
+template <class Table, class Bit>
+std::string help_of_bits(std::string begin, const Table& table, Bit bit) {
+  for (const auto& row : table)
+    begin += (&row == &table[0] ? " " : ", ") + std::to_string(static_cast<unsigned>(row.*bit)) + " " +
+             std::string(row.name);
+  return begin + ".";
+}
+
+TEST_CASE("signals: the help of a sum of bits names each bit of its table") {
+  CHECK(info(Signal::force_sources).help ==
+        help_of_bits("Sum of the active force sources:", force_source_table, &ForceSourceInfo::source));
+  CHECK(info(Signal::limits).help == help_of_bits("Sum of the active limits:", limit_table, &LimitInfo::limit));
+}
+
 TEST_CASE("reports: ids and usages are unique, and each is read or set") {
   std::set<ReportId> ids;
   std::set<unsigned> usages;
