@@ -4,21 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/firmware/control/controller_names.hpp"
 #include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 
 using namespace inkwell;
-using control::Controller;
-using control::Drive;
-using control::Samples;
-using control::Settings;
-using protocol::Command;
-using protocol::Fault;
-using protocol::Signal;
-using protocol::State;
-using tests::run_with_host;
-using tests::settings_near_wall;
+using namespace inkwell::tests::controller_names;
 
 /// Moves joint 2 back and joint 3 up, so that the probe moves outward along x below the speed limit.
 void push_into_wall(Controller& controller, Samples& samples, const Settings& settings) {

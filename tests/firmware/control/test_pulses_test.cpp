@@ -8,19 +8,12 @@
 #include <utility>
 
 #include "tests/firmware/control/arms.hpp"
-#include "tests/firmware/control/simulated_arm.hpp"
+#include "tests/firmware/control/controller_names.hpp"
 
 namespace {
 
 using namespace inkwell;
-using control::Controller;
-using control::Drive;
-using control::Samples;
-using control::Settings;
-using protocol::Command;
-using protocol::Fault;
-using protocol::Signal;
-using protocol::State;
+using namespace inkwell::tests::controller_names;
 
 protocol::CommandReport pulse(Command which, std::uint8_t motor, float amplitude, float duration_s) {
   protocol::CommandReport report = tests::command(which);

@@ -4,21 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
+#include "tests/firmware/control/controller_names.hpp"
 #include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 
 using namespace inkwell;
-using control::Controller;
-using control::Drive;
-using control::Samples;
-using control::Settings;
-using protocol::Command;
-using protocol::Fault;
-using protocol::Signal;
-using protocol::State;
-using tests::run_with_host;
-using tests::settings_near_wall;
+using namespace inkwell::tests::controller_names;
 
 TEST_CASE("offsets of the current sensors are taken off, and a broken sensor is found") {
   const Settings settings = settings_near_wall();

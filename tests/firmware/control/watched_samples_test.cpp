@@ -5,20 +5,13 @@
 #include <cstdint>
 #include <limits>
 
+#include "tests/firmware/control/controller_names.hpp"
 #include "tests/firmware/control/near_wall.hpp"
 
 namespace {
 
 using namespace inkwell;
-using control::Controller;
-using control::Drive;
-using control::Samples;
-using control::Settings;
-using protocol::Command;
-using protocol::Fault;
-using protocol::State;
-using tests::run_with_host;
-using tests::settings_near_wall;
+using namespace inkwell::tests::controller_names;
 
 /// Each of these samples must switch off an active controller in the same period.
 struct BadSample {
