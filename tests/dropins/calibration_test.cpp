@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 using protocol::State;
 
 template <class Condition>
-device::Pose read_until(device::Device& arm, Condition condition) {
+device::Pose read_until(device::Device& device, Condition condition) {
   for (;;)
-    if (const auto pose = arm.read_pose(60s); pose && condition(*pose)) return *pose;
+    if (const auto pose = device.read_pose(60s); pose && condition(*pose)) return *pose;
 }
 
 TEST_CASE("an arm that a program finds in a fault knows where it is, if nothing says that counts were lost") {

@@ -60,7 +60,7 @@ struct Session::Implementation {
   void carry_out(Device& device, StoreTask task);
   void select(Device& device, const std::vector<protocol::Signal>& selection);
   template <class Transaction>
-  void transact(Device& with, Transaction transaction) {
+  void transact(Device& device, Transaction transaction) {
     std::optional<std::string> refused;
     std::optional<std::int64_t> applied_at_periods;
     try {
@@ -71,7 +71,7 @@ struct Session::Implementation {
       refused = error.what();
       show_problem(error);
     }
-    const auto held = with.parameters();
+    const auto held = device.parameters();
     const std::lock_guard lock(mutex);
     newest_refusal = refused;
     if (refused) events.add(event_now(EventKind::parameter, *refused, std::nullopt));
