@@ -28,10 +28,31 @@ Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bo
   }
 }
 
+/// Throws Error with the line number of a mistake.
+arms::Description read_description(const std::filesystem::path& file) {
+  try {
+    return arms::read(file);
+  } catch (const arms::DescriptionError& error) {
+    throw Error(error.what());
+  }
+}
+
+std::vector<ParameterChange> parameters_of(const arms::Description& arm) {
+  std::vector<ParameterChange> changes;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (protocol::parameter_table[i].belongs_to_arm)
+      changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
+  return changes;
+}
+
 OpenArm open_on_own_board(const VirtualBoardOptions& options, std::optional<std::uint64_t> seed, LockStep* lock_step) {
-  std::vector<ParameterChange> arm;
-  if (!options.arm.empty()) arm = arm_parameters(options.arm);
   OpenArm opened;
+  std::vector<ParameterChange> arm;
+  if (!options.arm.empty()) {
+    const arms::Description description = read_description(options.arm);
+    arm = parameters_of(description);
+    opened.arm_name = description.name;
+  }
   opened.board = std::make_unique<VirtualBoard>(options);
   opened.control.emplace(opened.board->control());
   if (options.paused) opened.control->stand_by();
@@ -62,16 +83,7 @@ OpenArm open_arm(const Address& address, VirtualBoardOptions board_options, Lock
 }
 
 std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file) {
-  std::vector<ParameterChange> changes;
-  try {
-    const auto arm = arms::read(file);
-    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-      if (protocol::parameter_table[i].belongs_to_arm)
-        changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
-  } catch (const arms::DescriptionError& error) {
-    throw Error(error.what());
-  }
-  return changes;
+  return parameters_of(read_description(file));
 }
 
 }  // namespace inkwell::device

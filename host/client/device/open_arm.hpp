@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host/client/device/address.hpp"
@@ -17,6 +18,7 @@ struct OpenArm {
   std::optional<ControlClient> control;  ///< control socket of `board`
   Endpoint endpoint{};
   std::unique_ptr<Device> device;
+  std::string arm_name;  ///< from the arm description in the address; empty without one, as a board stores no name
 };
 
 /// Opens the arm at the address. For an `own_board` address, starts a virtual board with these options and with the arm

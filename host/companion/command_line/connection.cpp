@@ -1,6 +1,5 @@
 #include "host/companion/command_line/connection.hpp"
 
-#include "boards/arms/description.hpp"
 #include "boards/known/boards.hpp"
 
 #include "host/companion/command_line/help.hpp"
@@ -86,10 +85,6 @@ device::OpenArm connect(const DeviceOptions& options, BoardPace pace, device::Si
                               pace == BoardPace::lock_step ? &device::one_thread() : nullptr);
   if (options.take_over) arm.device->take_over();
   return arm;
-}
-
-std::string arm_name(const DeviceOptions& options) {
-  return options.arm.empty() ? std::string() : arms::read(options.arm).name;
 }
 
 }  // namespace inkwell::command_line

@@ -81,7 +81,4 @@ Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read 
   }
 }
 
-/// Name of the arm in the --arm description. Empty without --arm, because a board does not store an arm name.
-std::string arm_name(const DeviceOptions& options);
-
 }  // namespace inkwell::command_line

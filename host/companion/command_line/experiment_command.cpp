@@ -44,7 +44,7 @@ void print(const nlohmann::ordered_json& summary, const std::string& directory) 
 int run_wall(DeviceOptions options, const WallCommandOptions& command) {
   options.is_strict = true;  // a result with a violated chip rule would be invalid
   ProgressBar progress;
-  experiment::WallOptions wall{.output_directory = command.output, .arm = arm_name(options)};
+  experiment::WallOptions wall{.output_directory = command.output};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
   constexpr auto mode = device::SimulationMode::exact;
   constexpr auto pace = BoardPace::as_asked;
@@ -53,6 +53,7 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
     wall.virtual_board = options.virtual_board(mode, pace);
   }
   auto connection = connect(options, pace, mode);
+  wall.arm = connection.arm_name;
   wall.simulation = connection.endpoint.is_virtual;
   const auto summary = experiment::run_wall_experiment(
       *connection.device, connection.control ? &*connection.control : nullptr, wall, progress);

@@ -155,7 +155,7 @@ int save_black_box(const DeviceOptions& device_options, const FaultOptions& opti
   const auto recording = recording::of_black_box(
       box, device.black_box_rows(box),
       recording::describe(device.information(), device.parameters(), recording::black_box_signals(),
-                          arm_name(device_options), connection.endpoint.is_virtual));
+                          connection.arm_name, connection.endpoint.is_virtual));
   recording::save(recording, options.file);
   if (device_options.json) {
     fmt::print("{}\n", ordered_json{{"file", options.file}, {"black_box", to_json(box, image)}}.dump());

@@ -1,10 +1,16 @@
 // Tests opening an arm by its address. A script replaces the virtual board and prints the ports of the test's servers.
 #include <doctest/doctest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "host/client/device/open_arm.hpp"
 #include "tests/failure.hpp"
@@ -68,6 +74,41 @@ TEST_CASE("a board of its own gets the parameters of its arm") {
   const auto arm = device::arm_parameters(paper_arm);
   for (const auto& [parameter, value] : arm) CHECK(usb.parameters[parameter] == value);
   CHECK(count_of(control, "stand_by") == 0);
+}
+
+TEST_CASE("the arm description is parsed once: the name does not need the file again") {
+  const TemporaryDirectory directory;
+  FakeUsbipServer usb;
+  FakeControlServer control([](const json&) { return board_time_line(0.0); });
+  const StandIn board(usb.port(), control.port());
+  const auto arm = device::arm_parameters(paper_arm);
+  const auto pipe = directory / "arm.toml";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  std::atomic<bool> is_over = false;
+  // The first reader of the pipe reads the description, and every other reader reads an empty file.
+  std::thread writer([&] {
+    {
+      std::ifstream description(paper_arm);
+      std::ofstream(pipe) << description.rdbuf();
+    }
+    while (!is_over) {
+      if (const int descriptor = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK); descriptor >= 0) ::close(descriptor);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  device::OpenArm opened;
+  CHECK_NOTHROW(opened = device::open_arm(device::parse_address("virtual:" + pipe.string()), board.options()));
+  is_over = true;
+  writer.join();
+  CHECK(opened.arm_name == "D-H arm of the paper");
+  for (const auto& [parameter, value] : arm) CHECK(usb.parameters[parameter] == value);
+}
+
+TEST_CASE("without an arm description, the arm has no name") {
+  FakeUsbipServer usb;
+  FakeControlServer control([](const json&) { return board_time_line(0.0); });
+  const StandIn board(usb.port(), control.port());
+  CHECK(device::open_arm(device::parse_address("virtual"), board.options()).arm_name.empty());
 }
 
 TEST_CASE("a board whose time stands still stands by, and is run until it shows itself") {
