@@ -23,6 +23,30 @@ struct WallPicture {
   float frame_alpha, grid_alpha, face_alpha;
 };
 
+/// Returns the pictures of the walls in the order in which they are drawn.
+std::vector<WallPicture> wall_pictures(const SceneModel& scene, const Camera& camera, const SceneLook& look) {
+  const glm::mat3 to_view = workspace_to_view(scene.frame);
+  std::vector<WallPicture> pictures;
+  for (std::size_t i = 0; i < scene.walls.size(); ++i) {
+    const WallView& wall = scene.walls[i];
+    WallPicture picture{&wall, (wall.axis + 1) % 3, (wall.axis + 2) % 3, scene.box_minimum_m, {}, 0, 0, 0};
+    if (wall.upper) picture.corner_m[wall.axis] = scene.box_maximum_m[wall.axis];
+    // Walls between the eye and the inside of the box are transparent.
+    const bool is_near = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * picture.corner_m) < 0.0f;
+    const bool is_marked = look.marked_wall == static_cast<int>(i);
+    const bool touched = wall.pushes_back;
+    picture.colour = to_vector(touched ? scene_colours::wall_touched : scene_colours::wall_idle);
+    picture.frame_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
+    picture.grid_alpha = touched ? (is_near ? 0.25f : 0.45f) : is_near ? 0.0f : 0.20f;
+    picture.face_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
+    pictures.push_back(picture);
+  }
+  // A wall in contact is drawn last, because its frame shares edges with adjacent walls.
+  std::stable_partition(pictures.begin(), pictures.end(),
+                        [](const WallPicture& each) { return !each.wall->pushes_back; });
+  return pictures;
+}
+
 }  // namespace
 
 Renderer::Renderer()
@@ -113,29 +137,10 @@ void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) cons
 void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look) {
   const glm::mat3 to_view = workspace_to_view(scene.frame);
   const glm::vec3 extent = scene.box_maximum_m - scene.box_minimum_m;
-  std::vector<WallPicture> pictures;
-  for (std::size_t i = 0; i < scene.walls.size(); ++i) {
-    const WallView& wall = scene.walls[i];
-    WallPicture picture{&wall, (wall.axis + 1) % 3, (wall.axis + 2) % 3, scene.box_minimum_m, {}, 0, 0, 0};
-    if (wall.upper) picture.corner_m[wall.axis] = scene.box_maximum_m[wall.axis];
-    // Walls between the eye and the inside of the box are transparent.
-    const bool is_near = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * picture.corner_m) < 0.0f;
-    const bool is_marked = look.marked_wall == static_cast<int>(i);
-    const bool touched = wall.pushes_back;
-    picture.colour = to_vector(touched ? scene_colours::wall_touched : scene_colours::wall_idle);
-    picture.frame_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
-    picture.grid_alpha = touched ? (is_near ? 0.25f : 0.45f) : is_near ? 0.0f : 0.20f;
-    picture.face_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
-    pictures.push_back(picture);
-  }
-  // A wall in contact is drawn last, because its frame shares edges with adjacent walls.
-  std::stable_partition(pictures.begin(), pictures.end(),
-                        [](const WallPicture& each) { return !each.wall->pushes_back; });
-
   wall_.use();
   wall_.set("to_clip", to_clip_);
   glBindVertexArray(no_vertices_);
-  for (const WallPicture& picture : pictures) {
+  for (const WallPicture& picture : wall_pictures(scene, camera, look)) {
     // Clang 14 cannot capture structured bindings in lambdas.
     const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, face_alpha] = picture;
     glm::vec3 edge_u{0.0f};

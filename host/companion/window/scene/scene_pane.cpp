@@ -219,68 +219,65 @@ void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
     help_on_hover("Proxy", about_the_proxy, style);
 }
 
-void ScenePane::draw_labels(const ScenePaneInput& input) const {
-  const Style& style = input.style;
+// Draws the handles of the walls. The label of the marked wall shows its position.
+void ScenePane::draw_wall_handles(ImDrawList& list, const Style& style) const {
   const Palette& palette = *style.palette;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  ImGui::PushFont(style.fonts.caption);
-  draw_axes(list, style);
+  for (int wall = 0; wall < 6; ++wall) {
+    const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
+    const ImVec2 place = on_screen(wall_handle(wall));
+    list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.pane));
+    list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
+                   style.points(1.5f));
+    if (!marked) continue;
+    const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
+    plate(list, style, {place.x + style.points(12), place.y - style.points(8)}, palette.text,
+          fmt::format("{} {} {:.0f} mm", axis_names[static_cast<std::size_t>(view.axis)],
+                      view.upper ? "maximum" : "minimum", 1000.0f * wall_handle(wall)[view.axis]));
+  }
+}
 
-  if (ImGui::IsItemHovered() || drag_ != Drag::none) {
-    for (int wall = 0; wall < 6; ++wall) {
-      const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
-      const ImVec2 place = on_screen(wall_handle(wall));
-      list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.pane));
-      list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
-                     style.points(1.5f));
-      if (!marked) continue;
-      const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
-      plate(list, style, {place.x + style.points(12), place.y - style.points(8)}, palette.text,
-            fmt::format("{} {} {:.0f} mm", axis_names[static_cast<std::size_t>(view.axis)],
-                        view.upper ? "maximum" : "minimum", 1000.0f * wall_handle(wall)[view.axis]));
-    }
-  }
-  if (over_probe_ || drag_ == Drag::hand) {
-    const ImVec2 probe = on_screen(scene_.probe_m);
-    list.AddCircle(probe, style.points(15), packed(scene_colours::probe.with_alpha(190)), 0, style.points(1.5f));
-  }
+// Draws the magnitude of the force at the tip of its arrow. Returns the rectangle of the label.
+Box ScenePane::draw_force_label(ImDrawList& list, const Style& style) const {
   const float force_N = glm::length(scene_.force_N);
-  Box force_plate;
-  if (force_N > 0.02f) {
-    const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
-    const std::string label = fmt::format("{:.2f} N", force_N);
-    // The label is on the side opposite to the shaft of the arrow.
-    const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
-    const float left =
-        to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
-    const ImVec2 corner{left, tip.y - style.points(8)};
-    plate(list, style, corner, palette.text, label);
-    force_plate = plate_of(style, corner, label);
-  }
-  if (scene_.in_contact) draw_proxy_label(list, style);
-  if (hand_view_) {
-    const float pull_N =
-        static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
-    if (pull_N > 0.25f) {
-      // The label is on the side opposite to the sphere.
-      const ImVec2 place = on_screen(hand_view_->target_m);
-      const std::string label = fmt::format("hand {:.1f} N", pull_N);
-      const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
-      const float left =
-          to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
-      ImVec2 corner{left, place.y - style.points(22)};
-      if (const Box box = plate_of(style, corner, label); !common(box, force_plate).is_empty())
-        corner.y -= box.bottom - force_plate.top + style.points(2);
-      plate(list, style, corner, palette.text_quiet, label);
-    }
-  }
+  if (force_N <= 0.02f) return {};
+  const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
+  const std::string label = fmt::format("{:.2f} N", force_N);
+  // The label is on the side opposite to the shaft of the arrow.
+  const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
+  const float left =
+      to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
+  const ImVec2 corner{left, tip.y - style.points(8)};
+  plate(list, style, corner, style.palette->text, label);
+  return plate_of(style, corner, label);
+}
+
+// Draws the force of the simulated hand above the label of the arm's force.
+void ScenePane::draw_hand_label(ImDrawList& list, const Style& style, const Box& force_plate) const {
+  if (!hand_view_) return;
+  const float pull_N = static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
+  if (pull_N <= 0.25f) return;
+  // The label is on the side opposite to the sphere.
+  const ImVec2 place = on_screen(hand_view_->target_m);
+  const std::string label = fmt::format("hand {:.1f} N", pull_N);
+  const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
+  const float left =
+      to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
+  ImVec2 corner{left, place.y - style.points(22)};
+  if (const Box box = plate_of(style, corner, label); !common(box, force_plate).is_empty())
+    corner.y -= box.bottom - force_plate.top + style.points(2);
+  plate(list, style, corner, style.palette->text_quiet, label);
+}
+
+// Draws the position at the lower right, and the help to the left of the position if it fits.
+void ScenePane::draw_footer(ImDrawList& list, const ScenePaneInput& input) const {
+  const Style& style = input.style;
   float room_x = origin_.x + size_.x - style.points(16);
   if (input.pose && input.pose->is_referenced) {
     const std::string position = fmt::format("x {:+6.1f}   y {:+6.1f}   z {:+6.1f} mm", 1000.0f * scene_.probe_m.x,
                                              1000.0f * scene_.probe_m.y, 1000.0f * scene_.probe_m.z);
     const ImVec2 taken = ImGui::CalcTextSize(position.c_str());
     room_x -= taken.x;
-    plate(list, style, {room_x, origin_.y + size_.y - taken.y - style.points(12)}, palette.text, position);
+    plate(list, style, {room_x, origin_.y + size_.y - taken.y - style.points(12)}, style.palette->text, position);
     room_x -= style.points(22);
   }
   const char* help =
@@ -289,7 +286,23 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
           : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
   const float help_x = origin_.x + style.points(88);
   if (help_x + ImGui::CalcTextSize(help).x < room_x)
-    plate(list, style, {help_x, origin_.y + size_.y - style.points(27)}, palette.text_quiet, help);
+    plate(list, style, {help_x, origin_.y + size_.y - style.points(27)}, style.palette->text_quiet, help);
+}
+
+void ScenePane::draw_labels(const ScenePaneInput& input) const {
+  const Style& style = input.style;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::PushFont(style.fonts.caption);
+  draw_axes(list, style);
+  if (ImGui::IsItemHovered() || drag_ != Drag::none) draw_wall_handles(list, style);
+  if (over_probe_ || drag_ == Drag::hand) {
+    const ImVec2 probe = on_screen(scene_.probe_m);
+    list.AddCircle(probe, style.points(15), packed(scene_colours::probe.with_alpha(190)), 0, style.points(1.5f));
+  }
+  const Box force_plate = draw_force_label(list, style);
+  if (scene_.in_contact) draw_proxy_label(list, style);
+  draw_hand_label(list, style, force_plate);
+  draw_footer(list, input);
   ImGui::PopFont();
 }
 

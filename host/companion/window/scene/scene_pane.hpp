@@ -55,6 +55,10 @@ class ScenePane {
 
   void note_handles() const;
   void draw_proxy_label(ImDrawList& list, const Style& style) const;
+  void draw_wall_handles(ImDrawList& list, const Style& style) const;
+  Box draw_force_label(ImDrawList& list, const Style& style) const;
+  void draw_hand_label(ImDrawList& list, const Style& style, const Box& force_plate) const;
+  void draw_footer(ImDrawList& list, const ScenePaneInput& input) const;
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
