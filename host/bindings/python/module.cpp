@@ -113,7 +113,7 @@ py::list signals() {
   return rows;
 }
 
-void define_structs(py::module_& module) {
+void define_states(py::module_& module) {
   py::enum_<inkwell_state>(module, "State", "State of the arm.")
       .value("STARTING", INKWELL_STARTING)
       .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus must rest in the inkwell once")
@@ -123,7 +123,9 @@ void define_structs(py::module_& module) {
   py::enum_<inkwell_force_mode>(module, "ForceMode", "Effect of a program's forces on the board's walls.")
       .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are active too")
       .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only the forces of programs are active");
+}
 
+void define_pose(py::module_& module) {
   py::class_<inkwell_pose>(module, "Pose",
                            "Position and state of the stylus, once per millisecond. The arrays are read-only.")
       .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
@@ -164,7 +166,9 @@ void define_structs(py::module_& module) {
       .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")
       .def_readonly("supply_V", &inkwell_pose::supply_V, "supply of the motors, V")
       .def("__repr__", &describe);
+}
 
+void define_device_and_information(py::module_& module) {
   py::class_<inkwell_device>(module, "Device", "An arm that can be opened.")
       .def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
       .def_property_readonly("serial_number", text_of(&inkwell_device::serial_number),
@@ -296,7 +300,9 @@ void define_arm(py::module_& module) {
 
 PYBIND11_MODULE(_native, module) {
   module.doc() = "Bindings of libinkwell for the Python files of the package.";
-  inkwell::python::define_structs(module);
+  inkwell::python::define_states(module);
+  inkwell::python::define_pose(module);
+  inkwell::python::define_device_and_information(module);
   inkwell::python::define_store(module);
   inkwell::python::define_self_test(module);
   inkwell::python::define_driver(module);

@@ -23,13 +23,8 @@ int complain(const std::exception& error, int exit_code) {
   return exit_code;
 }
 
-}  // namespace
-
-int run(int argument_count, char** arguments) {
-  CLI::App program(
-      "Companion of an Inkwell haptic arm: a robot arm with a stylus that you hold and motors that let you feel walls\n"
-      "Without a command it opens the window. The commands provide the same functions for scripts and terminals.",
-      "inkwell");
+/// Adds the help text and the version.
+void describe(CLI::App& program) {
   set_help_style(program);
   program.set_version_flag("--version", INKWELL_VERSION, "Print the version");
   program.set_help_flag("-h,--help", "Print this help");
@@ -50,6 +45,16 @@ int run(int argument_count, char** arguments) {
       "Lengths are in meters, angles in radians, forces in newtons, times in seconds of board time. Names of\n"
       "parameters and signals end in their unit.\n"
       "Exit code: 0 success, 1 the device or the command failed (the reason is on standard error), 2 wrong usage.");
+}
+
+}  // namespace
+
+int run(int argument_count, char** arguments) {
+  CLI::App program(
+      "Companion of an Inkwell haptic arm: a robot arm with a stylus that you hold and motors that let you feel walls\n"
+      "Without a command it opens the window. The commands provide the same functions for scripts and terminals.",
+      "inkwell");
+  describe(program);
   program.require_subcommand(0, 1);
   program.fallthrough();  // device options may also follow the command
 

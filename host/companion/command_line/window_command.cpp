@@ -75,6 +75,27 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
   return window::run_window(window_options);
 }
 
+void add_size_options(CLI::App& program, window::WindowOptions& window) {
+  program
+      .add_option("--scale", window.scale,
+                  "Scale of fonts, spacing and window, 0.5 to 4. Default: the scale of the display")
+      ->type_name("FACTOR")
+      ->check(number_within(0.5, 4.0))
+      ->group(window_group);
+  program
+      .add_option("--width", window.width,
+                  "Window width in points; a point is one pixel, or several on a high-resolution display")
+      ->type_name("POINTS")
+      ->check(whole_number_within(window::smallest_window_points.width, 16384))
+      ->capture_default_str()
+      ->group(window_group);
+  program.add_option("--height", window.height, "Height of the window in points")
+      ->type_name("POINTS")
+      ->check(whole_number_within(window::smallest_window_points.height, 16384))
+      ->capture_default_str()
+      ->group(window_group);
+}
+
 }  // namespace
 
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action) {
@@ -96,24 +117,7 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->type_name(layout_choices())
       ->group(group);
   program.add_option("--theme", settings->theme, "Color theme")->check(CLI::IsMember({"dark", "light"}))->group(group);
-  program
-      .add_option("--scale", window.scale,
-                  "Scale of fonts, spacing and window, 0.5 to 4. Default: the scale of the display")
-      ->type_name("FACTOR")
-      ->check(number_within(0.5, 4.0))
-      ->group(group);
-  program
-      .add_option("--width", window.width,
-                  "Window width in points; a point is one pixel, or several on a high-resolution display")
-      ->type_name("POINTS")
-      ->check(whole_number_within(window::smallest_window_points.width, 16384))
-      ->capture_default_str()
-      ->group(group);
-  program.add_option("--height", window.height, "Height of the window in points")
-      ->type_name("POINTS")
-      ->check(whole_number_within(window::smallest_window_points.height, 16384))
-      ->capture_default_str()
-      ->group(group);
+  add_size_options(program, window);
   program
       .add_option("--screenshot", window.screenshot,
                   "Save a screenshot of the window to this PNG file and close the window")
