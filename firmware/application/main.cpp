@@ -59,6 +59,25 @@ protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::opti
   return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
 }
 
+[[noreturn]] void run_main_loop(usb::Device& usb_device, BackgroundWatch& background_watch) {
+  for (;;) {
+    const std::uint32_t periods = completed_periods.load();
+    usb_device.poll();
+    host_link.stored.follow(host_link.parameters, protocol::force_is_on(host_link.status.state()), periods);
+    if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update &&
+        !host_link.stored.is_busy())
+      drivers::start_boot_loader();
+    host_link.scope.pack();
+    host_link.black_box.follow();
+    background_watch.check();
+    follow_self_test(background_watch);
+    keep_motor_heat();
+    feed_watchdogs();
+    show_state();
+    drivers::sleep_unless([periods] { return completed_periods.load() != periods; });
+  }
+}
+
 }  // namespace
 }  // namespace inkwell::application
 
@@ -112,20 +131,5 @@ int main() {
                            watchdog_trial.expired_after_ms);
 
   feed_watchdogs();  // from here on a hang is detected, even in the first round
-  for (;;) {
-    const std::uint32_t periods = completed_periods.load();
-    usb_device.poll();
-    host_link.stored.follow(host_link.parameters, protocol::force_is_on(host_link.status.state()), periods);
-    if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update &&
-        !host_link.stored.is_busy())
-      drivers::start_boot_loader();
-    host_link.scope.pack();
-    host_link.black_box.follow();
-    background_watch.check();
-    follow_self_test(background_watch);
-    keep_motor_heat();
-    feed_watchdogs();
-    show_state();
-    drivers::sleep_unless([periods] { return completed_periods.load() != periods; });
-  }
+  run_main_loop(usb_device, background_watch);
 }
