@@ -178,8 +178,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
       BoardPace::real_time);
   const auto connection = early ? std::move(*early) : connect(device_options, BoardPace::real_time);
   auto& device = *connection.device;
-  const auto information = recording::describe(device.information(), device.parameters(), signals,
-                                               connection.arm_name, connection.endpoint.is_virtual);
+  const auto information = recording::describe(device.information(), device.parameters(), signals, connection.arm_name,
+                                               connection.endpoint.is_virtual);
   std::optional<ForceSwitch> force;
   if (options.force) force.emplace(device);
   device.select_signals(signals);  // first, so that a busy scope does not leave an empty file
