@@ -1,4 +1,4 @@
-// Message of a call that must fail.
+// Returns the error message of a call; the call must fail.
 #pragma once
 
 #include <concepts>

@@ -1,4 +1,4 @@
-// Speed of the virtual board, and cost of each stage of the control interrupt.
+// Measures the speed of the virtual board, and the cost of each stage of the control interrupt.
 #include <atomic>
 #include <cstdio>
 #include <thread>

@@ -1,4 +1,4 @@
-// Duration of the board's force law on a PC, for comparison with published durations of CHAI3D.
+// Measures the duration of the board's force law on a PC. Published durations of CHAI3D serve for comparison.
 #include <array>
 #include <cmath>
 #include <cstdio>

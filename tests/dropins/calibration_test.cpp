@@ -1,4 +1,4 @@
-// The result of HDAPI's calibration check in normal use and during faults.
+// Tests HDAPI's calibration check in normal use and during faults.
 #include <doctest/doctest.h>
 
 #include "host/client/device/device.hpp"

@@ -1,4 +1,4 @@
-// HDAPI declarations that the tests use, written from the published reference.
+// HDAPI declarations for the tests, written from the published reference.
 #pragma once
 
 extern "C" {

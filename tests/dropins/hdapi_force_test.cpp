@@ -1,4 +1,4 @@
-// libHD.so: forces on the hand, their limits, and their handling when the program or the link fails.
+// Tests the forces of libHD.so: magnitude, limits, and behavior when the program or the link fails.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// libHD.so: callbacks, their order and their timing.
+// Tests order and timing of the callbacks of libHD.so.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// libHD.so, linked by a program, with a virtual board: devices, frames and values.
+// Tests devices, frames and values of libHD.so with a virtual board.
 #include <doctest/doctest.h>
 
 #include <array>

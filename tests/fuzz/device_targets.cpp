@@ -1,4 +1,4 @@
-// Data from the USB cable, and text from users in parameter files and on command lines.
+// Fuzz targets for data from the USB cable, parameter files and command lines.
 #include <array>
 
 #include "boards/arms/description.hpp"

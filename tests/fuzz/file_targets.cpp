@@ -1,4 +1,4 @@
-// Files that the companion reads: recordings, window settings, and campaign results.
+// Fuzz targets for the companion's input files: recordings, window settings, and campaign results.
 #include <cstring>
 #include <sstream>
 

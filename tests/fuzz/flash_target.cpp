@@ -1,5 +1,5 @@
-// Any flash content of the parameter store, such as the result of an earlier firmware, an interrupted write or a worn
-// chip.
+// Fuzz target for the flash content of the parameter store. An earlier firmware, an interrupted write or a worn chip
+// can cause any content.
 #include <cstring>
 #include <stdexcept>
 

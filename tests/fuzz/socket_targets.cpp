@@ -1,4 +1,4 @@
-// Data that the companion receives on sockets: answers of a USB/IP server and of a virtual board.
+// Fuzz targets for the companion's socket input: answers of a USB/IP server and of a virtual board.
 #include <cstring>
 #include <stdexcept>
 

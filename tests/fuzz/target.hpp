@@ -1,5 +1,5 @@
-// The fuzz targets: all code of firmware and companion that reads external data. A target is one function that accepts
-// any bytes. A target may throw only the documented exceptions of its parser.
+// A fuzz target exists for all code of firmware and companion that reads external data. A target is one function that
+// accepts any bytes. A target may throw only the documented exceptions of its parser.
 #pragma once
 
 // To add a target:

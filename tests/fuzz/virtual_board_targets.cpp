@@ -1,4 +1,4 @@
-// Data from clients of a virtual board, for the control socket, the USB/IP server and the GDB port.
+// Fuzz targets for data from clients of a virtual board: control socket, USB/IP server and GDB port.
 #include <algorithm>
 #include <initializer_list>
 #include <span>

@@ -1,4 +1,4 @@
-// Cancellation of threads that wait in the library.
+// Tests the cancellation of threads that wait in the library.
 #include <doctest/doctest.h>
 
 #include <atomic>

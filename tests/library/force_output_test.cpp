@@ -1,4 +1,4 @@
-// Forces to the device and poses to the program use no queue that adds delay.
+// Tests that no queue delays the forces to the device or the poses to the program.
 #include <doctest/doctest.h>
 
 #include <memory>

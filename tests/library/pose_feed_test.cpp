@@ -1,4 +1,4 @@
-// Reports of lost poses and of a lost force, without a board.
+// Tests the reports of lost poses and of a lost force, without a board.
 #include <doctest/doctest.h>
 
 #include "host/client/device/error.hpp"

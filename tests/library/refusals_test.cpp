@@ -1,4 +1,4 @@
-// Devices that a program cannot use, and requests that are refused.
+// Tests unusable devices and refused requests.
 #include <doctest/doctest.h>
 
 #include <inkwell/inkwell.h>

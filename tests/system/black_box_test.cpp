@@ -1,4 +1,4 @@
-// The black box of the board shows the cause of a fault, also after a crash.
+// Tests that the black box of the board shows the cause of a fault, also after a crash.
 #include <doctest/doctest.h>
 
 #include <filesystem>

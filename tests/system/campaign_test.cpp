@@ -1,4 +1,4 @@
-// A short fault campaign: some cases with the flashed firmware, and the campaign commands.
+// Tests a short fault campaign: some cases with the flashed firmware, and the campaign commands.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Reaction of the flashed image to failures of the chip while the bridges are on.
+// Tests the reaction of the flashed firmware to failures of the chip while the bridges are on.
 #include <doctest/doctest.h>
 
 #include <cmath>

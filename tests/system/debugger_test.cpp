@@ -1,4 +1,4 @@
-// GDB, connected to the virtual board with the flashed firmware.
+// Tests GDB with the virtual board and the flashed firmware.
 #include <doctest/doctest.h>
 
 #include "tests/system/program.hpp"

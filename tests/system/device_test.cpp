@@ -1,4 +1,4 @@
-// The device from the host side: enumeration, identity, parameters, streams, disconnection.
+// Tests the device from the host: enumeration, identity, parameters, streams, disconnection.
 #include <doctest/doctest.h>
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-// `inkwell flash` with the virtual board: from the firmware through the chip's boot loader and back.
+// Tests `inkwell flash` with the virtual board: from the firmware through the chip's boot loader to the new firmware.
 #include <doctest/doctest.h>
 
 #include <signal.h>

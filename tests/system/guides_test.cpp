@@ -1,4 +1,4 @@
-// The guides on the command line, with the flashed firmware and with the simulated hand as the user.
+// Tests the guides on the command line with the flashed firmware; the simulated hand acts as the user.
 #include <doctest/doctest.h>
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Fault injection into the virtual board through its control socket, its command line and a script.
+// Tests fault injection into the virtual board through control socket, command line and script.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Reaction of the firmware to bit errors in its code or parameters.
+// Tests the reaction of the firmware to bit errors in its code or parameters.
 #include <doctest/doctest.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The instruction profile of the longest interrupt, and the flame graph of this profile.
+// Tests the instruction profile of the longest interrupt, and the flame graph of this profile.
 #include <doctest/doctest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Forces and shapes of a program on the PC, and their removal when the program stops.
+// Tests forces and shapes of a program on the PC, and their removal when the program stops.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Recordings on the command line: from the virtual board to a file, to a replay and to a plot.
+// Tests recordings on the command line: from the virtual board to a file, a replay and a plot.
 #include <doctest/doctest.h>
 
 #include <chrono>

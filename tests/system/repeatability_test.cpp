@@ -1,4 +1,4 @@
-// The same seed and the same calls produce the same run in both modes, independent of the computer's speed.
+// Tests that the same seed and the same calls produce the same run in both modes, independent of the computer's speed.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Safety of the hand: no force without a reference or without a host, and bridges off on a fault.
+// Tests the safety of the hand: no force without a reference, no force without a host, and bridges off after a fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>

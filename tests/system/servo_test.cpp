@@ -1,4 +1,4 @@
-// Processor load of the control interrupt, and motor heat.
+// Tests the processor load of the control interrupt, and the motor heat.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A short soak test with each kind of phase and the flashed firmware; tools/lab/soak runs one hour. The test also
+// Runs a short soak test with each kind of phase and the flashed firmware. tools/lab/soak runs one hour. The test also
 // checks that a soak test has the requested duration.
 #include <doctest/doctest.h>
 

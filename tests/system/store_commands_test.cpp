@@ -1,4 +1,4 @@
-// Commands for the stored parameters, such as `inkwell parameters store`, with a board that is restarted.
+// Tests the commands for the stored parameters, such as `inkwell parameters store`, across a board restart.
 #include <doctest/doctest.h>
 
 #include <string>

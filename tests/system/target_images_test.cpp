@@ -1,5 +1,5 @@
-// The hardware-independent tests, compiled for the Cortex-M4F and run on the virtual board with the same images as
-// QEMU. Agreement of two emulators in 250,000 checks makes a common error unlikely.
+// Runs the hardware-independent tests on the virtual board, with the same Cortex-M4F images as in QEMU. Agreement of
+// two emulators in 250,000 checks makes a common error unlikely.
 #include <doctest/doctest.h>
 
 #include <algorithm>

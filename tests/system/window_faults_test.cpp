@@ -1,4 +1,4 @@
-// The fault injection pane, operated in the same way as by a user.
+// Operates the fault injection pane in the same way as a user.
 #include <doctest/doctest.h>
 
 #include <csignal>

@@ -1,4 +1,4 @@
-// The window without a mouse: keys for panes and controls, and arrow keys with modifiers.
+// Tests the window without a mouse: keys for panes and controls, and arrow keys with modifiers.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Two recordings in the window: a replayed recording and an overlaid recording.
+// Tests two recordings in the window: a replayed recording and an overlaid recording.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Effects of user mistakes on the arm: incomplete numbers, commas, wrong keys, and a replay over a live arm.
+// Tests the effects of user mistakes on the arm: incomplete numbers, commas, wrong keys, and a replay while an arm is
+// connected.
 #include <doctest/doctest.h>
 
 #include <functional>

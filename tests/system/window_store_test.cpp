@@ -1,4 +1,4 @@
-// Display of values that are not stored on the board, and of values that differ after a reconnection.
+// Tests the display of values that are not stored on the board or that differ after a reconnection.
 #include <doctest/doctest.h>
 
 #include <string>

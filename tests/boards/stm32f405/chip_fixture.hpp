@@ -1,4 +1,4 @@
-// Fixture of the chip tests: the test firmwares, and a circuit that records every edge.
+// Fixture of the chip tests. A circuit records every edge of the test firmware's pins.
 #pragma once
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// Cycle counts of the running chip in both modes, compared with the manuals.
+// Compares the cycle counts of the running chip with the manuals, in both modes.
 #include <doctest/doctest.h>
 
 #include "tests/boards/stm32f405/chip_fixture.hpp"

@@ -1,5 +1,5 @@
-// Peripherals that stop while a debug probe halts the core (RM0090, "Debug support for timers, watchdog, bxCAN and
-// I2C").
+// Tests which peripherals stop while a debug probe halts the core (RM0090, "Debug support for timers, watchdog, bxCAN
+// and I2C").
 #include <doctest/doctest.h>
 
 #include <array>

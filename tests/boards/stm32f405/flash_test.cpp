@@ -1,4 +1,4 @@
-// Erasing and programming of the flash: duration, waiting accesses, and the effect of a power cut.
+// Tests erasing and programming of the flash: duration, waiting accesses, and the effect of a power cut.
 #include <doctest/doctest.h>
 
 #include <cstring>

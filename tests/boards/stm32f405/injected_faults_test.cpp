@@ -1,4 +1,4 @@
-// Faults injected into the chip: late interrupts, stopped converters and DMA, flipped bits, and crystal drift.
+// Tests injected faults of the chip: late interrupts, stopped converters, stopped DMA, flipped bits, and crystal drift.
 #include <array>
 #include <cmath>
 

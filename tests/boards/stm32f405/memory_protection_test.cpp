@@ -1,4 +1,4 @@
-// Access checks of the memory protection unit, and the effects of refused accesses.
+// Tests the access checks of the memory protection unit, and the effects of refused accesses.
 #include <doctest/doctest.h>
 
 #include "tests/boards/stm32f405/chip_fixture.hpp"

@@ -1,5 +1,5 @@
-// Timer inputs other than encoder mode: captures, external clocks, triggers of other timers (RM0090, "Input capture
-// mode", "Clock selection", TIMx_SMCR, TIMx_CCMR1).
+// Tests captures, external clocks and triggers of other timers (RM0090, "Input capture mode", "Clock selection",
+// TIMx_SMCR, TIMx_CCMR1).
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The complete signal path, from samples to duty cycles.
+// Tests the complete signal path, from samples to duty cycles.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Detection of wrong encoder counts. Wrong counts void the reference, independent of the reported fault. The reference
-// is restored only after the inkwell switch has opened and closed again.
+// Detection of wrong encoder counts. After wrong counts the reference is invalid, whichever fault is reported. The
+// reference becomes valid only after the inkwell switch has opened and closed again.
 #include <doctest/doctest.h>
 
 #include <algorithm>

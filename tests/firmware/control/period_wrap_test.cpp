@@ -1,4 +1,4 @@
-// The count of control periods wraps after 59 hours without an effect on the signal path.
+// Tests that the signal path is not affected when the count of control periods wraps after 59 hours.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/control/near_wall.hpp"

@@ -1,4 +1,4 @@
-// Allowed currents during the pulses of the self-test.
+// Tests the allowed currents during the self-test pulses.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/control/arms.hpp"

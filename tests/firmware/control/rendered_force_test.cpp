@@ -1,4 +1,4 @@
-// The combined force of walls, shapes and a program in the controller.
+// Tests the combined force of walls, shapes and a program in the controller.
 #include <doctest/doctest.h>
 
 #include <algorithm>

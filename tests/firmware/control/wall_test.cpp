@@ -1,4 +1,4 @@
-// The controller in a closed loop with a simulated arm. The arm has motors with winding and back-EMF, joints with
+// Tests the controller in a closed loop with a simulated arm. The arm has motors with winding and back-EMF, joints with
 // inertia and friction, and encoders. A simulated hand pulls the probe to a target. The inertia is constant and gravity
 // is omitted; the virtual board simulates both.
 #include <doctest/doctest.h>

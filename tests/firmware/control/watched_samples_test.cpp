@@ -1,4 +1,4 @@
-// Faults that are raised by faulty samples.
+// Tests the faults that faulty samples raise.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The black box, also across resets.
+// Tests the black box, also across resets.
 #include <doctest/doctest.h>
 
 #include <cstring>

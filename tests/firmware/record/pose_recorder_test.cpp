@@ -1,4 +1,4 @@
-// The newest pose, passed from the control interrupt to the main loop.
+// Tests the transfer of the newest pose from the control interrupt to the main loop.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/link/fresh_link.hpp"

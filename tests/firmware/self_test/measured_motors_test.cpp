@@ -1,4 +1,4 @@
-// Motor and bridge data from the self-test, and its effect in the control interrupt.
+// Tests the effect of the self-test's motor and bridge data in the control interrupt.
 #include "tests/firmware/self_test/self_test_board.hpp"
 
 namespace {

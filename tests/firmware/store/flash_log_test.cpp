@@ -1,5 +1,5 @@
-// The flash log with any flash content, and with a power loss at any word or erase. The next start finds the previous
-// set or the new set, and can store another set.
+// Tests the flash log with any flash content, and with a power loss at any word or erase. The next start finds the
+// previous set or the new set, and can store another set.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// Retention of the motor heat across a restart, with any memory content.
+// Tests that the motor heat is retained across a restart, with any memory content.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -103,7 +103,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
   keeper.store(warmer);
   const auto after = std::bit_cast<Words>(keeper);
   constexpr std::size_t number = 7, check = 8, next_number = 18;
-  // The previous record in this slot has the same heat.
+  // The previous record in this slot has the same heat as the new record.
   for (std::size_t word = 0; word < after.size(); ++word)
     CHECK((before[word] != after[word]) == (word == number || word == check || word == next_number));
   // The compiler may write the words in any order.

@@ -1,4 +1,4 @@
-// HID requests, firmware update requests, and requests for the device's reports.
+// Tests HID requests, firmware update requests, and requests for the device's reports.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hosts that abort transfers, request or send wrong lengths, or disappear.
+// Tests hosts that abort transfers, use wrong lengths, or disappear.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/link/transaction.hpp"

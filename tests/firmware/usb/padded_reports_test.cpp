@@ -1,4 +1,4 @@
-// Hosts that pad reports. hidapi on Windows pads every written and read report to the longest report of its kind.
+// Tests hosts that pad reports. hidapi on Windows pads every written and read report to the longest report of its kind.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Scope frames, and hosts that suspend, disappear or return.
+// Tests scope frames, and hosts that suspend, disappear or return.
 #include <doctest/doctest.h>
 
 #include <cstring>

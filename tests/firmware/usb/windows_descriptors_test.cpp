@@ -1,4 +1,4 @@
-// Descriptors that Windows uses to select its drivers, and the lengths of the nested parts.
+// Tests the descriptors that Windows uses to select drivers, and the lengths of the nested parts.
 #include <cstdint>
 #include <initializer_list>
 #include <map>

@@ -1,4 +1,4 @@
-// The control socket's server without a board: accepted and refused clients.
+// Tests which clients the control socket's server accepts and refuses, without a board.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <netinet/in.h>

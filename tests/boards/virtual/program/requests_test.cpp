@@ -1,4 +1,4 @@
-// Requests of the control socket and their validation, without a board.
+// Tests the validation of control socket requests, without a board.
 #include "boards/virtual/program/requests.hpp"
 
 #include <string>

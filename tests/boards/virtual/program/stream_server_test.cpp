@@ -1,4 +1,4 @@
-// The servers for GDB and UARTs without a board: forwarded bytes and buffer limits.
+// Tests the servers for GDB and UARTs without a board: forwarded bytes and buffer limits.
 #include <doctest/doctest.h>
 #include <poll.h>
 

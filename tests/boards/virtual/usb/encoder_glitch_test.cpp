@@ -1,4 +1,4 @@
-// Spikes on an encoder wire, such as crosstalk from the bridges, and their effect on the pose.
+// Tests the effect of spikes on an encoder wire on the pose. Crosstalk from the bridges causes such spikes.
 #include <doctest/doctest.h>
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Host actions between a register read and a register write of the driver.
+// Tests host actions between a register read and a register write of the driver.
 #include <doctest/doctest.h>
 
 #include <array>

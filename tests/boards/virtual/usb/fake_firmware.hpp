@@ -1,4 +1,4 @@
-// A USB device driver that follows the programming model of RM0090 and uses only the core's registers.
+// This USB device driver follows the programming model of RM0090 and uses only the core's registers.
 //
 // Endpoints: 0x81 interrupt IN, 0x01 interrupt OUT, 0x82 bulk IN, 0x03 bulk OUT, 64 bytes each.
 #pragma once

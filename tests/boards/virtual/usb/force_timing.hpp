@@ -1,4 +1,4 @@
-// Latency and loss of the forces of a program.
+// Measures latency and loss of a program's forces.
 #pragma once
 
 #include <array>

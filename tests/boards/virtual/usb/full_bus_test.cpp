@@ -1,4 +1,4 @@
-// The flashed firmware on an almost full bus: 14 floats at 20 kHz, poses and controller.
+// Tests the flashed firmware on an almost full bus: 14 float signals at 20 kHz, poses, and controller reports.
 #include <doctest/doctest.h>
 
 #include <cstring>

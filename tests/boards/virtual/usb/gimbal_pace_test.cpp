@@ -1,4 +1,4 @@
-// The flashed firmware with a gimbal in continuous motion.
+// Tests the flashed firmware with a continuously moving gimbal.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The registers of the USB core according to RM0090, and the core's reports about drivers that violate RM0090.
+// Tests the registers of the USB core as described in RM0090, and the reported violations by a driver.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// Age of the poses at the host, and frames without a new pose.
+// Measures the age of the poses at the host, and counts the frames without a new pose.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Transfers over the modeled bus between a host and a driver that follows the manual.
+// Tests transfers over the modeled bus between a host and a correct driver.
 #include <doctest/doctest.h>
 
 #include <algorithm>

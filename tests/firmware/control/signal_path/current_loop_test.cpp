@@ -1,4 +1,4 @@
-// The current loop with the arm's gains and motor model: resistance, inductance and back-EMF.
+// Tests the current loop with the arm's gains and with a motor model of resistance, inductance and back-EMF.
 #include <doctest/doctest.h>
 
 #include <algorithm>

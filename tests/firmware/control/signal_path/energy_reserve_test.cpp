@@ -1,4 +1,4 @@
-// The energy limit of the arm: integration, force reduction, and the maximum rate of change of the force.
+// Tests the energy limit of the arm: integration, force reduction, and the maximum rate of change of the force.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Kinematics and virtual work compared with an independent double-precision reference of rotation matrices. The paper's
+// Compares kinematics and virtual work with an independent double-precision reference of rotation matrices. The paper's
 // arm uses Denavit-Hartenberg transforms. The Omni uses the transforms published by the Ubitrack project.
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// The force component along the motion is reduced near the speed limit, before a fault.
+// Tests that the force component along the motion is reduced near the speed limit, before a fault is raised.
 #include <doctest/doctest.h>
 
 #include <algorithm>

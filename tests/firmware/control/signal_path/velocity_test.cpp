@@ -1,5 +1,5 @@
-// The adaptive-window estimator with motions of known speed. Speeds are in counts per period. On the Omni one count is
-// about 0.05 mm at the probe, so one count per period is 1.1 m/s.
+// Tests the adaptive-window velocity estimator with motions of known speed. Speeds are in counts per period. On the
+// Omni one count is about 0.05 mm at the probe, so one count per period is 1.1 m/s.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Detection of a wrong VDDA, for chips with and without a valid factory calibration of the reference.
+// Tests the detection of a wrong VDDA on chips with and without a valid factory calibration of VREFINT.
 #include <doctest/doctest.h>
 
 #include <algorithm>

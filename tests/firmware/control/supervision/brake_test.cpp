@@ -1,4 +1,4 @@
-// Short-circuit braking of the motors, and its release.
+// Tests the brake, which short-circuits the motors, and the release of the brake.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Detection of shorted bridge wires from their pin levels.
+// Tests the detection of shorted bridge wires from their pin levels.
 #include <doctest/doctest.h>
 
 #include "firmware/control/supervision/bridge_wire.hpp"

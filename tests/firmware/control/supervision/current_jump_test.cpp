@@ -1,4 +1,4 @@
-// The allowed change of a motor current per control period, and the immediate detection of a larger change.
+// Tests the allowed change of a motor current per control period, and the detection of a larger change.
 #include <doctest/doctest.h>
 
 #include <algorithm>

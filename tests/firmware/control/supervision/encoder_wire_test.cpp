@@ -1,4 +1,4 @@
-// Counts of an encoder with a dead wire, and other alternating counts.
+// Tests the counts of an encoder with a dead wire, and other alternating counts.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The tolerated deviation of a motor voltage from R i + k w, and the check of all three motors by the controller.
+// Tests the tolerated deviation of a motor voltage from R i + k w, and the controller's check of all three motors.
 #include <doctest/doctest.h>
 
 #include <cmath>

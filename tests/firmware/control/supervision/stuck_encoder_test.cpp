@@ -1,4 +1,4 @@
-// Detection of a stuck encoder, and motions that must not be reported as a stuck encoder.
+// Tests the detection of a stuck encoder. Normal motions must not be reported as a stuck encoder.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Detection of supply ripple, and the distinction of ripple from steps, loads and a braked arm.
+// Tests the detection of supply ripple. Supply steps, loads and a braked arm must not be reported as ripple.
 #include <doctest/doctest.h>
 
 #include <cmath>

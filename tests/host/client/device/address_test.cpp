@@ -1,4 +1,4 @@
-// Device addresses as users write them, and the arms that the addresses select.
+// Tests device addresses from users, and the arms that these addresses select.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Storing and erasing parameters on the board, and the reactions of the session.
+// Tests storing and erasing parameters on the board, and the reactions of the session.
 #include <doctest/doctest.h>
 
 #include <atomic>

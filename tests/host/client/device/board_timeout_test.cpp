@@ -1,4 +1,4 @@
-// Time limits that count board time.
+// Tests time limits in board time.
 #include <doctest/doctest.h>
 
 #include <chrono>

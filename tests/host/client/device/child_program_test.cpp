@@ -1,4 +1,4 @@
-// Child programs: no shell interprets their arguments, and their output is returned.
+// Tests that no shell interprets the arguments of child programs, and that their output is returned.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// The client of a virtual board's control socket: its requests, and its handling of each kind of answer.
+// Tests the client of a virtual board's control socket: requests, and handling of each kind of answer.
 #include <doctest/doctest.h>
 
 #include <chrono>

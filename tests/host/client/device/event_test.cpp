@@ -1,4 +1,4 @@
-// Events of a device: changes between two poses, parameter changes, and a log of bounded length.
+// Tests the events of a device: changes between two poses, parameter changes, and a log of bounded length.
 #include <doctest/doctest.h>
 
 #include "host/client/device/event.hpp"

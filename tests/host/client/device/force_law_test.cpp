@@ -12,7 +12,7 @@ namespace {
 
 using namespace inkwell;
 
-/// Returns a report of a device with one parameter and one signal.
+/// Returns the report of a device whose force law has one parameter and one signal.
 std::vector<std::byte> report_of(std::string_view name) {
   std::vector<std::byte> report;
   const auto text = [&](std::string_view characters) {

@@ -1,4 +1,4 @@
-// The device library against a USB/IP server: identity, poses, commands, parameters, scope, and every possible
+// Tests the device library with a USB/IP server: identity, poses, commands, parameters, scope, and every possible
 // failure of the server.
 #include <doctest/doctest.h>
 

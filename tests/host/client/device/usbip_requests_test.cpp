@@ -1,4 +1,4 @@
-// Requests of a program to a device over USB/IP: parameter transactions, forces and shapes, and every possible
+// Tests requests of a program to a device over USB/IP: parameter transactions, forces, shapes, and every possible
 // refusal.
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Start and exit of the virtual board's process; shell scripts replace the program.
+// Tests start and exit of the virtual board's process; shell scripts replace the program.
 #include <doctest/doctest.h>
 
 #include <signal.h>

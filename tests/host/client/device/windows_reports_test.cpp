@@ -1,5 +1,5 @@
-// The device library and the firmware's USB device with the report lengths of Windows. Windows pads written reports and
-// requests the largest report length. The test fails if the firmware refuses the report lengths of Windows.
+// Tests the device library and the firmware's USB device with the report lengths of Windows. Windows pads written
+// reports and requests the largest report length. The test fails if the firmware refuses the report lengths of Windows.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Firmware images whose content the test chooses.
+// Creates firmware images with content from the test.
 #pragma once
 
 #include <elf.h>

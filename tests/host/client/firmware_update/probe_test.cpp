@@ -1,4 +1,4 @@
-// Updates with a debug probe: openocd's arguments, its folder, and the condition for success.
+// Tests updates with a debug probe: openocd's arguments, openocd's folder, and the condition for success.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// The order of the update steps. The test's loader records the steps.
+// Tests the order of the update steps. The test's loader records the steps.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The guides' steps: consent before any motion, cancellation, a disconnected device, and applying the results.
+// Tests the guides: consent before any motion, cancellation, a disconnected device, and applying the results.
 #include <doctest/doctest.h>
 
 #include <algorithm>

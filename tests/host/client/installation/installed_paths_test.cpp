@@ -1,4 +1,4 @@
-// Paths of the installed files for programs in the build folder. tests/installation checks installed programs.
+// Tests the file paths that programs in the build folder use. tests/installation checks installed programs.
 #include <doctest/doctest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Sockets for programs on this computer: access rights and removal of the socket files.
+// Tests sockets for programs on this computer: access rights and removal of the socket files.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>

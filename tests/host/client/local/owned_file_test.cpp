@@ -1,4 +1,4 @@
-// Files that only one program can own at a time.
+// Tests files that only one program can own at a time.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>

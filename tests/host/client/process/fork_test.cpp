@@ -1,4 +1,4 @@
-// State of the parent's mutexes and descriptors in a forked child.
+// Tests the state of the parent's mutexes and descriptors in a forked child.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>

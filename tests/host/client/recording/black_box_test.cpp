@@ -1,4 +1,4 @@
-// Conversion of a black box into a recording with 1 ms between its samples.
+// Tests the conversion of a black box into a recording with one sample per millisecond.
 #include <doctest/doctest.h>
 
 #include <cmath>

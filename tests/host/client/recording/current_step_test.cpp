@@ -1,4 +1,4 @@
-// Figures of a current step, from responses with known figures.
+// Tests the computed figures of a current step with responses of known figures.
 #include <doctest/doctest.h>
 
 #include <cmath>

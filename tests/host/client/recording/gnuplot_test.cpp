@@ -1,4 +1,4 @@
-// Names from a file are drawn by gnuplot and never executed.
+// Tests that gnuplot draws names from a file and never executes them.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Two recordings on a common time axis: aligned by their starts or by a mark, and with gaps.
+// Tests two recordings on a common time axis, aligned at the start or at a mark, also with gaps.
 #include <doctest/doctest.h>
 
 #include <cmath>

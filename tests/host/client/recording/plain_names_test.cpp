@@ -1,4 +1,4 @@
-// Names and texts from a file: the characters that are printed and written to other files.
+// Tests which characters of names and texts from a file are printed and written to other files.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Messages of every command about the connected arms.
+// Tests every command's messages about the connected arms.
 #include <doctest/doctest.h>
 
 #include <unistd.h>

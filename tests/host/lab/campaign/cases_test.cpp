@@ -1,4 +1,4 @@
-// The list of campaign cases and the files with their results.
+// Tests the list of campaign cases and the files with their results.
 #include "host/lab/campaign/cases.hpp"
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"

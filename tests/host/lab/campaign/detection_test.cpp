@@ -1,4 +1,4 @@
-// Sections about a second fault, the boot loader, a fast hand, and faults that are never reported.
+// Tests the page sections about a second fault, the boot loader, a fast hand, and unreported faults.
 #include "host/lab/campaign/cases.hpp"
 #include "host/lab/campaign/page.hpp"
 #include "host/lab/campaign/result.hpp"

@@ -1,4 +1,4 @@
-// The page with the campaign results: the worst case of each row, the figures and the plots.
+// Tests the page with the campaign results: worst case of each row, figures and plots.
 #include "host/lab/campaign/page.hpp"
 #include "host/lab/campaign/result.hpp"
 

@@ -1,4 +1,4 @@
-// The paper's figures: their data and their drawing.
+// Tests data and drawing of the paper's figures.
 #include <doctest/doctest.h>
 
 #include <cmath>

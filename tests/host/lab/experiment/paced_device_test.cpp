@@ -1,4 +1,4 @@
-// Commands and waiting times on a device that answers slowly.
+// Tests commands and waiting times with a slow device.
 #include <doctest/doctest.h>
 
 #include <cstring>

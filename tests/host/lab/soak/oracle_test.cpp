@@ -1,4 +1,4 @@
-// The soak's oracle with simulated observations of boards.
+// Tests the soak test's oracle with simulated board observations.
 #include "host/lab/soak/oracle.hpp"
 
 #include <doctest/doctest.h>

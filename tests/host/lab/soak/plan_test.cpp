@@ -1,4 +1,4 @@
-// The random plans of a soak: actions, valid transactions and invalid transactions.
+// Tests the random plans of a soak test: actions, valid transactions and invalid transactions.
 #include "host/lab/soak/plan.hpp"
 #include "host/lab/soak/storm.hpp"
 

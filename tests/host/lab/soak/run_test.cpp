@@ -1,4 +1,4 @@
-// The boards that a soak runs; a shell script replaces the program.
+// Tests the boards of a soak test; a shell script replaces the virtual board.
 #include "host/lab/soak/run.hpp"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Notice about values that changed during a reconnection, and restoration of these values.
+// Tests the notice about values that changed during a reconnection, and the restoration of these values.
 #include <doctest/doctest.h>
 
 #include "host/companion/window/device_desk/returned_values.hpp"

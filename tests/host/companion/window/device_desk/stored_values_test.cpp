@@ -1,4 +1,4 @@
-// The window's messages about the stored parameters, and the conditions for storing them.
+// Tests the window's messages about the stored parameters, and the conditions for storing parameters.
 #include <doctest/doctest.h>
 
 #include "host/companion/window/device_desk/stored_values.hpp"

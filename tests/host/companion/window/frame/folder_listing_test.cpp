@@ -1,4 +1,4 @@
-// Entries of the file chooser, and the messages for errors of the file system.
+// Tests the entries of the file chooser, and the messages for file system errors.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

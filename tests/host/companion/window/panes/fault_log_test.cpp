@@ -1,4 +1,4 @@
-// Log entries of injected faults, from the answers of a board and the reports of the device.
+// Tests the log entries of injected faults, which combine answers of the board and reports of the device.
 #include "host/companion/window/panes/fault_log.hpp"
 
 #include <doctest/doctest.h>

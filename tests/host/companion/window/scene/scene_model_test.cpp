@@ -1,4 +1,4 @@
-// The scene model against the arm's geometry: link lengths, wall reactions, frames and dragging.
+// Compares the scene model with the arm's geometry: link lengths, wall reactions, frames and dragging.
 #include <cmath>
 
 #include <doctest/doctest.h>

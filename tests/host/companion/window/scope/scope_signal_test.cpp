@@ -1,4 +1,4 @@
-// Signals in groups, the search for signals, their drawing order, and the text of an empty plot.
+// Tests signal groups, signal search, drawing order, and the text of an empty plot.
 #include <doctest/doctest.h>
 
 #include <algorithm>
