@@ -1,4 +1,4 @@
-// Hooks for FPU instructions. An FPU instruction raises a fault while the FPU is off or pending lazy stacking is
+// Hooks for FPU instructions. An FPU instruction raises a fault if the FPU is off, or if the pending lazy stacking is
 // refused.
 #include "boards/stm32f405/core/chip_error.hpp"
 #include "boards/stm32f405/core/processor.hpp"

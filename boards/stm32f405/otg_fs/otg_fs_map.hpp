@@ -144,7 +144,7 @@ struct OtgPowerRegisters {
 inline constexpr OtgPowerRegisters otg_power;
 inline constexpr std::uint32_t otg_power_base = 0xE00;
 
-/// All register blocks in one structure, for code that uses fields but no addresses.
+/// This structure contains all register blocks, for code that needs no addresses.
 struct OtgRegisters : OtgGlobalRegisters, OtgDeviceRegisters, OtgPowerRegisters {};
 inline constexpr OtgRegisters otg;
 

@@ -120,8 +120,8 @@ class Chip {
   /// Each chip reset also resets the peripheral. `peripheral` must outlive the chip.
   void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
 
-  /// Called at the trigger of each injected ADC sequence. `index` counts the sequences since reset. ADCs that are
-  /// triggered simultaneously count once.
+  /// Called at the trigger of each injected ADC sequence. `index` counts the sequences since reset. Simultaneous
+  /// sequences of several ADCs count as one sequence.
   std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
   /// Called for each character from semihosting (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or from any USART.
   std::function<void(std::uint8_t byte)> on_console;
@@ -159,7 +159,7 @@ class Chip {
   /// Most recent fault outside of fault handlers. A lock-up results from this fault.
   const std::optional<Fault>& first_fault() const;
   std::vector<RegisterMap> register_maps() const;
-  /// Rules that the firmware has broken, in the order of their first violations.
+  /// Broken rules, in the order of their first violations.
   const std::vector<Violation>& violations() const;
   /// Log lines of all accesses to unmodeled registers.
   const std::vector<std::string>& unmodelled_accesses() const;

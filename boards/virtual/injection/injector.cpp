@@ -11,7 +11,7 @@ namespace {
 
 using protocol::InjectedFault;
 
-/// Returns the same fault for all faults that exclude each other at one position.
+/// If two faults cannot be active together at one position, returns the same fault for both faults.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
     case InjectedFault::wire_low:

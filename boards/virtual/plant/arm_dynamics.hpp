@@ -40,7 +40,8 @@ class ArmDynamics {
   Matrix3 jacobian_m(const Vector3& joints_rad) const { return jacobian_m(links(joints_rad)); }
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
-  /// Angle that the elbow stops limit: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram arm.
+  /// The stops of the elbow limit this angle. It is joint 3 of a serial arm, or joint 3 minus joint 2 of a
+  /// parallelogram arm.
   double elbow_rad(const Vector3& joints_rad) const {
     return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2];
   }

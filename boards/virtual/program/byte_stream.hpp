@@ -9,7 +9,7 @@ namespace inkwell::virtual_board {
 
 class ByteStream {
  public:
-  /// Largest number of bytes that are queued for take(). The sender is blocked while the queue is full.
+  /// Largest number of queued bytes for take(). The sender is blocked while the queue is full.
   static constexpr std::size_t unread_maximum = 64 * 1024;
 
   struct Arrived {

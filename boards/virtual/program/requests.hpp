@@ -1,4 +1,4 @@
-// Requests of control socket clients: parsing, and all checks that need no board. Each error message states the
+// Parses requests of control socket clients, and performs all checks that need no board. Each error message states the
 // expected input.
 #pragma once
 

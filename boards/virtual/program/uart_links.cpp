@@ -13,10 +13,10 @@
 namespace inkwell::virtual_board {
 namespace {
 
-/// Largest number of bytes that are queued until the firmware enables the receiver.
+/// Largest number of queued bytes before the firmware enables the receiver.
 constexpr std::size_t kept_maximum = 4096;
-/// Largest number of bytes that are queued in the UART model. Between two calls of serve(), the fastest UART receives
-/// fewer bytes than this limit.
+/// Largest number of queued bytes in the UART model. Between two calls of serve(), the fastest UART receives fewer
+/// bytes than this limit.
 constexpr std::size_t line_maximum = 4096;
 
 bool may_be_anything(std::string_view) { return true; }

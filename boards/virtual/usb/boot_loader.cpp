@@ -18,7 +18,7 @@ constexpr std::uint8_t get_status = 0, set_address = 5, get_descriptor = 6, get_
 }
 constexpr std::uint8_t class_out = 0x21, class_in = 0xA1;
 
-/// Memory areas that the host may read or write, one string per alternate setting (UM0424, "DfuSe memory layout").
+/// Readable and writable memory areas, with one string per alternate setting (UM0424, "DfuSe memory layout").
 constexpr std::string_view alternates[] = {
     "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg",
     "@Option Bytes  /0x1FFFC000/01*016 e",

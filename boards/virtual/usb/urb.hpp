@@ -1,4 +1,4 @@
-// A transfer that a driver submits to the host controller (USB request block of USB/IP and Linux).
+// Transfer from a driver to the host controller (USB request block of USB/IP and Linux).
 #pragma once
 
 #include <array>
