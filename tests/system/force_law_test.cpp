@@ -1,5 +1,5 @@
-// A user-defined force law in the image: every table contains its parameters and signals. On the board and on the PC,
-// the law computes the same force. A division by zero raises a fault.
+// Tests an image with a user-defined force law: every table contains the parameters and signals of the law. On the
+// board and on the PC, the law computes the same force. A division by zero raises a fault.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@ class Monostable {
  public:
   explicit Monostable(Ticks duration) : duration_(duration) {}
 
-  /// CLR input. A low level ends the output pulse. A rising edge of CLR starts a pulse if the trigger is high.
+  /// CLR input. A low level of CLR ends the output pulse. A rising edge of CLR starts a pulse if the trigger is high.
   void drive_clear(bool high, Ticks now) { drive(clear_high_, high, now); }
   /// B input. Each rising edge of B restarts the output pulse if CLR is high.
   void drive_trigger(bool high, Ticks now) { drive(trigger_high_, high, now); }

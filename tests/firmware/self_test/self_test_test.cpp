@@ -1,4 +1,4 @@
-// The self-test, with main loop and control interrupt.
+// Tests the self-test with main loop and control interrupt.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/self_test/self_test_board.hpp"

@@ -1,4 +1,4 @@
-// Recordings: written data remains readable after a crash or on a full disk, and damaged files cause an error.
+// Tests that written data remains readable after a crash or on a full disk, and that damaged files cause an error.
 #include <doctest/doctest.h>
 
 #include <algorithm>
