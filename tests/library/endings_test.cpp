@@ -119,6 +119,8 @@ struct Watched : Board {
   }
   /// Checks the effect of the command. The board must have no other state from the program.
   void check(const std::string& command) {
+    // A pose that the board sent before the command can arrive after the end of the program.
+    for (int i = 0; i < 1'000 && newest().state != INKWELL_READY; ++i) continue;
     CHECK(newest().state == INKWELL_READY);
     driver.reset();
     if (command == "set") CHECK(stiffness_N_per_m() == 777);

@@ -31,11 +31,11 @@ Brake begun(protocol::Conditions found) {
 TEST_CASE("an arm that is let loose while it moves is braked until it is slow, and not again") {
   Brake brake = begun(condition(Fault::over_speed));
   CHECK(brake.is_on());
-  for (int i = 0; i < 100; ++i) advance(brake, fast, 0);
+  for (int i = 0; i < 100; ++i) advance(brake, fast, {});
   CHECK(brake.is_on());
-  advance(brake, slow, 0);
+  advance(brake, slow, {});
   CHECK_FALSE(brake.is_on());
-  advance(brake, fast, 0);
+  advance(brake, fast, {});
   CHECK_FALSE(brake.is_on());
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
   CHECK(shorts(brake, resists_A, limit_A));
   advance(brake, fast, condition(Fault::host_silent));
   CHECK_FALSE(shorts(brake, resists_A, limit_A));
-  advance(brake, fast, 0);
+  advance(brake, fast, {});
   CHECK_FALSE(shorts(brake, resists_A, limit_A));
   brake.begin();
   CHECK(shorts(brake, resists_A, limit_A));
