@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host/companion/window/device_desk/parameter_editor.hpp"
+#include "host/companion/window/frame/picture_changes.hpp"
 #include "host/companion/window/frame/picture_digest.hpp"
 #include "host/companion/window/frame/style.hpp"
 #include "host/companion/window/scene/camera.hpp"
