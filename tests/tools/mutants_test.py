@@ -53,7 +53,7 @@ bool is_bad(int count, bool known) {
   return count < 0 || (known && count(known, 2) == 1);
 }
     {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
-    {State::ready, State::unreferenced, 0, events(Event::referenced)},
+    {State::ready, State::unreferenced, {}, events(Event::referenced)},
 """
 safety = {mutant.what: mutant.applied_to(CODE) for mutant in mutants.safety_mutants("a.cpp", CODE)}
 assert "if (count > 3) count = 0;" in safety["without && known"]
@@ -61,8 +61,8 @@ assert "return count < 0;" in safety["without || (known && count(known, 2) == 1)
 assert "|| (known);" in safety["without && count(known, 2) == 1"]
 assert "if (!(count > 3 && known))" in safety["if (not (count > 3 && known))"]
 assert "{State::ready, State::ready, events(Event::enable)" in safety["without the way ready to ramping by events(Event::enable)"]
-assert "events(Event::enable), 0}" in safety["ready to ramping by events(Event::enable) without unless events(Event::disable, Event::stop)"]
-assert "{State::ready, State::ready, 0" in safety["without the way ready to unreferenced by 0"]
+assert "events(Event::enable), {}}" in safety["ready to ramping by events(Event::enable) without unless events(Event::disable, Event::stop)"]
+assert "{State::ready, State::ready, {}" in safety["without the way ready to unreferenced by {}"]
 assert len(safety) == 7, safety
 
 TABLE = """

@@ -134,7 +134,7 @@ def watch_mutants(path: str, source: str) -> list[Mutant]:
             for found in WATCH.finditer(source)]
 
 
-WAY = re.compile(r"^ +\{State::(?P<from>\w+), State::(?P<to>\w+), (?P<needs>0|events\([^()]*\)), (?P<unless>0|events\([^()]*\))\},$",
+WAY = re.compile(r"^ +\{State::(?P<from>\w+), State::(?P<to>\w+), (?P<needs>\{\}|events\([^()]*\)), (?P<unless>\{\}|events\([^()]*\))\},$",
                  re.MULTILINE)
 
 
@@ -145,9 +145,9 @@ def way_mutants(path: str, source: str) -> list[Mutant]:
         line = source.count("\n", 0, found.start("from")) + 1
         way = f"{found['from']} to {found['to']} by {found['needs']}"
         mutants.append(Mutant(path, line, f"without the way {way}", found.start("to"), found.end("to"), found["from"]))
-        if found["needs"] != "0" and found["unless"] != "0":
+        if found["needs"] != "{}" and found["unless"] != "{}":
             mutants.append(Mutant(path, line, f"{way} without unless {found['unless']}", found.start("unless"),
-                                  found.end("unless"), "0"))
+                                  found.end("unless"), "{}"))
     return mutants
 
 
