@@ -149,7 +149,7 @@ void add_instruments(CLI::App& app, Given& given) {
       ->type_name("PINS");
   given.profile_option = app.add_option("--profile", given.profile,
                                         "File for the instructions of the longest interrupt and their cycles, written "
-                                        "at exit for\ntools/flame-graph. Sets --mode exact")
+                                        "at exit for\ntools/docs/flame-graph. Sets --mode exact")
                              ->type_name("FILE");
 }
 

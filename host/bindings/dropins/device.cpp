@@ -199,8 +199,8 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports the specific cause: a lost link or a fault. Until that frame, FORCE_ERROR shows the program
-  // that there is no force.
+  // The next frame reports the specific cause: a lost link or a fault. Until that frame, FORCE_ERROR reports the
+  // missing force.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_loss_reported_;
   is_force_loss_reported_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;

@@ -19,7 +19,7 @@ class Socket {
   /// Throws Error if no server answers.
   explicit Socket(const SocketAddress& server);
 
-  /// Limits the wait for received bytes. Throws Error if the limit is exceeded. The default is no limit.
+  /// Sets the longest wait for received bytes. A longer wait throws Error. By default the wait is unlimited.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
 
   /// send(), receive() and receive_some() throw Disconnected when the peer has closed the connection.
