@@ -120,7 +120,8 @@ void FrameLoop::draw(const Frame& frame) {
   }
   if (display_.draws_in_software()) mark_.put();
   if (frame.is_last) write_screenshot(options_.screenshot, frame.size.width, frame.size.height);
-  if (!inspection_) return;
+  // An answer must reflect all earlier events, and ImGui may apply the events in several frames.
+  if (!inspection_ || imgui_.has_waiting_events()) return;
   nlohmann::json known = content_.inspect();
   known["drawn_part"] = drawn / frame.picture.window.area();
   if (!inspection_->end_frame(known, frame.size.width, frame.size.height)) display_.close();

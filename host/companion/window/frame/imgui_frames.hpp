@@ -23,6 +23,8 @@ class ImGuiFrames {
   void take_key(const KeyEvent& event) { keys_.take(event); }
 
   void begin();
+  /// True if a later frame will apply events that have arrived.
+  bool has_waiting_events() const { return keys_.has_waiting_events(); }
   ImVec2 size() const;  ///< of the window, in screen coordinates
   void end();
   /// Returns the panes of the finished frame.

@@ -29,6 +29,8 @@ bool can_cancel() {
 void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
 
+bool events_wait() { return !GImGui->InputEventsQueue.empty(); }
+
 QueuedInput kind_of(const ImGuiInputEvent& event) {
   if (event.Type != ImGuiInputEventType_Key) return QueuedInput::other;
   const ImGuiKey key = event.Key.Key;
@@ -74,6 +76,8 @@ void note_tap(KeyTaps& taps, int key) {
     if (down[modifier] && modifier != key) taps.note(modifier);
 }
 
+bool events_wait() { return false; }
+
 void start_frame(KeyTaps& taps) {
   ImGuiIO& io = ImGui::GetIO();
   follow_keyboard_layout(io);
@@ -109,5 +113,6 @@ void KeyFeed::take(const KeyEvent& event) {
 }
 
 void KeyFeed::begin_frame() { start_frame(taps_); }
+bool KeyFeed::has_waiting_events() const { return events_wait(); }
 
 }  // namespace inkwell::window

@@ -21,6 +21,8 @@ class KeyFeed {
   void take(const KeyEvent& event);
   /// Calls ImGui::NewFrame() with the keys of this frame. Call after the NewFrame() of the back end.
   void begin_frame();
+  /// True if a later frame will apply events that have arrived.
+  bool has_waiting_events() const;
 
  private:
   GLFWwindow* window_;
