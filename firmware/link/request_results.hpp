@@ -1,4 +1,4 @@
-// Results of commands and shapes for their senders.
+// The results of commands and shapes, which the host reads.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ constexpr Item tested_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,    
                                  Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
                                  Item::bridge_fault_tim1, Item::bridge_fault_tim8};
 
-/// Every self-test repeats the items from this item on. Earlier items are tested only at start-up.
+/// First item of a self-test on command. Earlier items are tested only at start-up.
 constexpr Item first_of_each_test = Item::current_offsets;
 
 constexpr std::uint32_t orders = 4;

@@ -66,7 +66,7 @@ struct Watched : Board {
     watcher.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
   }
 
-  /// Returns the next pose, even after a cable was connected again.
+  /// Returns the next pose. Waits until the cable is connected again.
   inkwell_pose newest() {
     inkwell_pose pose;
     for (int i = 0; i < 6'000; ++i) {

@@ -17,7 +17,7 @@ struct FirmwareSymbol {
 FirmwareSymbol firmware_place(std::string_view name);
 inline std::uint32_t firmware_symbol(std::string_view name) { return firmware_place(name).address; }
 
-/// Returns the address where the firmware waits for a requested reset: "dsb" and a branch to itself.
+/// Returns the address of the loop in which the firmware waits for a requested reset.
 std::uint32_t endless_loop_address();
 
 /// Version of the compiler in the firmware's .comment section, without the last number, such as "12.2".

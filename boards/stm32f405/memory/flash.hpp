@@ -1,7 +1,7 @@
 // Flash interface: wait states, lock, sector erase and programming (RM0090, "Embedded Flash memory interface").
 //
-// During an erase or program operation all fetches and reads from the flash wait (RM0090, "Read-while-write"). Code in
-// RAM continues. A reset during the operation leaves partially changed contents.
+// During an erase or program operation the processor waits at each access to the flash (RM0090, "Read-while-write").
+// Code in RAM continues. A reset during the operation leaves partially changed contents.
 #pragma once
 
 #include <cstdint>

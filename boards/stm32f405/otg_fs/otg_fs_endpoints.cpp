@@ -189,7 +189,7 @@ bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
   return transmit_[fifo].count() <= level;
 }
 
-// FIFO regions must not overlap in the packet memory. The core does not check for an overlap and overwrites data.
+// FIFO regions must not overlap in the packet memory. The core does not detect an overlap, and data is overwritten.
 void OtgFsDevice::note_memory_layout() {
   if (!layout_changed_) return;
   layout_changed_ = false;

@@ -25,7 +25,7 @@
 namespace inkwell::control {
 
 constexpr float nominal_analog_supply_V = 3.3f;
-/// Reading of a 12-bit converter for a voltage at nominal VDDA.
+/// Returns the ADC counts of a voltage if VDDA is 3.3 V.
 constexpr std::uint16_t counts_at_nominal(float volts) {
   return static_cast<std::uint16_t>(volts / nominal_analog_supply_V * 4096.0f);
 }

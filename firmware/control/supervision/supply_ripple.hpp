@@ -29,8 +29,8 @@ struct SupplyRipple {
   /// An oscillation of 35 Hz or more causes this number of alternating excursions within `within_periods`.
   static constexpr std::size_t alternations = 8;
   static constexpr std::uint32_t within_periods = periods_in(0.1f);
-  /// Time constant of the mean, about `within_periods`. The mean stays in the middle of an oscillation and follows a
-  /// step before the next hand reversal. The value is a power of two, so that the division is a shift.
+  /// Time constant of the mean, which is close to `within_periods`. The mean stays in the middle of an oscillation and
+  /// follows a step before the next hand reversal. The value is a power of two, so that the division is a shift.
   static constexpr std::int32_t mean_periods = 2048;
 
   std::int32_t tolerance_counts;  ///< protocol::supply_ripple_V in converter counts, in either direction from the mean

@@ -67,7 +67,7 @@ class Scheduler {
   TaskHandle list(Callback callback, void* user, unsigned short priority);
   Tasks::const_iterator find(TaskHandle handle) const;
   void loop();
-  /// False in a child that a callback has forked.
+  /// Runs the tasks of one tick. Returns false if a callback has forked and this is the child process.
   bool tick();
   /// Removes a task from the list, and waits until the task is not running.
   class OffTheList;

@@ -26,7 +26,7 @@ constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
 
-/// The board is connected again, but this arm cannot use it.
+/// The board is connected again, but the library cannot continue on it.
 class CannotReturn : public Error {
  public:
   using Error::Error;

@@ -37,7 +37,7 @@ class OwnedFile {
   /// The content if it has exactly this size, otherwise empty. Also empty if the file is not a regular file.
   std::vector<std::byte> content(std::size_t size) const;
   /// Replaces the content atomically, so that a reader finds the complete old or the complete new content.
-  /// @throws FileInUse if another program has replaced the file, which then does not change.
+  /// @throws FileInUse if another program has replaced the file. The file of the other program stays unchanged.
   /// @throws std::system_error if the file cannot be written.
   void replace(std::span<const std::byte> content);
 

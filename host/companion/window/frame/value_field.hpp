@@ -24,7 +24,7 @@ class ValueFields {
  public:
   /// Draws a field with a drag handle and a number. The filled part of the background shows the value within its range.
   /// Dragging changes the value, ten times faster with Shift and ten times slower with Ctrl. Escape restores the
-  /// previous text. The names in inspections are `name` for the field and "<name> handle" for the handle.
+  /// previous text. The answers of `--inspect` call the field `name` and its handle "<name> handle".
   ValueEdit draw(const char* id, const std::string& name, float value, const ValueRange& range, float width,
                  const Style& style);
 

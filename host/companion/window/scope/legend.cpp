@@ -63,8 +63,8 @@ class LegendLabels {
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
-  /// Adds the cursor values and their difference while the cursors are shown. In a narrow plot, adds only the
-  /// difference or no value.
+  /// Adds the values at the cursors and their difference while the cursors are shown. A narrow plot has room only for
+  /// the difference, and a very narrow plot for neither.
   std::vector<std::string> labels() const {
     if (!frame_.cursors.are_shown() || plot_.kind != PlotKind::time) return names_;
     for (const bool in_full : {true, false}) {

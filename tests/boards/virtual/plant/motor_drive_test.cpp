@@ -157,8 +157,8 @@ TEST_CASE("the dead time costs a voltage against the current's direction") {
   auto motor = drive(static_cast<double>(board::omni_driver.bridge_dead_time_s));
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.3, 2000, now);
-  // Leg A loses the dead time at its rising edge, and leg B gains it at its falling edge. During each dead time the
-  // diode's forward voltage is added.
+  // The dead time shortens the pulse of leg A and lengthens the pulse of leg B. During each dead time the diode's
+  // forward voltage is added.
   const double lost_V =
       2.0 * static_cast<double>(board::omni_driver.bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
   CHECK(lost_V > 0.4);

@@ -57,8 +57,8 @@ struct Host {
 TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
   Host host;
   std::uint8_t token = 0;
-  // The number of packets before a configuration differs between rounds. Therefore both values of the data toggle occur
-  // before a configuration.
+  // The number of packets before a configuration differs between rounds. Therefore the data toggle
+  // has both values before a configuration.
   for (int round = 0; round < 4; ++round) {
     CAPTURE(round);
     host.configure();

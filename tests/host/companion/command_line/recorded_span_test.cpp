@@ -19,7 +19,7 @@ std::size_t taken(RecordedSpan& span, std::int64_t first_period, std::size_t cou
 
 }  // namespace
 
-TEST_CASE("a recording of a given length stops with its last period, even after days") {
+TEST_CASE("a recording of a given length stops after its last period, also if the board runs for days") {
   for (const std::int64_t first : {std::int64_t{7}, std::int64_t{5} << 32}) {
     CAPTURE(first);
     RecordedSpan span(100);
