@@ -75,6 +75,8 @@ TEST_CASE("a virtual board that does not end when it is asked to is ended") {
 TEST_CASE("a virtual board that is killed leaves no sockets behind") {
   const TemporaryDirectory parent;
   std::filesystem::create_directory(parent / "private");
+  // With the umask 002, which is the default of Debian 13, the group may write the new folder.
+  std::filesystem::permissions(parent / "private", std::filesystem::perms::owner_all);
   const local::Listener usbip({.path = parent / "private/usbip"}, "--usbip"),
       control({.path = parent / "private/control"}, "--control");
   const Script script("echo ready usbip=" + usbip.address().text() + " control=" + control.address().text() +
