@@ -1,11 +1,12 @@
 # Debian packages: `cpack --preset pc`, or tools/packages. Each component is a package.
 set(name_of_programs inkwell)
 set(name_of_development inkwell-dev)
+set(name_of_lab inkwell-lab)
 find_program(INKWELL_GZIP gzip REQUIRED)
 set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/debian/changelog)
 execute_process(COMMAND ${INKWELL_GZIP} -9nc ${CMAKE_CURRENT_SOURCE_DIR}/debian/changelog OUTPUT_FILE ${changelog} COMMAND_ERROR_IS_FATAL ANY)
-foreach(component programs development)
+foreach(component programs development lab)
   set(package ${name_of_${component}})
   # These files belong to the packages only, not to an installed build.
   install(FILES debian/copyright ${changelog} DESTINATION ${documents}/${package} COMPONENT ${component} EXCLUDE_FROM_ALL)
@@ -22,7 +23,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES TRUE)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS ${CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS})
 set(CPACK_PACKAGE_CONTACT "The Inkwell authors <inkwell@inkwell.invalid>")
-set(CPACK_COMPONENTS_ALL programs development)
+set(CPACK_COMPONENTS_ALL programs development lab)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -42,7 +43,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA
 # Run-time dependencies: OpenGL for the window; gnuplot draws figures, and the window reads fonts.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "libgl1")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, fonts-inter | fonts-dejavu-core")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "inkwell-dev, dfu-util, openocd")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "inkwell-dev, inkwell-lab, dfu-util, openocd")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "companion of a haptic arm, and its virtual board
 Inkwell is open firmware and host software for a haptic arm with three motors,
 such as a dismantled PHANTOM Omni: one feels virtual walls with a stylus.
@@ -63,4 +64,16 @@ Inkwell is open firmware and host software for a haptic arm with three motors.
 This package has what programs in C and C++ need that read the pose of the
 arm, and give it forces and shapes: headers, the CMake package Inkwell, a file
 for pkg-config, and examples.")
+
+set(CPACK_DEBIAN_LAB_PACKAGE_NAME inkwell-lab)
+set(CPACK_DEBIAN_LAB_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_LAB_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_LAB_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_LAB_PACKAGE_DEPENDS "inkwell (= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_LAB_DESCRIPTION "long tests of the firmware of a haptic arm
+Inkwell is open firmware and host software for a haptic arm with three motors.
+
+This package has the program inkwell-lab, which runs the firmware on virtual
+boards for minutes to hours: the campaign injects each fault in each situation,
+and the soak uses the boards at random and checks them continuously.")
 include(CPack)

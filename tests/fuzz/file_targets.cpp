@@ -23,8 +23,8 @@ const Registered campaign_result{
     "campaign_result",
     [](Input input) { refuse_or_take<device::Error>([&] { campaign::parse_result(text_of(input)); }); },
     [] {
-      return std::vector<Bytes>{
-          bytes_of(campaign::text_of({.number = 7, .fault = "motor_open:2", .off_after_s = 1e-3}))};
+      return std::vector<Bytes>{bytes_of(campaign::text_of(
+          {.number = 7, .fault = campaign::find_fault("motor_open:2").value(), .off_after_s = 1e-3}))};
     }};
 
 /// The recording is read from memory, because file accesses would take most of the time.

@@ -20,7 +20,13 @@ KINDS = {
         r"share/doc/inkwell/[\w-]+\.md", r"share/doc/inkwell/tutorial\.md", r"share/doc/inkwell/campaign/[\w-]+\.(?:md|svg)",
         r"share/doc/inkwell/pictures/[\w-]+\.(?:png|svg)",
         r"share/inkwell/arms/omni\.toml", r"share/inkwell/arms/(?!omni)\w+\.toml",
-        r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-[\w-]+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
+        r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-(?!lab)[\w-]+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
+    ],
+    "inkwell-lab": [
+        r"bin/inkwell-lab",
+        r"share/bash-completion/completions/inkwell-lab", r"share/fish/vendor_completions\.d/inkwell-lab\.fish",
+        r"share/zsh/vendor-completions/_inkwell-lab",
+        r"share/man/man1/inkwell-lab\.1\.gz", r"share/man/man1/inkwell-lab-[\w-]+\.1\.gz",
     ],
     "inkwell-dev": [
         r"include/inkwell/inkwell\.h", r"include/inkwell/inkwell\.hpp",
@@ -33,6 +39,7 @@ KINDS = {
 # Additional files that Debian requires in packages.
 DEBIAN = {
     "inkwell": [r"share/doc/inkwell/changelog\.gz", r"share/doc/inkwell/copyright", r"share/lintian/overrides/inkwell"],
+    "inkwell-lab": [r"share/doc/inkwell-lab/changelog\.gz", r"share/doc/inkwell-lab/copyright"],
     "inkwell-dev": [r"share/doc/inkwell-dev/changelog\.gz", r"share/doc/inkwell-dev/copyright"],
 }
 

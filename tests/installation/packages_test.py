@@ -61,12 +61,16 @@ class Packages(unittest.TestCase):
             return run("dpkg-deb", "-f", package(name), key).strip()
 
         self.assertEqual(f"inkwell (= {VERSION})", field("inkwell-dev", "Depends"))
+        # The lab runs virtual boards, but it opens no window.
+        self.assertIn(f"inkwell (= {VERSION})", field("inkwell-lab", "Depends").split(", "))
+        self.assertNotIn("libglfw3", field("inkwell-lab", "Depends"))
         for library in ("libunicorn2", "libusb-1.0-0", "libhidapi-hidraw0", "libgl1"):
             self.assertRegex(field("inkwell", "Depends"), rf"\b{re.escape(library)}(t64)?\b")  # t64: Debian 13
         self.assertRegex(field("inkwell", "Depends"), r"\blibhdf5-[0-9]")  # the serial HDF5
         self.assertNotIn("mpi", field("inkwell", "Depends"))
         self.assertIn("gnuplot", field("inkwell", "Recommends"))
-        self.assertEqual(("science", "libdevel"), (field("inkwell", "Section"), field("inkwell-dev", "Section")))
+        self.assertEqual(("science", "libdevel", "science"),
+                         tuple(field(name, "Section") for name in ("inkwell", "inkwell-dev", "inkwell-lab")))
 
     def test_what_the_system_is_told(self):
         control = content("inkwell") / "DEBIAN"
@@ -78,23 +82,24 @@ class Packages(unittest.TestCase):
             run("env", "PATH=/nowhere", "/bin/sh", control / script, "configure")
 
     def test_programs_and_libraries_are_stripped(self):
-        for path in [*content("inkwell").glob("usr/bin/*"), *content("inkwell").glob("usr/lib/**/*.so*")]:
+        for path in [*content("inkwell").glob("usr/bin/*"), *content("inkwell").glob("usr/lib/**/*.so*"),
+                     *content("inkwell-lab").glob("usr/bin/*")]:
             self.assertIn("no symbols", run("objdump", "-t", path))
 
     def test_binaries_are_protected_and_load_no_library_from_the_current_folder(self):
-        folder = content("inkwell")
-        for path in host_binaries(folder):
-            installed = str(path.relative_to(folder / "usr"))
-            with self.subTest(installed):
-                [row] = [binary for binary in BINARIES if binary.kind and re.fullmatch(binary.kind, installed)]
-                self.assertEqual([], missing(path, row) + unsafe_folders(path))
+        for folder in (content("inkwell"), content("inkwell-lab")):
+            for path in host_binaries(folder):
+                installed = str(path.relative_to(folder / "usr"))
+                with self.subTest(installed):
+                    [row] = [binary for binary in BINARIES if binary.kind and re.fullmatch(binary.kind, installed)]
+                    self.assertEqual([], missing(path, row) + unsafe_folders(path))
 
     def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
         folder = content("inkwell")
-        linked = [str(path.relative_to(folder)) for path in folder.rglob("*")
+        linked = [path.name for path in [*folder.rglob("*"), *content("inkwell-lab").rglob("*")]
                   if path.is_file() and not path.is_symlink() and path.read_bytes()[:4] == b"\x7fELF"
                   and path.suffix != ".elf" and "libunicorn" in run("objdump", "-p", path)]
-        self.assertEqual(["usr/bin/virtual-board"], linked)
+        self.assertEqual(["virtual-board"], linked)
         stanzas = (folder / "usr/share/doc/inkwell/copyright").read_text().split("\n\n")
         [stanza] = [stanza for stanza in stanzas if stanza.startswith("Files: usr/bin/virtual-board\n")]
         self.assertIn("\nLicense: GPL-2\n", stanza)

@@ -19,7 +19,7 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 BUILD, WORK = (pathlib.Path(argument) for argument in sys.argv[1:3])
 CMAKE, COMPILER, VERSION = sys.argv[3:]
 PREFIX = WORK / "moved"
-PROGRAM = PREFIX / "bin/inkwell"
+PROGRAM, LAB = PREFIX / "bin/inkwell", PREFIX / "bin/inkwell-lab"
 
 
 def run(*command, expected: int = 0, **how) -> str:
@@ -66,12 +66,17 @@ class Files(unittest.TestCase):
         self.assertIn("<svg ", (PREFIX / "share/icons/hicolor/scalable/apps/inkwell.svg").read_text())
 
     def test_each_command_has_a_page(self):
-        commands = re.findall(r"^  (\w+) ", run(PROGRAM, "--help").split("\nSubcommands:\n")[1].split("\n\n")[0], re.MULTILINE)
-        self.assertIn("record", commands)
-        for command in commands:
-            page = gzip.decompress((PREFIX / f"share/man/man1/inkwell-{command}.1.gz").read_bytes()).decode()
-            self.assertIn(f".SH NAME\ninkwell\\-{command} \\- ", page)
-            self.assertIn(f'"Inkwell {VERSION}"', page)
+        for program, one_command in (("inkwell", "record"), ("inkwell-lab", "soak")):
+            commands = re.findall(r"^  (\w+) ", run(PREFIX / "bin" / program, "--help").split("\nSubcommands:\n")[1].split("\n\n")[0],
+                                  re.MULTILINE)
+            self.assertIn(one_command, commands)
+            command_page = (PREFIX / "share/doc/inkwell/commands.md").read_text()
+            for command in commands:
+                self.assertIn(f"\n### {program} {command}\n", command_page)
+                page = gzip.decompress((PREFIX / f"share/man/man1/{program}-{command}.1.gz").read_bytes()).decode()
+                name = f"{program}-{command}".replace("-", "\\-")
+                self.assertIn(f".SH NAME\n{name} \\- ", page)
+                self.assertIn(f'"Inkwell {VERSION}"', page)
 
     def test_bash_completes(self):
         script = PREFIX / "share/bash-completion/completions/inkwell"
@@ -92,7 +97,12 @@ class Files(unittest.TestCase):
 
 class Programs(unittest.TestCase):
     def test_version(self):
-        self.assertEqual(VERSION, run(PROGRAM, "--version").split()[-1])
+        for program in (PROGRAM, LAB):
+            self.assertEqual(VERSION, run(program, "--version").split()[-1])
+
+    def test_lab_finds_virtual_board_and_firmware(self):
+        run(LAB, "campaign", "run", "1", "--out", WORK / "cases")
+        self.assertEqual("", json.loads((WORK / "cases/case-00001.json").read_text())["error"])
 
     def test_companion_finds_virtual_board_firmware_and_arm(self):
         information = json.loads(run(PROGRAM, "info", "--virtual", "--json"))

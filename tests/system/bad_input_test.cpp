@@ -165,27 +165,34 @@ TEST_CASE("the companion refuses what it does not know") {
     CHECK(result.err.size() < 200);  // a range up to the largest representable number is not helpful
   }
   SUBCASE("what is no number, of an option or an argument of any command") {
-    const auto says = [](const std::vector<std::string>& words, const std::string& sentence) {
-      const auto result = run_program("inkwell", words);
+    const auto program_says = [](const std::string& program, const std::vector<std::string>& words,
+                                 const std::string& sentence) {
+      const auto result = run_program(program, words);
       CHECK(result.exit_code == 2);
-      CHECK(result.err == "inkwell: " + sentence + "\n");
+      CHECK(result.err == program + ": " + sentence + "\n");
     };
-    says({"campaign", "run", "17", "abc"},
-         "abc is not a number for CASE. Give a number such as 12; `inkwell campaign run --help` describes it.");
-    says({"campaign", "run", "-3"},
-         "-3 is not valid for CASE. Give a whole number that is not negative, such as 12; "
-         "`inkwell campaign run --help` describes it.");
-    says({"soak", "--seed", "x"},
-         "x is not a number for --seed. Give a number such as 12; `inkwell soak --help` describes it.");
+    const auto says = [&](const std::vector<std::string>& words, const std::string& sentence) {
+      program_says("inkwell", words, sentence);
+    };
+    const auto lab_says = [&](const std::vector<std::string>& words, const std::string& sentence) {
+      program_says("inkwell-lab", words, sentence);
+    };
+    lab_says({"campaign", "run", "17", "abc"},
+             "abc is not a number for CASE. Give a number such as 12; `inkwell-lab campaign run --help` describes it.");
+    lab_says({"campaign", "run", "-3"},
+             "-3 is not valid for CASE. Give a whole number that is not negative, such as 12; "
+             "`inkwell-lab campaign run --help` describes it.");
+    lab_says({"soak", "--seed", "x"},
+             "x is not a number for --seed. Give a number such as 12; `inkwell-lab soak --help` describes it.");
     says({"--virtual", "--seed", "1.5", "info"},
          "1.5 is not valid for --seed. Give a whole number that is not "
          "negative, such as 12; `inkwell --help` describes it.");
     says({"--json=maybe", "info"},
          "--json accepts no value, but got maybe. Omit the value; `inkwell --help` describes it.");
-    says({"campaign", "--jobs", "two"}, "--jobs: two is not valid. Give a whole number from 1 to 256.");
+    lab_says({"campaign", "--jobs", "two"}, "--jobs: two is not valid. Give a whole number from 1 to 256.");
     says({"watch", "--rate", "nan"}, "--rate: nan is not valid. Give a number that is from 0.1 to 1000.");
-    says({"soak", "--seconds"},
-         "The value of --seconds is missing. Give it after the option; `inkwell soak --help` describes it.");
+    lab_says({"soak", "--seconds"},
+             "The value of --seconds is missing. Give it after the option; `inkwell-lab soak --help` describes it.");
   }
   SUBCASE("layout") {
     check_refused(run_program("inkwell", {"--virtual", "--layout", "nonsense"}), {"nonsense", "--layout", "paper"});
@@ -292,24 +299,17 @@ TEST_CASE("the window says what a computer without a display or without OpenGL 3
                 {"OpenGL 3.3 is needed", "Install"});
 }
 
-TEST_CASE("every command explains itself") {
-  // clang-format off
-  const std::vector<std::string> commands{
-      "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
-      "parameters save", "parameters diff", "parameters arm", "parameters store", "parameters restore",
-      "parameters stored", "parameters factory", "experiment", "experiment wall", "calibrate", "tune",
-      "tune current-loop", "check", "check connection", "check directions", "measure", "measure delay", "record", "replay", "plot",
-      "reference", "signals", "run", "campaign", "campaign list", "campaign run", "campaign merge", "soak", "devices", "fault",
-      "fault clear", "self-test", "force", "force on", "force off",
-      "flash"};
-  // clang-format on
+namespace {
+
+/// Checks the help of a program and of each command. `commands`: all commands of the program.
+void check_help(const std::string& program, const std::vector<std::string>& commands) {
   const auto help_of = [](const std::string& command) {
     std::vector<std::string> words;
     std::string word;
     for (std::istringstream all(command); all >> word;) words.push_back(word);
     words.push_back("--help");
-    const auto result = run_program("inkwell", words);
-    INFO("inkwell ", command);
+    const auto result = run_program(program, words);
+    INFO(program, " ", command);
     CHECK(result.exit_code == 0);
     CHECK(result.err.empty());
     return result.out;
@@ -323,7 +323,6 @@ TEST_CASE("every command explains itself") {
     return names;
   };
   const auto main_help = help_of("");
-  CHECK(main_help.find("--virtual") != std::string::npos);
   CHECK(main_help.find("Exit code") != std::string::npos);
   // The list contains all commands of the program.
   std::set<std::string> listed;
@@ -336,8 +335,8 @@ TEST_CASE("every command explains itself") {
   for (const auto& command : commands) {
     CAPTURE(command);
     const auto help = help_of(command);
-    CHECK(help.find("Usage: inkwell " + command) != std::string::npos);
-    CHECK(help.find("Examples:\n  inkwell " + command) != std::string::npos);
+    CHECK(help.find("Usage: " + program + " " + command) != std::string::npos);
+    CHECK(help.find("Examples:\n  " + program + " " + command) != std::string::npos);
     for (const char* noise : {"TEXT", "FLOAT", "Excludes", "Needs", "REQUIRED", "required]"})
       CHECK(help.find(noise) == std::string::npos);
     std::string line;
@@ -346,5 +345,38 @@ TEST_CASE("every command explains itself") {
       CHECK(line.size() <= 120);
     }
   }
+}
+
+}  // namespace
+
+TEST_CASE("every command explains itself") {
+  // clang-format off
+  const std::vector<std::string> commands{
+      "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
+      "parameters save", "parameters diff", "parameters arm", "parameters store", "parameters restore",
+      "parameters stored", "parameters factory", "experiment", "experiment wall", "calibrate", "tune",
+      "tune current-loop", "check", "check connection", "check directions", "measure", "measure delay", "record", "replay", "plot",
+      "reference", "signals", "run", "devices", "fault",
+      "fault clear", "self-test", "force", "force on", "force off",
+      "flash"};
+  // clang-format on
+  check_help("inkwell", commands);
+  CHECK(run_program("inkwell", {"--help"}).out.find("--virtual") != std::string::npos);
+  check_help("inkwell-lab", {"campaign", "campaign list", "campaign run", "campaign merge", "soak"});
   CHECK(run_program("virtual-board", {"--help"}).out.find("--real-time") != std::string::npos);
+}
+
+TEST_CASE("a command that is now in another program reports its new name, whatever its arguments are") {
+  for (const std::vector<std::string>& words : std::initializer_list<std::vector<std::string>>{
+           {"campaign"},
+           {"campaign", "--help"},
+           {"campaign", "run", "17", "--out", "results"},
+           {"--virtual", "--elf", "inkwell.elf", "campaign", "--jobs", "2"}}) {
+    const auto result = run_program("inkwell", words);
+    CHECK(result.exit_code == 2);
+    CHECK(result.out.empty());
+    CHECK(result.err == "inkwell: `inkwell campaign` is now `inkwell-lab campaign`, in the package inkwell-lab.\n");
+  }
+  CHECK(run_program("inkwell", {"soak", "--seconds", "3600"}).err ==
+        "inkwell: `inkwell soak` is now `inkwell-lab soak`, in the package inkwell-lab.\n");
 }

@@ -21,6 +21,8 @@
 
 using namespace inkwell;
 using namespace inkwell::tests;
+using campaign::NoticedInUse;
+using campaign::Recovery;
 using campaign::Result;
 
 namespace {
@@ -42,7 +44,7 @@ Result result_of(const std::string& name) {
 
 /// Energy exchange of an arm in motion without a fault.
 double energy_without_fault_J(const Result& result) {
-  if (result.situation != "motion") return 0.0;
+  if (result.situation != campaign::CaseSituation::motion) return 0.0;
   return result_of(fmt::format("none motion {}", result.phase)).energy_J;
 }
 
@@ -52,10 +54,10 @@ TEST_CASE("without a fault the hand feels the wall and nothing happens") {
   const Result result = result_of("none wall 1");
   CHECK(result.bridges_were_on);
   CHECK_FALSE(result.off_after_s);
-  CHECK(result.detected_as.empty());
+  CHECK(result.detected_as == protocol::Fault::none);
   CHECK(result.peak_force_N == doctest::Approx(0.75 * result.force_limit_N).epsilon(0.05));
   CHECK(result.travel_m < 0.001);
-  CHECK(result.recovery == "none needed");
+  CHECK(result.recovery == Recovery::none_needed);
   CHECK(result.position_error_m.value() < 0.0005);
 }
 
@@ -65,11 +67,11 @@ TEST_CASE("the force that rises, falls or is held back is less than, or as much 
     const Result result = result_of(name);
     CHECK(result.bridges_were_on);
     CHECK_FALSE(result.off_after_s);
-    CHECK(result.detected_as.empty());
+    CHECK(result.detected_as == protocol::Fault::none);
     CHECK(result.peak_force_N > least * result.force_limit_N);
     CHECK(result.peak_force_N < most * result.force_limit_N);
-    CHECK(result.recovery == "none needed");
-    CHECK(result.peak_force_in_use_N.has_value() == (result.situation != "landing"));
+    CHECK(result.recovery == Recovery::none_needed);
+    CHECK(result.peak_force_in_use_N.has_value() == (result.situation != campaign::CaseSituation::landing));
   }
 }
 
@@ -78,11 +80,11 @@ TEST_CASE("the self-test's pulses end by themselves, and the second motor's find
   CHECK(fault_free.bridges_were_on);
   CHECK(fault_free.off_after_s.value() > 0.0095);  // the remaining pulses of the self-test
   CHECK(fault_free.off_after_s.value() < 0.014);
-  CHECK(fault_free.detected_as.empty());
-  CHECK(fault_free.recovery == "none needed");
+  CHECK(fault_free.detected_as == protocol::Fault::none);
+  CHECK(fault_free.recovery == Recovery::none_needed);
   const Result open = result_of("motor_open:2 testing 1");
-  CHECK(open.detected_as == "self_test_failed");
-  CHECK(open.recovery == "clear_fault");
+  CHECK(open.detected_as == protocol::Fault::self_test_failed);
+  CHECK(open.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("a force that is falling is switched on again before it counts as regained") {
@@ -115,13 +117,13 @@ TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user d
 
 TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {
   const Result stuck = result_of("encoder_stuck:2 rest 1");
-  CHECK(stuck.detected_as.empty());
-  CHECK(stuck.noticed_in_use_as == "motor_implausible");
+  CHECK(stuck.detected_as == protocol::Fault::none);
+  CHECK(stuck.noticed_in_use_as == NoticedInUse{NoticedInUse::By::fault, protocol::Fault::motor_implausible});
   CHECK(stuck.noticed_in_use_s.value() < 1.5);
-  CHECK(stuck.recovery == "clear_fault");
-  CHECK(stuck.fault_on_healing.empty());
+  CHECK(stuck.recovery == Recovery::clear_fault);
+  CHECK(stuck.fault_on_healing == protocol::Fault::none);
   const Result fault_free = result_of("none motion 3");
-  CHECK(fault_free.noticed_in_use_as.empty());
+  CHECK(fault_free.noticed_in_use_as == NoticedInUse{});
   CHECK_FALSE(fault_free.noticed_in_use_s);
   CHECK(fault_free.peak_force_in_use_N.value() == doctest::Approx(fault_free.force_limit_N).epsilon(0.1));
 }
@@ -147,27 +149,27 @@ TEST_CASE("the interrupts that are lost and late in the campaign are those that 
 TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {
   struct Known {
     const char* name;
-    const char* detected_as;
+    protocol::Fault detected_as;
   };
-  for (const Known& known : {Known{"wire_low:bridge_fault_tim1 rest 2", "bridge_fault"},
-                             {"shunt_high:2 wall 1", "over_current"},
-                             {"wire_low:motor_current[1] motion 3", "over_current"},
-                             {"leg_low:2A motion 1", "bridge_fault"},
-                             {"leg_high:1B limited 3", "bridge_fault"},
-                             {"shunt_high:3 wall 2", "over_current"},
-                             {"motor_open:2 wall 1", "current_jump"},
-                             {"leg_open:2A wall 1", "current_jump"},
-                             {"wire_open:bridges[1].leg_a wall 2", "current_jump"},
-                             {"wire_low:bridges[1].leg_a motion 1", "current_jump"},
-                             {"wire_open:motor_current[1] rest 1", "current_jump"},
-                             {"wire_open:motor_current[1] limited 1", "current_jump"},
-                             {"wire_open:motor_current[1] motion 2", "current_jump"},
-                             {"shunt_gain:2 wall 3", "current_jump"},
-                             {"shunt_gain:2=2 wall 1", "current_jump"},
-                             {"shunt_offset:2 limited 1", "current_jump"},
-                             {"wires_shorted:motor_current[1]+motor_current[2] wall 2", "current_jump"},
-                             {"adc_stopped:2 wall 1", "samples_stale"},
-                             {"adc_stopped:3 motion 2", "samples_stale"}}) {
+  for (const Known& known : {Known{"wire_low:bridge_fault_tim1 rest 2", protocol::Fault::bridge_fault},
+                             {"shunt_high:2 wall 1", protocol::Fault::over_current},
+                             {"wire_low:motor_current[1] motion 3", protocol::Fault::over_current},
+                             {"leg_low:2A motion 1", protocol::Fault::bridge_fault},
+                             {"leg_high:1B limited 3", protocol::Fault::bridge_fault},
+                             {"shunt_high:3 wall 2", protocol::Fault::over_current},
+                             {"motor_open:2 wall 1", protocol::Fault::current_jump},
+                             {"leg_open:2A wall 1", protocol::Fault::current_jump},
+                             {"wire_open:bridges[1].leg_a wall 2", protocol::Fault::current_jump},
+                             {"wire_low:bridges[1].leg_a motion 1", protocol::Fault::current_jump},
+                             {"wire_open:motor_current[1] rest 1", protocol::Fault::current_jump},
+                             {"wire_open:motor_current[1] limited 1", protocol::Fault::current_jump},
+                             {"wire_open:motor_current[1] motion 2", protocol::Fault::current_jump},
+                             {"shunt_gain:2 wall 3", protocol::Fault::current_jump},
+                             {"shunt_gain:2=2 wall 1", protocol::Fault::current_jump},
+                             {"shunt_offset:2 limited 1", protocol::Fault::current_jump},
+                             {"wires_shorted:motor_current[1]+motor_current[2] wall 2", protocol::Fault::current_jump},
+                             {"adc_stopped:2 wall 1", protocol::Fault::samples_stale},
+                             {"adc_stopped:3 motion 2", protocol::Fault::samples_stale}}) {
     CAPTURE(known.name);
     const Result result = result_of(known.name);
     REQUIRE(result.off_after_s);
@@ -175,7 +177,7 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
     CHECK(result.detected_as == known.detected_as);
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
     CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
-    CHECK(result.recovery == "clear_fault");
+    CHECK(result.recovery == Recovery::clear_fault);
     CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be one millisecond old
   }
 }
@@ -184,8 +186,8 @@ TEST_CASE("the wire of the supply's divider that breaks is a supply far too low,
   const Result result = result_of("wire_open:supply wall 2");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 30 * control_period_s);
-  CHECK(result.detected_as == "supply_low");
-  CHECK(result.recovery == "clear_fault");
+  CHECK(result.detected_as == protocol::Fault::supply_low);
+  CHECK(result.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("a motor that does not do as its voltage says is let go of before the hand feels more than it may") {
@@ -201,10 +203,11 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < known.periods * control_period_s);
     // Depending on the time of the fault, a current jump may be detected first.
-    CHECK((result.detected_as == "motor_implausible" || result.detected_as == "current_jump"));
+    CHECK((result.detected_as == protocol::Fault::motor_implausible ||
+           result.detected_as == protocol::Fault::current_jump));
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
     CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
-    CHECK(result.recovery == "clear_fault");
+    CHECK(result.recovery == Recovery::clear_fault);
   }
 }
 
@@ -214,9 +217,10 @@ TEST_CASE(
     CAPTURE(name);
     const Result result = result_of(name);
     CHECK(result.peak_force_N < 1.02 * result.force_limit_N);
-    CHECK((result.detected_as == "motor_implausible" || result.noticed_in_use_as == "motor_implausible"));
+    CHECK((result.detected_as == protocol::Fault::motor_implausible ||
+           result.noticed_in_use_as == NoticedInUse{NoticedInUse::By::fault, protocol::Fault::motor_implausible}));
     CHECK(result.peak_force_in_use_N.value_or(0.0) < 1.02 * result.force_limit_N);
-    CHECK(result.recovery == "clear_fault");
+    CHECK(result.recovery == Recovery::clear_fault);
   }
 }
 
@@ -225,7 +229,7 @@ TEST_CASE("a core, or a control interrupt, that stops lets go of the bridges wit
     const Result result = result_of(name);
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < 2 * control_period_s);
-    CHECK(result.detected_as == "watchdog");
+    CHECK(result.detected_as == protocol::Fault::watchdog);
   }
 }
 
@@ -235,8 +239,8 @@ TEST_CASE("a cable that is pulled and a bus that is suspended take the force awa
     const Result result = result_of(name);
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < 0.005);  // 3 ms of silence on the bus count as a disconnection
-    CHECK(result.detected_as == "usb_gone");
-    CHECK(result.recovery == "clear_fault");
+    CHECK(result.detected_as == protocol::Fault::usb_gone);
+    CHECK(result.recovery == Recovery::clear_fault);
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
   }
   CHECK_FALSE(campaign::is_detected(result_of("bus_suspended ready 1")));
@@ -254,9 +258,9 @@ TEST_CASE("a main loop that stands for a while takes the force away and is told,
   const Result result = result_of("main_loop_stalled=0.012 wall 1");
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 0.0105);
-  CHECK(result.detected_as == "main_loop_stalled");
+  CHECK(result.detected_as == protocol::Fault::main_loop_stalled);
   CHECK(result.restarts == 0);
-  CHECK(result.recovery == "clear_fault");
+  CHECK(result.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
@@ -264,8 +268,8 @@ TEST_CASE("a chip that no longer hears its converters is restarted by the watchd
   REQUIRE(result.off_after_s);
   CHECK(*result.off_after_s < 2 * control_period_s);  // without the control interrupt there is no heartbeat
   CHECK(result.restarts >= 1);                        // repeatedly while the cause lasts
-  CHECK(result.detected_as == "watchdog");
-  CHECK(result.recovery == "clear_fault");
+  CHECK(result.detected_as == protocol::Fault::watchdog);
+  CHECK(result.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed board, and is told once it is back") {
@@ -274,8 +278,8 @@ TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed bo
   CHECK(*result.off_after_s < 2 * control_period_s);
   CHECK(result.restarts >= 1);
   CHECK_FALSE(result.locked_up);
-  CHECK(result.detected_as == "logic_supply_low");
-  CHECK(result.recovery == "clear_fault");
+  CHECK(result.detected_as == protocol::Fault::logic_supply_low);
+  CHECK(result.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("what an unnoticed fault gives the hand in use is measured, and for a sound arm, too") {
@@ -294,26 +298,26 @@ TEST_CASE("without force nothing goes on, and the arm finds its place in the ink
 
 TEST_CASE("a fault that is told stays told, and the next one is told once it is cleared; the black box keeps it else") {
   const Result tripped = result_of("bridge_fault fault 1");
-  CHECK(tripped.told_before == "host_silent");
+  CHECK(tripped.told_before == protocol::Fault::host_silent);
   CHECK(tripped.first_fault == campaign::FirstFault::reported);
-  CHECK(tripped.detected_as.empty());
-  CHECK(tripped.told_once_cleared == "bridge_fault");
+  CHECK(tripped.detected_as == protocol::Fault::none);
+  CHECK(tripped.told_once_cleared == protocol::Fault::bridge_fault);
   CHECK_FALSE(tripped.bridges_were_on);
   CHECK_FALSE(tripped.bridges_went_on);
-  CHECK(tripped.fault_on_healing.empty());
-  CHECK(tripped.recovery == "clear_fault");
+  CHECK(tripped.fault_on_healing == protocol::Fault::none);
+  CHECK(tripped.recovery == Recovery::clear_fault);
   const Result fault_free = result_of("none fault 1");
   CHECK(fault_free.first_fault == campaign::FirstFault::reported);
   CHECK_FALSE(campaign::is_detected(fault_free));
-  CHECK(fault_free.recovery == "none needed");
+  CHECK(fault_free.recovery == Recovery::none_needed);
   const Result restarted = result_of("core_stalled fault 1");
   CHECK(restarted.first_fault == campaign::FirstFault::black_box);
-  CHECK(restarted.detected_as == "watchdog");
+  CHECK(restarted.detected_as == protocol::Fault::watchdog);
   CHECK(restarted.restarts == 1);
   const Result unheard = result_of("usb_cut fault 1");
   CHECK(unheard.first_fault == campaign::FirstFault::reported);
-  CHECK(unheard.told_once_cleared.empty());
-  CHECK(result_of("bus_suspended fault 1").told_once_cleared.empty());
+  CHECK(unheard.told_once_cleared == protocol::Fault::none);
+  CHECK(result_of("bus_suspended fault 1").told_once_cleared == protocol::Fault::none);
 }
 
 TEST_CASE("a board on the way to its boot loader gets there, and its firmware tells afterwards what broke meanwhile") {
@@ -321,20 +325,20 @@ TEST_CASE("a board on the way to its boot loader gets there, and its firmware te
   CHECK_FALSE(fault_free.missed_boot_loader);
   CHECK_FALSE(campaign::is_detected(fault_free));
   CHECK_FALSE(fault_free.bridges_went_on);
-  CHECK(fault_free.recovery == "none needed");
+  CHECK(fault_free.recovery == Recovery::none_needed);
   const Result broken = result_of("wire_high:bridge_enable update 1");
   CHECK_FALSE(broken.missed_boot_loader);
-  CHECK(broken.detected_as == "bridge_wire");
+  CHECK(broken.detected_as == protocol::Fault::bridge_wire);
   CHECK_FALSE(broken.bridges_went_on);
-  CHECK(broken.recovery == "clear_fault");
+  CHECK(broken.recovery == Recovery::clear_fault);
   const Result stalled = result_of("core_stalled update 1");
   CHECK(stalled.missed_boot_loader);
   CHECK(stalled.restarts == 1);
-  CHECK(stalled.detected_as == "watchdog");
+  CHECK(stalled.detected_as == protocol::Fault::watchdog);
   const Result unplugged = result_of("usb_cut update 1");  // the boot loader appears once the cable is connected again
   CHECK_FALSE(unplugged.missed_boot_loader);
   CHECK_FALSE(campaign::is_detected(unplugged));
-  CHECK(unplugged.recovery == "none needed");
+  CHECK(unplugged.recovery == Recovery::none_needed);
 }
 
 TEST_CASE("what is broken before the power comes, or breaks while the board starts, is told by it") {
@@ -346,14 +350,14 @@ TEST_CASE("what is broken before the power comes, or breaks while the board star
                                                                                          // self-test
     CHECK_FALSE(campaign::is_detected(fault_free));
     CHECK(fault_free.peak_force_N < 1);
-    CHECK(fault_free.recovery == "none needed");
+    CHECK(fault_free.recovery == Recovery::none_needed);
   }
   CHECK(result_of("none starting 1").injected_at_s == 0);
-  CHECK(result_of("motor_open:2 starting 1").detected_as == "self_test_failed");
+  CHECK(result_of("motor_open:2 starting 1").detected_as == protocol::Fault::self_test_failed);
   const Result late = result_of("wire_high:bridge_enable starting 2");
   CHECK(late.injected_at_s > 0.01);
-  CHECK(late.detected_as == "bridge_wire");
-  CHECK(late.recovery == "clear_fault");
+  CHECK(late.detected_as == protocol::Fault::bridge_wire);
+  CHECK(late.recovery == Recovery::clear_fault);
 }
 
 TEST_CASE("a hand that flings the arm is told it was too fast, feels no more than without a force, and may go on") {
@@ -362,8 +366,8 @@ TEST_CASE("a hand that flings the arm is told it was too fast, feels no more tha
   for (const char* name : {"fast_hand rest 1", "fast_hand wall 1", "fast_hand motion 1"}) {
     const Result flung = result_of(name);
     CHECK(flung.off_after_s.has_value());
-    CHECK(flung.detected_as == "over_speed");
-    CHECK(flung.recovery == "clear_fault");
+    CHECK(flung.detected_as == protocol::Fault::over_speed);
+    CHECK(flung.recovery == Recovery::clear_fault);
     CHECK(flung.peak_force_N < free.peak_force_N);
     CHECK(flung.position_error_m.value() < 0.0005);
   }
@@ -373,14 +377,14 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   const TemporaryDirectory directory;
   const auto c = the_case("encoder_lost_counts:2=0.1 motion 2");
   const Result here = campaign::run_case(c);
-  const auto run = run_program("inkwell", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
+  const auto run = run_program("inkwell-lab", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
   CHECK(run.exit_code == 0);
   const auto there = campaign::load_all(directory.path());
   REQUIRE(there.size() == 1);
   CHECK(campaign::text_of(there[0]) == campaign::text_of(here));
 
   const auto page = (directory / "page.md").string();
-  const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--page", page});
+  const auto merged = run_program("inkwell-lab", {"campaign", "merge", directory.path(), "--page", page});
   CHECK(merged.exit_code == 0);
   CHECK(std::filesystem::exists(page));
   CHECK(std::filesystem::exists(directory / "page/off.svg"));
@@ -389,7 +393,7 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
 TEST_CASE("a place that the seed chose is told with the case") {
   const TemporaryDirectory directory;
   const auto c = the_case("ram_bit unreferenced 1");
-  const auto run = run_program("inkwell", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
+  const auto run = run_program("inkwell-lab", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
   CHECK(run.exit_code == 0);
   const auto results = campaign::load_all(directory.path());
   REQUIRE(results.size() == 1);
@@ -398,11 +402,11 @@ TEST_CASE("a place that the seed chose is told with the case") {
 }
 
 TEST_CASE("the list of the campaign is for people and for batch systems; a case that is none is refused") {
-  const auto numbers = run_program("inkwell", {"campaign", "list", "--numbers"});
+  const auto numbers = run_program("inkwell-lab", {"campaign", "list", "--numbers"});
   CHECK(numbers.exit_code == 0);
   CHECK(std::ranges::count(numbers.out, '\n') == static_cast<std::ptrdiff_t>(campaign::all_cases().size()));
-  CHECK(run_program("inkwell", {"campaign", "list"}).out.find("    1 none unreferenced 1\n") != std::string::npos);
-  const auto none = run_program("inkwell", {"campaign", "run", "999999"});
+  CHECK(run_program("inkwell-lab", {"campaign", "list"}).out.find("    1 none unreferenced 1\n") != std::string::npos);
+  const auto none = run_program("inkwell-lab", {"campaign", "run", "999999"});
   CHECK(none.exit_code == 2);
   CHECK(none.err.find("There is no case 999999") != std::string::npos);
 }

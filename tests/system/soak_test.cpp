@@ -32,8 +32,8 @@ nlohmann::json json_in(const std::string& file) {
 TEST_CASE("a short soak with every kind of phase finds nothing") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json");
-  const auto run = run_program("inkwell", {"soak", "--seed", "1", "--sitting", "1", "--sitting-seconds", "36",
-                                           "--use-seconds", "0.4", "--out", file});
+  const auto run = run_program("inkwell-lab", {"soak", "--seed", "1", "--sitting", "1", "--sitting-seconds", "36",
+                                               "--use-seconds", "0.4", "--out", file});
   INFO(run.out, run.err);
   CHECK(run.exit_code == 0);
   const auto json = json_in(file);
@@ -62,8 +62,8 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
 TEST_CASE("the boards of a soak share the seconds that were asked for, and do the same each time") {
   const TemporaryDirectory directory;
   const auto soak = [&](const std::string& name, const std::string& jobs) {
-    const auto run = run_program("inkwell", {"soak", "--seconds", "3", "--sitting-seconds", "2", "--seed", "7",
-                                             "--jobs", jobs, "--out", directory.file(name)});
+    const auto run = run_program("inkwell-lab", {"soak", "--seconds", "3", "--sitting-seconds", "2", "--seed", "7",
+                                                 "--jobs", jobs, "--out", directory.file(name)});
     INFO(run.out, run.err);
     CHECK(run.exit_code == 0);
     return json_in(directory.file(name));
@@ -76,8 +76,8 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
   CHECK(soak("again.json", "2") == json);
   const auto alone = [&](const std::string& number) {
     // The last value of a repeated option is used. Options of tools/lab/soak depend on this behavior.
-    return run_program("inkwell", {"soak", "--seconds", "3600", "--seconds", "3", "--sitting-seconds", "2", "--seed",
-                                   "7", "--sitting", number, "--out", directory.file("alone.json")});
+    return run_program("inkwell-lab", {"soak", "--seconds", "3600", "--seconds", "3", "--sitting-seconds", "2",
+                                       "--seed", "7", "--sitting", number, "--out", directory.file("alone.json")});
   };
   CHECK(alone("2").exit_code == 0);
   CHECK(json_in(directory.file("alone.json")).at("sittings").at(0) == json.at("sittings").at(1));
@@ -91,7 +91,7 @@ TEST_CASE("a soak takes no time and no length that is no number") {
   const std::string file = directory.file("soak.json");
   for (const char* option : {"--seconds", "--sitting-seconds", "--use-seconds"})
     for (const char* value : {"nan", "inf", "-1", "0"}) {
-      const auto run = run_program("inkwell", {"soak", "--sitting-seconds", "1", "--out", file, option, value});
+      const auto run = run_program("inkwell-lab", {"soak", "--sitting-seconds", "1", "--out", file, option, value});
       CAPTURE(run.err);
       CHECK(run.exit_code == 2);
       CHECK(run.err.find("from 0.1 to 1000000") != std::string::npos);
@@ -103,7 +103,7 @@ TEST_CASE("a soak whose next board does not start says why, and writes what is k
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json"), image = directory.file("inkwell.elf");
   std::filesystem::copy_file(build_directory() + "/../board/inkwell.elf", image);
-  RunningProgram run({build_directory() + "/inkwell", "--virtual", "--elf", image, "soak", "--seconds", "1000",
+  RunningProgram run({build_directory() + "/inkwell-lab", "--elf", image, "soak", "--seconds", "1000",
                       "--sitting-seconds", "2", "--use-seconds", "0.4", "--out", file});
   run.read_line();  // the first board is in use
   std::filesystem::remove(image);
@@ -118,7 +118,7 @@ TEST_CASE("a soak that is stopped writes what is known so far") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json");
   RunningProgram run(
-      {build_directory() + "/inkwell", "soak", "--seconds", "100000", "--use-seconds", "0.4", "--out", file});
+      {build_directory() + "/inkwell-lab", "soak", "--seconds", "100000", "--use-seconds", "0.4", "--out", file});
   run.read_line();  // its first phase has finished
   CHECK_FALSE(std::filesystem::exists(file));
   kill(run.process(), SIGINT);

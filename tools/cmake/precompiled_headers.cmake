@@ -36,7 +36,7 @@ inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
 # Optimizing these headers takes longest, and their code is not time-critical. All targets with these precompiled
 # headers must use the same option.
-foreach(target inkwell_command_headers inkwell_command_line inkwell_virtual_options)
+foreach(target inkwell_command_headers inkwell_command_options inkwell_command_line inkwell-lab inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
 inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/companion/command_line fmt::fmt)

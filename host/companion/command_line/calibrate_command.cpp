@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include "host/client/command_line/help.hpp"
 
 #include "host/companion/command_line/guide_commands.hpp"
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

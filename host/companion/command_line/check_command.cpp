@@ -1,5 +1,6 @@
+#include "host/client/command_line/help.hpp"
+
 #include "host/companion/command_line/guide_commands.hpp"
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 

@@ -10,14 +10,12 @@
 
 #include <functional>
 
+#include "host/client/command_line/connection.hpp"
+#include "host/client/command_line/run_program.hpp"
 #include "host/companion/window/window_options.hpp"
-
-#include "host/companion/command_line/connection.hpp"
 
 namespace inkwell::command_line {
 
-/// The action of the chosen command; returns the exit code.
-using Action = std::function<int()>;
 /// Opens the window. Replays the recording, unless the file name is empty. Returns the exit code.
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
@@ -41,8 +39,6 @@ struct Place {
   X(signals)                \
   X(reference)              \
   X(experiment)             \
-  X(campaign)               \
-  X(soak)                   \
   X(calibrate)              \
   X(tune)                   \
   X(check)                  \
@@ -56,6 +52,9 @@ struct Place {
 #define X(name) void add_##name##_command(const Place& place);
 INKWELL_COMMANDS(X)
 #undef X
+
+/// Adds the commands that are now in another program. Each one only reports its new name.
+void add_moved_commands(CLI::App& program);
 
 /// Adds the window options. Returns the function for commands that open the window.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);

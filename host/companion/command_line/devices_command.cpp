@@ -6,10 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/device/device.hpp"
 #include "host/client/device/transport.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "host/client/command_line/help.hpp"
 #include "host/lab/experiment/wall_experiment.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/progress_bar.hpp"
 
 namespace inkwell::command_line {

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/crash/crash_text.hpp"
 #include "host/client/device/clear_fault.hpp"
 #include "host/client/recording/black_box.hpp"
 #include "host/client/recording/writer.hpp"
 #include "protocol/black_box.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 
 namespace inkwell::command_line {

@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "boards/known/boards.hpp"
+#include "host/client/command_line/help.hpp"
+#include "host/client/command_line/interrupt.hpp"
 #include "host/client/firmware_update/flash_file.hpp"
 #include "host/client/firmware_update/probe.hpp"
 #include "host/client/firmware_update/update.hpp"
 #include "host/client/installation/installed_paths.hpp"
 
-#include "host/companion/command_line/help.hpp"
-#include "host/companion/command_line/interrupt.hpp"
 #include "host/companion/command_line/progress_bar.hpp"
 
 namespace inkwell::command_line {

@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
+#include "host/client/command_line/interrupt.hpp"
 #include "protocol/faults.hpp"
 #include "protocol/reports.hpp"
 
 #include "host/companion/command_line/force_switch.hpp"
-#include "host/companion/command_line/help.hpp"
-#include "host/companion/command_line/interrupt.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 
 namespace inkwell::command_line {

@@ -1,8 +1,7 @@
 #include "host/companion/command_line/guide_commands.hpp"
 
 #include <fmt/format.h>
-
-#include "host/companion/command_line/help.hpp"
+#include "host/client/command_line/help.hpp"
 
 namespace inkwell::command_line {
 

@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "host/client/command_line/interrupt.hpp"
 #include "host/client/guides/session_port.hpp"
 
 #include "host/companion/command_line/guided_device.hpp"
-#include "host/companion/command_line/interrupt.hpp"
 #include "host/companion/command_line/store_commands.hpp"
 
 namespace inkwell::command_line {

@@ -3,9 +3,8 @@
 
 #include <vector>
 
+#include "host/client/command_line/connection.hpp"
 #include "host/client/guides/guides.hpp"
-
-#include "host/companion/command_line/connection.hpp"
 
 namespace inkwell::command_line {
 

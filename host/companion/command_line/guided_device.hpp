@@ -6,11 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "host/client/command_line/connection.hpp"
 #include "host/client/device/board_timeout.hpp"
 #include "host/client/device/session.hpp"
 #include "host/client/guides/simulated_user.hpp"
-
-#include "host/companion/command_line/connection.hpp"
 
 namespace inkwell::command_line {
 

@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "boards/known/boards.hpp"
+#include "host/client/command_line/help.hpp"
 #include "host/client/device/board_store.hpp"
 #include "host/client/device/fault_text.hpp"
 #include "protocol/reports.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include "host/client/command_line/help.hpp"
 
 #include "host/companion/command_line/force_delay.hpp"
 #include "host/companion/command_line/force_switch.hpp"
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 
 namespace inkwell::command_line {

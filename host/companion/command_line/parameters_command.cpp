@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/device/board_store.hpp"
 #include "host/client/device/parameter_file.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/store_commands.hpp"
 
 namespace inkwell::command_line {

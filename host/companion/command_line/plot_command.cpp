@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/recording/figure.hpp"
 #include "host/client/recording/signals.hpp"
 #include "host/lab/experiment/figures.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/read_recording.hpp"
 
 namespace inkwell::command_line {

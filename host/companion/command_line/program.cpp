@@ -1,27 +1,13 @@
 #include "host/companion/command_line/program.hpp"
 
-#include <cstdio>
-#include <exception>
-#include <string>
-
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include "host/client/device/address.hpp"
-#include "protocol/plain_text.hpp"
+#include "host/client/command_line/help.hpp"
+#include "host/client/command_line/run_program.hpp"
 
 #include "host/companion/command_line/commands.hpp"
-#include "host/companion/command_line/help.hpp"
-#include "host/companion/command_line/wrong_value.hpp"
 
 namespace inkwell::command_line {
 namespace {
-
-constexpr int success = 0, failure = 1, wrong_usage = 2;
-
-int complain(const std::exception& error, int exit_code) {
-  fmt::print(stderr, "inkwell: {}\n", protocol::plain_lines(error.what()));
-  return exit_code;
-}
 
 /// Adds the help text and the version.
 void describe(CLI::App& program) {
@@ -65,35 +51,15 @@ int run(int argument_count, char** arguments) {
 #define X(name) add_##name##_command(place);
   INKWELL_COMMANDS(X)
 #undef X
+  add_moved_commands(program);
 
-  try {
-    program.parse(argument_count, arguments);
+  return run_program(program, argument_count, arguments, action, [&program] {
     // After "--" CLI11 ignores a command, so the program would open the window.
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
           "\"--\" is not allowed before the command. Omit it, or put it after the command of `inkwell run`.");
     refuse_window_options_in_vain(program);
-  } catch (const UsageError& error) {
-    return complain(error, wrong_usage);
-  } catch (const CLI::RequiredError& error) {
-    return complain(UsageError(wrong_command(program).value_or(error.what())), wrong_usage);
-  } catch (const CLI::ExtrasError& error) {
-    const auto sentence = wrong_command(program);
-    return complain(UsageError(sentence ? *sentence : sentence_of(program, error)), wrong_usage);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) return complain(UsageError(sentence_of(program, error)), wrong_usage);
-    program.exit(error);  // prints the help or the version
-    return success;
-  }
-  try {
-    return action();
-  } catch (const UsageError& error) {
-    return complain(error, wrong_usage);
-  } catch (const device::SeveralArms& error) {
-    return complain(device::NoDevice(fmt::format("{} Choose one with --serial NUMBER.", error.what())), failure);
-  } catch (const std::exception& error) {
-    return complain(error, failure);
-  }
+  });
 }
 
 }  // namespace inkwell::command_line

@@ -13,12 +13,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
+#include "host/client/command_line/interrupt.hpp"
 #include "host/client/recording/recorder.hpp"
 #include "host/client/recording/signals.hpp"
 
 #include "host/companion/command_line/force_switch.hpp"
-#include "host/companion/command_line/help.hpp"
-#include "host/companion/command_line/interrupt.hpp"
 #include "host/companion/command_line/mark_keys.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 #include "host/companion/command_line/progress_bar.hpp"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/device/fault_text.hpp"
 #include "protocol/report_table.hpp"
 #include "protocol/self_test.hpp"
@@ -14,7 +15,6 @@
 #include "protocol/supervision.hpp"
 #include "protocol/usb_identity.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/wire_reference.hpp"
 
 namespace inkwell::command_line {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/recording/recording.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/read_recording.hpp"
 
 namespace inkwell::command_line {

@@ -16,9 +16,8 @@
 
 #include <fmt/format.h>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/installation/installed_paths.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

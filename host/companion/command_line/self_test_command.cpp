@@ -6,9 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "protocol/self_test.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

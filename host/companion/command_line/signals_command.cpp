@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "protocol/signals.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

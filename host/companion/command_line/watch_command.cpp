@@ -9,10 +9,10 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/device/bus_clock.hpp"
 #include "protocol/reports.hpp"
 
-#include "host/companion/command_line/help.hpp"
 #include "host/companion/command_line/next_pose.hpp"
 
 namespace inkwell::command_line {

@@ -9,11 +9,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "host/client/command_line/help.hpp"
 #include "host/client/installation/installed_paths.hpp"
 #include "host/companion/window/scope/scope_layout.hpp"
 #include "host/companion/window/window.hpp"
-
-#include "host/companion/command_line/help.hpp"
 
 namespace inkwell::command_line {
 namespace {

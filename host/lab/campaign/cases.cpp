@@ -1,5 +1,6 @@
 #include "host/lab/campaign/cases.hpp"
 
+#include <functional>
 #include <map>
 #include <string_view>
 
@@ -7,6 +8,7 @@
 #include "boards/known/boards.hpp"
 #include "boards/stm32f405/core/exception_numbers.hpp"
 #include "host/lab/campaign/run.hpp"
+#include "host/lab/campaign/wires.hpp"
 
 namespace inkwell::campaign {
 namespace {
@@ -14,13 +16,10 @@ namespace {
 using protocol::InjectedFault;
 using protocol::InjectionPlace;
 
-/// Whether the wire is tested. Of three equivalent wires only the second is tested. Wires of USB, console, debug probe
-/// and status LED are excluded.
+/// Whether the wire is tested. Of three equivalent wires only the second is tested.
 bool is_tried(std::string_view wire) {
   if (wire.find("[0]") != std::string_view::npos || wire.find("[2]") != std::string_view::npos) return false;
-  for (const std::string_view other : {"usb_minus", "usb_plus", "console_", "debug_", "status_led"})
-    if (wire.starts_with(other)) return false;
-  return true;
+  return wire_of(wire) != Wire::other;
 }
 
 constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", "bridges[1].leg_a+bridges[1].leg_b",
@@ -72,6 +71,12 @@ std::string_view name_of(CaseSituation situation) {
   constexpr std::string_view names[] = {"unreferenced", "ready",   "rest",    "wall",  "motion", "ramping",
                                         "limited",      "landing", "testing", "fault", "update", "starting"};
   return names[static_cast<std::size_t>(situation)];
+}
+
+std::optional<CaseSituation> find_situation(std::string_view name) {
+  for (const CaseSituation situation : situations)
+    if (name_of(situation) == name) return situation;
+  return std::nullopt;
 }
 
 std::string meaning_of(CaseSituation situation) {
@@ -188,16 +193,39 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::string listed_name(const std::string& name) {
-  static const auto listed = [] {
-    std::map<std::string, std::string> names;
-    for (const CaseFault& fault : case_faults())
-      for (const unsigned other : {1u, 3u})
-        if (is_of_three(fault)) names[at_another(fault, other).name()] = fault.name();
-    return names;
+namespace {
+
+/// A fault of a case, and its listed fault.
+struct NamedFault {
+  CaseFault fault, listed;
+};
+
+const std::map<std::string, NamedFault, std::less<>>& faults_by_name() {
+  static const auto faults = [] {
+    std::map<std::string, NamedFault, std::less<>> by_name;
+    for (const CaseFault& fault : case_faults()) {
+      by_name[fault.name()] = {fault, fault};
+      if (!is_of_three(fault)) continue;
+      for (const unsigned other : {1u, 3u}) {
+        const CaseFault moved = at_another(fault, other);
+        by_name[moved.name()] = {moved, fault};
+      }
+    }
+    return by_name;
   }();
-  const auto found = listed.find(name);
-  return found == listed.end() ? name : found->second;
+  return faults;
+}
+
+}  // namespace
+
+CaseFault listed_fault(const CaseFault& fault) {
+  const auto found = faults_by_name().find(fault.name());
+  return found == faults_by_name().end() ? fault : found->second.listed;
+}
+
+std::optional<CaseFault> find_fault(std::string_view name) {
+  const auto found = faults_by_name().find(name);
+  return found == faults_by_name().end() ? std::nullopt : std::optional(found->second.fault);
 }
 
 }  // namespace inkwell::campaign

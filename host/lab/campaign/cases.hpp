@@ -1,9 +1,11 @@
 // The fault campaign as a list of cases: every fault in every situation of the arm, at random instants.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/injections.hpp"
@@ -30,6 +32,7 @@ inline constexpr CaseSituation situations[] = {
     CaseSituation::motion,       CaseSituation::ramping, CaseSituation::limited, CaseSituation::landing,
     CaseSituation::testing,      CaseSituation::fault,   CaseSituation::update,  CaseSituation::starting};
 std::string_view name_of(CaseSituation situation);
+std::optional<CaseSituation> find_situation(std::string_view name);
 /// Description in one sentence with figures.
 std::string meaning_of(CaseSituation situation);
 /// Whether the hand feels a force. Self-test pulses do not count.
@@ -66,6 +69,8 @@ struct CaseFault {
 
   bool is_fault_free() const { return !fault && deed == Deed::nothing; }
   std::string name() const;  ///< in the format of --inject, or `none`, `bus_suspended` or `fast_hand`
+
+  auto operator<=>(const CaseFault&) const = default;
 };
 
 struct Case {
@@ -87,7 +92,9 @@ bool is_of_three(const CaseFault& fault);
 /// Lists each fault in each situation at each instant. The faults of the first and third equivalent parts follow, at
 /// one instant each.
 std::vector<Case> all_cases();
-/// Maps the name of a fault at any equivalent part to the name in case_faults().
-std::string listed_name(const std::string& name);
+/// Maps a fault at any equivalent part to the fault in case_faults(). Other faults are returned unchanged.
+CaseFault listed_fault(const CaseFault& fault);
+/// Returns the fault with this name; std::nullopt if no case has this fault.
+std::optional<CaseFault> find_fault(std::string_view name);
 
 }  // namespace inkwell::campaign

@@ -29,27 +29,28 @@ std::string_view reason_never_reported(protocol::Fault fault) {
 constexpr std::string_view table_head = "\n| case | fault, situation, instant | deviation |\n| --- | --- | --- |\n";
 
 std::string row(const Result& result, std::string_view deviation) {
-  return fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault, result.situation, result.phase,
-                     deviation);
+  return fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault.name(), name_of(result.situation),
+                     result.phase, deviation);
 }
 
 }  // namespace
 
 Section after_another(std::span<const Result> results) {
   unsigned cases = 0, reported = 0, stored = 0, once_cleared = 0;
-  std::string before, rows;
+  auto before = protocol::Fault::none;
+  std::string rows;
   std::size_t findings = 0;
   for (const Result& result : results) {
-    if (!result.error.empty() || result.told_before.empty()) continue;
+    if (!result.error.empty() || result.told_before == protocol::Fault::none) continue;
     before = result.told_before;
     ++cases;
     reported += result.first_fault == FirstFault::reported;
     stored += result.first_fault == FirstFault::black_box;
-    once_cleared += !result.told_once_cleared.empty();
+    once_cleared += result.told_once_cleared != protocol::Fault::none;
     const bool is_lost = result.first_fault == FirstFault::lost;
     if (!is_lost && result.first_fault != FirstFault::none) continue;
     ++findings;
-    rows += row(result, fmt::format("`{}` was {}.", result.told_before,
+    rows += row(result, fmt::format("`{}` was {}.", name_of_reported(result.told_before),
                                     is_lost ? "neither reported nor in the black box" : "unknown: no reply"));
   }
   std::string text = "\n## Second fault\n\n";
@@ -58,7 +59,7 @@ Section after_another(std::span<const Result> results) {
       "In {} cases the board reported `{}` before the injection. This fault was still reported in {} of these cases. "
       "In {} cases the board restarted, and its black box contained the fault. After the first fault was cleared, the "
       "injected fault was reported in {} cases.\n",
-      cases, before, reported, stored, once_cleared);
+      cases, name_of_reported(before), reported, stored, once_cleared);
   if (!rows.empty()) text += fmt::format("{}{}", table_head, rows);
   return {text, findings};
 }
@@ -79,18 +80,17 @@ Section missed_boot_loader(std::span<const Result> results) {
 }
 
 Section never_reported(std::span<const Result> results) {
-  std::set<std::string_view> reported;
+  std::set<protocol::Fault> reported;
   for (const Result& result : results)
     if (result.error.empty())
-      for (const std::string* name : {&result.detected_as, &result.fault_on_healing, &result.told_before,
-                                      &result.told_once_cleared, &result.noticed_in_use_as})
-        reported.insert(*name);
+      reported.insert({result.detected_as, result.fault_on_healing, result.told_before, result.told_once_cleared,
+                       result.noticed_in_use_as.fault});
   std::string rows;
   std::size_t findings = 0;
   for (const protocol::Condition& row : protocol::condition_table)
-    if (const std::string_view name = protocol::info(row.fault).name; !reported.contains(name)) {
+    if (!reported.contains(row.fault)) {
       ++findings;
-      rows += fmt::format("| `{}` | {} |\n", name, reason_never_reported(row.fault));
+      rows += fmt::format("| `{}` | {} |\n", protocol::info(row.fault).name, reason_never_reported(row.fault));
     }
   const std::string_view heading = "\n## Faults that no case reported\n\n";
   if (rows.empty()) return {fmt::format("{}At least one case reported each monitored fault.\n", heading)};

@@ -14,14 +14,15 @@
 namespace inkwell::campaign {
 
 void AtTheHand::Worst::see(double other, const Result& result) {
-  if (where.empty() || other > value) *this = {other, fmt::format("`{}` in {}", result.fault, result.situation)};
+  if (where.empty() || other > value)
+    *this = {other, fmt::format("`{}` in {}", result.fault.name(), name_of(result.situation))};
 }
 
 AtTheHand::AtTheHand(const Groups& groups, const std::vector<CaseFault>& faults) {
   for (const CaseSituation situation : situations) {
     if (!is_active(situation)) continue;
     for (const CaseFault& fault : faults) {
-      const auto* results = fault.deed == Deed::fast_hand ? nullptr : find(groups, fault.name(), situation);
+      const auto* results = fault.deed == Deed::fast_hand ? nullptr : find(groups, fault, situation);
       if (results == nullptr) continue;
       for (const Result& r : *results) {
         if (!r.error.empty()) continue;
@@ -66,15 +67,16 @@ Section above_limit(const Groups& groups, const std::vector<CaseFault>& faults) 
   std::size_t findings = 0;
   for (const CaseFault& fault : faults)
     for (const CaseSituation situation : situations) {
-      const auto* results = find(groups, fault.name(), situation);
+      const auto* results = find(groups, fault, situation);
       if (results == nullptr || fault.deed == Deed::fast_hand || !is_active(situation)) continue;
       const Summary s = summarise(*results);
       const double tolerated_N = tolerated_part_of_limit * force_limit_N(*results);
       for (const Result& r : *results)
         if (r.peak_force_in_use_N.value_or(0.0) > tolerated_N) {
           ++findings;
-          rows += fmt::format("| `{}` | {}, continued use | {:.1f} | - | - | {} | - |\n", r.fault, name_of(situation),
-                              *r.peak_force_in_use_N, r.noticed_in_use_as.empty() ? "-" : r.noticed_in_use_as);
+          rows += fmt::format("| `{}` | {}, continued use | {:.1f} | - | - | {} | - |\n", r.fault.name(),
+                              name_of(situation), *r.peak_force_in_use_N,
+                              r.noticed_in_use_as.by == NoticedInUse::By::nothing ? "-" : name_of(r.noticed_in_use_as));
         }
       if (s.peak_force_N <= tolerated_N) continue;
       ++findings;
@@ -100,8 +102,8 @@ Section switched_on(std::span<const Result> results) {
   for (const Result& result : results) {
     if (!result.error.empty() || !result.bridges_went_on) continue;
     ++findings;
-    rows += fmt::format("| {} | `{}` {} {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", result.number, result.fault,
-                        result.situation, result.phase, result.peak_force_N, 1e3 * result.energy_J,
+    rows += fmt::format("| {} | `{}` {} {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", result.number, result.fault.name(),
+                        name_of(result.situation), result.phase, result.peak_force_N, 1e3 * result.energy_J,
                         1e3 * result.travel_m, fault_text(result).empty() ? "-" : fault_text(result));
   }
   const std::string heading = "\n## Bridges that switched on unexpectedly\n\n";
@@ -117,7 +119,6 @@ Section switched_on(std::span<const Result> results) {
 std::string fast_hand(std::span<const Result> results) {
   double with_N = 0, without_N = 0;
   unsigned with = 0, without = 0, reported = 0;
-  const std::string_view over_speed = protocol::info(protocol::Fault::over_speed).name;
   for (const Result& result : results) {
     if (!result.error.empty() || !is_flung(result)) continue;
     if (!result.bridges_were_on || is_testing(result)) {
@@ -126,7 +127,7 @@ std::string fast_hand(std::span<const Result> results) {
     } else {
       ++with;
       with_N = std::max(with_N, result.peak_force_N);
-      reported += result.detected_as == over_speed;
+      reported += result.detected_as == protocol::Fault::over_speed;
     }
   }
   std::string text = fmt::format(
@@ -140,7 +141,7 @@ std::string fast_hand(std::span<const Result> results) {
   if (with > 0)
     text += fmt::format(
         " With the force on, the force on the hand was up to {:.2f} N, and `{}` was reported in {} of {} cases.",
-        with_N, over_speed, reported, with);
+        with_N, protocol::info(protocol::Fault::over_speed).name, reported, with);
   return text + (with + without == 0 ? " No such case was run.\n" : "\n");
 }
 

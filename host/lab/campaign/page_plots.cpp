@@ -18,11 +18,17 @@ bool was_driven(const Result& result) {
   return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
 }
 
+bool is_of_wires(const CaseFault& fault) {
+  if (!fault.fault) return false;
+  const auto place = protocol::info(*fault.fault).place;
+  return place == protocol::InjectionPlace::wire || place == protocol::InjectionPlace::wires;
+}
+
 /// Largest forces on the hand without a fault, by situation.
-std::map<std::string, double> fault_free_forces_N(std::span<const Result> results) {
-  std::map<std::string, double> forces_N;
+std::map<CaseSituation, double> fault_free_forces_N(std::span<const Result> results) {
+  std::map<CaseSituation, double> forces_N;
   for (const Result& result : results)
-    if (was_driven(result) && result.fault == "none")
+    if (was_driven(result) && result.fault.is_fault_free())
       forces_N[result.situation] = std::max(forces_N[result.situation], result.peak_force_N);
   return forces_N;
 }
@@ -54,15 +60,15 @@ std::string off_plot(std::span<const Result> results) {
   bars.push_back({"stayed on"});
   unsigned wires = 0;
   for (const Result& result : results) {
-    if (!was_driven(result) || result.fault == "none") continue;
+    if (!was_driven(result) || result.fault.is_fault_free()) continue;
     if (result.off_after_s) {
       const auto bin = std::ranges::lower_bound(limits, *result.off_after_s / control_period_s) - std::begin(limits);
       ++bars[static_cast<std::size_t>(bin)].count;
     } else {
       ++bars.back().count;
-      if (!is_unnoticed(result) || !result.noticed_in_use_as.empty()) continue;
+      if (!is_unnoticed(result) || result.noticed_in_use_as.by != NoticedInUse::By::nothing) continue;
       ++bars.back().quiet;
-      wires += result.fault.starts_with("wire");
+      wires += is_of_wires(result.fault);
     }
   }
   const unsigned undetected = bars.back().quiet;
@@ -91,7 +97,7 @@ std::string force_plot(std::span<const Result> results) {
   const auto fault_free_N = fault_free_forces_N(results);
   bool all_compared = true;
   for (const Result& result : results) {
-    if (!was_driven(result) || result.fault == "none") continue;
+    if (!was_driven(result) || result.fault.is_fault_free()) continue;
     Bar& bar = bars[static_cast<std::size_t>(result.peak_force_N / width_N)];
     ++bar.count;
     const auto without = fault_free_N.find(result.situation);
@@ -102,8 +108,9 @@ std::string force_plot(std::span<const Result> results) {
   }
   std::string felt_without;
   for (const CaseSituation situation : situations)
-    if (const auto without = fault_free_N.find(std::string(name_of(situation))); without != fault_free_N.end())
-      felt_without += fmt::format("{}{} {:.1f} N", felt_without.empty() ? "" : ", ", without->first, without->second);
+    if (const auto without = fault_free_N.find(situation); without != fault_free_N.end())
+      felt_without +=
+          fmt::format("{}{} {:.1f} N", felt_without.empty() ? "" : ", ", name_of(situation), without->second);
   return svg_of(
       {.title = "Simulation: largest force on the hand after a fault, cases with the force on",
        .axis = "peak force at the hand, N",

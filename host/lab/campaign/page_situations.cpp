@@ -52,8 +52,8 @@ Section not_run(std::span<const Result> results) {
   for (const Result& result : results)
     if (!result.error.empty()) {
       ++findings;
-      rows += fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault, result.situation, result.phase,
-                          result.error);
+      rows += fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault.name(), name_of(result.situation),
+                          result.phase, result.error);
     }
   if (rows.empty()) return {};
   return {
@@ -70,7 +70,7 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
         "recovery "
         "|\n| --- | --- | --- | --- | --- | --- | --- |\n";
     for (const CaseFault& fault : faults)
-      if (const auto* results = find(groups, fault.name(), situation)) {
+      if (const auto* results = find(groups, fault, situation)) {
         const Summary summary = summarise(*results);
         if (summary.cases > 0) text += row(fault.name(), summary);
       }

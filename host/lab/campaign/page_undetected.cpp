@@ -34,7 +34,7 @@ class InUse {
       return;
     }
     ++noticed_;
-    names_.insert(result.noticed_in_use_as);
+    names_.insert(name_of(result.noticed_in_use_as));
     after_s_ = std::max(after_s_, *result.noticed_in_use_s);
   }
   unsigned used() const { return used_; }
@@ -63,13 +63,13 @@ class InUse {
   unsigned used_ = 0, not_used_ = 0, noticed_ = 0;
   double peak_N_ = 0, after_s_ = 0;
   std::optional<double> more_J_;
-  std::set<std::string> names_;
+  std::set<std::string_view> names_;
 };
 
 InUse healthy_in_use(const Groups& groups) {
   InUse healthy;
   for (const CaseSituation situation : situations)
-    if (const auto* results = find(groups, "none", situation))
+    if (const auto* results = find(groups, CaseFault{}, situation))
       for (const Result& result : *results) healthy.see(result, &result);
   return healthy;
 }
@@ -79,7 +79,7 @@ InUse healthy_in_use(const Groups& groups) {
 /// affected.
 std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
                            bool (*counts)(CaseSituation, const Result&)) {
-  const auto* results = find(groups, fault.name(), situation);
+  const auto* results = find(groups, fault, situation);
   if (results == nullptr) return "";
   const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
   const auto such =
@@ -91,7 +91,7 @@ std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSit
     std::vector<unsigned> numbers;
     for (const unsigned number : {1u, 2u, 3u})
       if (std::ranges::any_of(*results, [&](const Result& r) {
-            return r.error.empty() && r.fault == at_another(fault, number).name() && counts(situation, r);
+            return r.error.empty() && r.fault == at_another(fault, number) && counts(situation, r);
           }))
         numbers.push_back(number);
     if (numbers.size() < 3) at = fmt::format(", at {}", fmt::join(numbers, " and "));
@@ -126,12 +126,13 @@ bool was_off_unreported(CaseSituation situation, const Result& result) {
 
 /// Returns the faults that were reported only after their causes were removed.
 std::string reported_later(const Groups& groups, const CaseFault& fault) {
-  std::set<std::string> names;
+  std::set<std::string_view> names;
   for (const CaseSituation situation : situations)
-    if (const auto* results = find(groups, fault.name(), situation))
+    if (const auto* results = find(groups, fault, situation))
       for (const Result& result : *results)
-        if (result.error.empty() && went_off_unreported(situation, result) && !result.fault_on_healing.empty())
-          names.insert(result.fault_on_healing);
+        if (result.error.empty() && went_off_unreported(situation, result) &&
+            result.fault_on_healing != protocol::Fault::none)
+          names.insert(name_of_reported(result.fault_on_healing));
   return names.empty() ? "-" : fmt::format("{}", fmt::join(names, "; "));
 }
 
@@ -146,7 +147,7 @@ Undetected undetected_with_force(const Groups& groups, const std::vector<CaseFau
     if (where.empty()) continue;
     InUse in_use;
     for (const CaseSituation situation : situations)
-      if (const auto* results = find(groups, fault.name(), situation))
+      if (const auto* results = find(groups, fault, situation))
         for (const Result& result : *results)
           if (stayed_on_unreported(situation, result)) in_use.see(result, fault_free(groups, situation, result.phase));
     ++findings;

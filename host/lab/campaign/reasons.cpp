@@ -7,6 +7,8 @@
 
 #include "boards/stm32f405/core/exception_numbers.hpp"
 
+#include "host/lab/campaign/wires.hpp"
+
 namespace inkwell::campaign {
 
 using protocol::InjectedFault;
@@ -14,27 +16,33 @@ using protocol::InjectedFault;
 namespace {
 
 /// Reason why a fault of a wire may stay undetected, by the function of the wire.
-std::string_view reason_of_wire(std::string_view wire) {
-  if (wire.starts_with("encoders"))
-    return "A constant encoder signal is detected only when the joint or the force changes: the count then alternates, "
-           "or the motor check reports missing motion.";
-  if (wire.starts_with("bridges"))
-    return "The motor check needs a requested current. The leg levels are checked only while the bridges are off.";
-  if (wire.starts_with("bridge_fault"))
-    return "The wire has the level of healthy bridges. The next self-test detects a broken wire, but not a short to "
-           "the supply.";
-  if (wire == "bridge_enable") return "Wire and microcontroller pin have the same level as with the force on.";
-  if (wire == "bridge_heartbeat") return "No reason is known: without the heartbeat the bridges are off.";
-  if (wire == "bridge_hold") return "The wire has the same level as with the bridges on.";
-  if (wire.starts_with("motor_current"))
-    return "The reading stays near the requested current, or the resulting motor voltage stays within the tolerance of "
-           "a healthy motor.";
-  if (wire.starts_with("gimbal"))
-    return "Only the user's force law can use the stylus angles. At the end of its track, a healthy potentiometer "
-           "reads the same value. Only the age of the readings is monitored. The next self-test detects a reading at "
-           "the end of the track.";
-  if (wire == "supply") return "The wire shows a valid supply voltage.";
-  if (wire == "usb_supply") return "The wire has the same level as with the cable connected.";
+std::string_view reason_of_wire(Wire wire) {
+  switch (wire) {
+    case Wire::encoder:
+      return "A constant encoder signal is detected only when the joint or the force changes: the count then "
+             "alternates, or the motor check reports missing motion.";
+    case Wire::bridge_leg:
+      return "The motor check needs a requested current. The leg levels are checked only while the bridges are off.";
+    case Wire::bridge_fault_tim1:
+    case Wire::bridge_fault_tim8:
+      return "The wire has the level of healthy bridges. The next self-test detects a broken wire, but not a short to "
+             "the supply.";
+    case Wire::bridge_enable: return "Wire and microcontroller pin have the same level as with the force on.";
+    case Wire::bridge_heartbeat: return "No reason is known: without the heartbeat the bridges are off.";
+    case Wire::bridge_hold: return "The wire has the same level as with the bridges on.";
+    case Wire::motor_current:
+      return "The reading stays near the requested current, or the resulting motor voltage stays within the tolerance "
+             "of a healthy motor.";
+    case Wire::gimbal:
+      return "Only the user's force law can use the stylus angles. At the end of its track, a healthy potentiometer "
+             "reads the same value. Only the age of the readings is monitored. The next self-test detects a reading at "
+             "the end of the track.";
+    case Wire::supply: return "The wire shows a valid supply voltage.";
+    case Wire::usb_supply: return "The wire has the same level as with the cable connected.";
+    case Wire::button:
+    case Wire::inkwell_switch:
+    case Wire::other: break;
+  }
   return "A faulty switch wire looks like a released or pressed switch. The inkwell switch is checked only for a "
          "closed contact outside the inkwell.";
 }
@@ -210,7 +218,7 @@ bool is_tested_by_pulses(const CaseFault& put_in) {
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
     case InjectedFault::wires_shorted:
-      return put_in.of.starts_with("bridges") || put_in.of.starts_with("motor_current");
+      return wire_of(put_in.of) == Wire::bridge_leg || wire_of(put_in.of) == Wire::motor_current;
     case InjectedFault::shunt_gain:
     case InjectedFault::shunt_frozen:
     case InjectedFault::motor_open:
@@ -222,29 +230,41 @@ bool is_tested_by_pulses(const CaseFault& put_in) {
 }
 
 /// Reason why a fault of a wire may stay undetected while the bridges are off.
-std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
-  if (wire.starts_with("encoders"))
-    return "The hand keeps the joint stationary. With a reference, a constant encoder signal is detected by "
-           "alternating counts when the joint turns.";
-  if (wire.starts_with("bridges"))
-    return "The leg is low, which is correct while the bridges are off. The next self-test detects the fault, or the "
-           "motor check once a current is requested.";
-  if (wire == "bridge_fault_tim8" && fault == InjectedFault::wire_low) return break_of_tim8;
-  if (wire == "bridge_enable")
-    return "The microcontroller pin has the correct level. A low level at the bridges is detected at the first "
-           "heartbeat. With a high level, the bridges still switch off when the heartbeat stops.";
-  if (wire == "bridge_heartbeat")
-    return "The wire is low, which is correct while the bridges are off. The fault is detected at the first heartbeat.";
-  if (wire == "bridge_hold")
-    return "The wire is low, which is correct while the bridges are off. The fault is detected at the first heartbeat.";
-  if (wire.starts_with("motor_current"))
-    return "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check once "
-           "a current is requested.";
-  if (wire == "usb_supply" && (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low))
-    return no_force_to_lose;
-  if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
-    return "Without a reference, the wire looks like a stylus in the inkwell, so the board references the arm at a "
-           "wrong position. During a self-test or another fault, the reference is cleared without a fault.";
+std::string_view reason_of_idle_wire(InjectedFault fault, Wire wire) {
+  switch (wire) {
+    case Wire::encoder:
+      return "The hand keeps the joint stationary. With a reference, a constant encoder signal is detected by "
+             "alternating counts when the joint turns.";
+    case Wire::bridge_leg:
+      return "The leg is low, which is correct while the bridges are off. The next self-test detects the fault, or the "
+             "motor check once a current is requested.";
+    case Wire::bridge_fault_tim8:
+      if (fault == InjectedFault::wire_low) return break_of_tim8;
+      break;
+    case Wire::bridge_enable:
+      return "The microcontroller pin has the correct level. A low level at the bridges is detected at the first "
+             "heartbeat. With a high level, the bridges still switch off when the heartbeat stops.";
+    case Wire::bridge_heartbeat:
+    case Wire::bridge_hold:
+      return "The wire is low, which is correct while the bridges are off. The fault is detected at the first "
+             "heartbeat.";
+    case Wire::motor_current:
+      return "No current flows, and the sensor reads zero. The next self-test detects the fault, or the motor check "
+             "once a current is requested.";
+    case Wire::usb_supply:
+      if (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low) return no_force_to_lose;
+      break;
+    case Wire::inkwell_switch:
+      if (fault == InjectedFault::wire_low)
+        return "Without a reference, the wire looks like a stylus in the inkwell, so the board references the arm at a "
+               "wrong position. During a self-test or another fault, the reference is cleared without a fault.";
+      break;
+    case Wire::bridge_fault_tim1:
+    case Wire::gimbal:
+    case Wire::supply:
+    case Wire::button:
+    case Wire::other: break;
+  }
   return reason_of_wire(wire);
 }
 
@@ -253,17 +273,16 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
 std::string_view reason_with_force(const CaseFault& put_in) {
   if (put_in.deed == Deed::fast_hand) return "No reason is known: the speed is checked in each control period.";
   if (put_in.deed == Deed::bus_suspended) return host_is_missed;
-  const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
-    case InjectedFault::wire_frozen: return reason_of_wire(of);
+    case InjectedFault::wire_frozen: return reason_of_wire(wire_of(put_in.of));
     case InjectedFault::exception_lost:
-      return reason_of_exception(of,
+      return reason_of_exception(put_in.of,
                                  "No reason is known: the heartbeat and the watchdog depend on the control interrupt.");
     case InjectedFault::exception_late:
-      return reason_of_exception(of, "The delay is shorter than the delay that the firmware detects.");
+      return reason_of_exception(put_in.of, "The delay is shorter than the delay that the firmware detects.");
     default: return reason_in(reasons_with_force, *put_in.fault).value_or("");
   }
 }
@@ -272,7 +291,6 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
   if (put_in.deed == Deed::fast_hand) return "Without a force, the hand speed is not limited.";
   if (put_in.deed == Deed::bus_suspended) return no_force_to_lose;
   const InjectedFault fault = *put_in.fault;
-  const std::string_view of = put_in.of;
   const bool is_starting = situation == CaseSituation::starting;
   if (is_tested_by_pulses(put_in) && (is_starting || situation == CaseSituation::testing)) return pulses_were_over;
   if (const auto reason = reason_in(reasons_without_force, fault)) return *reason;
@@ -280,9 +298,9 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
-    case InjectedFault::wire_frozen: return reason_of_idle_wire(fault, of);
+    case InjectedFault::wire_frozen: return reason_of_idle_wire(fault, wire_of(put_in.of));
     case InjectedFault::wire_spikes:
-      if (of == "bridge_fault_tim8") return break_of_tim8;
+      if (wire_of(put_in.of) == Wire::bridge_fault_tim8) return break_of_tim8;
       return reason_with_force(put_in);
     case InjectedFault::supply_spike:
       if (situation != CaseSituation::fault && situation != CaseSituation::update) return reason_with_force(put_in);
@@ -308,13 +326,12 @@ std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situat
   if (put_in.deed == Deed::fast_hand) return unknown;
   const std::string_view usb_gone = situation == CaseSituation::landing ? falls_anyway : unknown;
   if (put_in.deed == Deed::bus_suspended) return usb_gone;
-  const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
-      if (of == "usb_supply") return usb_gone;
+      if (wire_of(put_in.of) == Wire::usb_supply) return usb_gone;
       break;
     case InjectedFault::logic_sag: return chip_is_frozen;
     case InjectedFault::crystal_drift:

@@ -27,7 +27,80 @@ struct nlohmann::adl_serializer<std::optional<double>> {
   }
 };
 
+/// The name, or an empty string for Fault::none.
+template <>
+struct nlohmann::adl_serializer<inkwell::protocol::Fault> {
+  static void to_json(json& out, inkwell::protocol::Fault fault) { out = inkwell::campaign::name_of_reported(fault); }
+  static void from_json(const json& in, inkwell::protocol::Fault& fault) {
+    const auto& name = in.get_ref<const std::string&>();
+    const auto row = std::ranges::find(inkwell::protocol::fault_table, name, &inkwell::protocol::CodeInfo::name);
+    if (!name.empty() && row == inkwell::protocol::fault_table.end())
+      throw inkwell::device::Error(
+          fmt::format("This is no result of a case by this version: the firmware has no fault `{}`. Remove it, and run "
+                      "the case again.",
+                      name));
+    fault = name.empty() ? inkwell::protocol::Fault::none : static_cast<inkwell::protocol::Fault>(row->code);
+  }
+};
+
 namespace inkwell::campaign {
+namespace {
+
+constexpr std::string_view name_of_restart = "restart", name_of_force_off = "force off";
+
+}  // namespace
+
+static void to_json(nlohmann::json& out, const CaseFault& fault) { out = fault.name(); }
+static void from_json(const nlohmann::json& in, CaseFault& fault) {
+  const auto& name = in.get_ref<const std::string&>();
+  const auto found = find_fault(name);
+  if (!found)
+    throw device::Error(
+        fmt::format("This is the result of the fault `{}`, which is in no case of this version. Remove it, and run the "
+                    "missing cases.",
+                    name));
+  fault = *found;
+}
+
+static void to_json(nlohmann::json& out, CaseSituation situation) { out = name_of(situation); }
+static void from_json(const nlohmann::json& in, CaseSituation& situation) {
+  const auto& name = in.get_ref<const std::string&>();
+  const auto found = find_situation(name);
+  if (!found)
+    throw device::Error(
+        fmt::format("This is the result of the situation `{}`, which is in no case of this version. Remove it, and run "
+                    "the missing cases.",
+                    name));
+  situation = *found;
+}
+
+static void to_json(nlohmann::json& out, const NoticedInUse& noticed) { out = name_of(noticed); }
+static void from_json(const nlohmann::json& in, NoticedInUse& noticed) {
+  using enum NoticedInUse::By;
+  const auto& name = in.get_ref<const std::string&>();
+  noticed = {};
+  if (name == name_of_restart)
+    noticed.by = restart;
+  else if (name == name_of_force_off)
+    noticed.by = force_off;
+  else if (!name.empty())
+    noticed = {NoticedInUse::By::fault, in.get<protocol::Fault>()};
+}
+
+static void to_json(nlohmann::json& out, Recovery recovery) { out = name_of(recovery); }
+static void from_json(const nlohmann::json& in, Recovery& recovery) {
+  using enum Recovery;
+  const auto& name = in.get_ref<const std::string&>();
+  for (const Recovery each : {unknown, none_needed, clear_fault, force_on_again, board_reset, not_recovered})
+    if (name_of(each) == name) {
+      recovery = each;
+      return;
+    }
+  throw device::Error(
+      fmt::format("This is no result of a case by this version: there is no recovery `{}`. Remove it, and run the case "
+                  "again.",
+                  name));
+}
 
 NLOHMANN_JSON_SERIALIZE_ENUM(FirstFault, {{FirstFault::none, "none"},
                                           {FirstFault::reported, "told"},
@@ -53,17 +126,44 @@ void require_counts(const nlohmann::json& result) {
 
 }  // namespace
 
+std::string_view name_of(Recovery recovery) {
+  switch (recovery) {
+    case Recovery::unknown: return "";
+    case Recovery::none_needed: return "none needed";
+    case Recovery::clear_fault: return "clear_fault";
+    case Recovery::force_on_again: return "force on again";
+    case Recovery::board_reset: return "board reset";
+    case Recovery::not_recovered: return "not recovered";
+  }
+  return "";
+}
+
+std::string_view name_of(const NoticedInUse& noticed) {
+  switch (noticed.by) {
+    case NoticedInUse::By::nothing: return "";
+    case NoticedInUse::By::fault: return protocol::info(noticed.fault).name;
+    case NoticedInUse::By::restart: return name_of_restart;
+    case NoticedInUse::By::force_off: return name_of_force_off;
+  }
+  return "";
+}
+
+std::string_view name_of_reported(protocol::Fault fault) {
+  return fault == protocol::Fault::none ? std::string_view() : protocol::info(fault).name;
+}
+
 bool is_detected(const Result& result) {
-  return !result.detected_as.empty() || !result.told_once_cleared.empty() || result.restarts > 0;
+  return result.detected_as != protocol::Fault::none || result.told_once_cleared != protocol::Fault::none ||
+         result.restarts > 0;
 }
 
 bool is_unnoticed(const Result& result) { return !is_detected(result) && !result.off_after_s; }
 
 std::string fault_text(const Result& result) {
   std::vector<std::string_view> parts;
-  const std::string later = result.told_once_cleared + " after clearing";
-  if (!result.detected_as.empty()) parts.push_back(result.detected_as);
-  if (!result.told_once_cleared.empty()) parts.push_back(later);
+  const std::string later = fmt::format("{} after clearing", name_of_reported(result.told_once_cleared));
+  if (result.detected_as != protocol::Fault::none) parts.push_back(name_of_reported(result.detected_as));
+  if (result.told_once_cleared != protocol::Fault::none) parts.push_back(later);
   if (result.restarts > 0) parts.push_back("restart");
   if (result.locked_up) parts.push_back("lock-up");
   return fmt::format("{}", fmt::join(parts, ", "));
@@ -110,7 +210,7 @@ std::vector<Result> load_all(const std::filesystem::path& directory) {
     try {
       results.push_back(parse_result(text));
       const Result& result = results.back();
-      const std::string name = fmt::format("{} {} {}", result.fault, result.situation, result.phase);
+      const std::string name = Case{result.number, result.fault, result.situation, result.phase}.name();
       if (result.number == 0 || result.number > cases.size() || cases[result.number - 1].name() != name)
         throw device::Error(
             fmt::format("This is the result of `{}`, which is no case of that number in this version. Remove it, and "

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/lab/campaign/cases.hpp"
+#include "protocol/faults.hpp"
 
 namespace inkwell::campaign {
 
@@ -19,10 +21,38 @@ enum class FirstFault : std::uint8_t {
   lost,
 };
 
+/// Action that restored the force.
+enum class Recovery : std::uint8_t {
+  unknown,  ///< the case could not be run
+  none_needed,
+  clear_fault,
+  force_on_again,
+  board_reset,
+  not_recovered,
+};
+/// Returns the wording of files and pages; empty for Recovery::unknown.
+std::string_view name_of(Recovery recovery);
+
+/// Detection during continued use of the arm.
+struct NoticedInUse {
+  enum class By : std::uint8_t { nothing, fault, restart, force_off };
+  By by = By::nothing;
+  protocol::Fault fault = protocol::Fault::none;  ///< with By::fault
+
+  bool operator==(const NoticedInUse&) const = default;
+};
+/// Returns the name of the fault, `restart` or `force off`; empty if nothing was noticed.
+std::string_view name_of(const NoticedInUse& noticed);
+
+/// Returns the name of a reported fault; empty for Fault::none.
+std::string_view name_of_reported(protocol::Fault fault);
+
 struct Result {
+  using Fault = protocol::Fault;
+
   unsigned number = 0;
-  std::string fault;  ///< CaseFault::name()
-  std::string situation;
+  CaseFault fault;
+  CaseSituation situation = CaseSituation::unreferenced;
   unsigned phase = 1;
   std::string error;  ///< reason why the case could not be run; the other members are invalid then
 
@@ -31,24 +61,24 @@ struct Result {
   bool bridges_were_on = false;
   std::optional<double> off_after_s;  ///< std::nullopt: the bridges were off, or stayed on
   bool bridges_went_on = false;       ///< the bridges were switched on, although they were off at the injection
-  std::string detected_as;            ///< name of the firmware's fault; empty if none
-  std::string fault_on_healing;       ///< fault reported only after the cause was removed
-  std::string told_before;            ///< fault reported at the time of the injection; empty if none
+  Fault detected_as = Fault::none;
+  Fault fault_on_healing = Fault::none;  ///< fault reported only after the cause was removed
+  Fault told_before = Fault::none;       ///< fault reported at the time of the injection
   FirstFault first_fault = FirstFault::none;
-  std::string told_once_cleared;  ///< fault reported after the earlier fault was cleared, with the cause still present
-  unsigned restarts = 0;          ///< in addition to the restarts of the situation
+  Fault told_once_cleared =
+      Fault::none;        ///< reported after the earlier fault was cleared, with the cause still present
+  unsigned restarts = 0;  ///< in addition to the restarts of the situation
   bool locked_up = false;
   bool missed_boot_loader = false;  ///< the boot loader was requested but does not run at the end
 
   double force_limit_N = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the injection
-  /// Name of the fault reported during continued use, if no fault was reported before; empty if none.
-  std::string noticed_in_use_as;
-  std::optional<double> noticed_in_use_s;     ///< time since the start of the use
-  std::optional<double> peak_force_in_use_N;  ///< at the hand; std::nullopt without continued use
-  std::optional<double> energy_in_use_J;      ///< delivered to the hand
-  std::string recovery;                       ///< action that restored the force, in the wording of the page
-  std::optional<double> position_error_m;     ///< error of the device's position at the end
+  NoticedInUse noticed_in_use_as;                       ///< if no fault was reported before
+  std::optional<double> noticed_in_use_s;               ///< time since the start of the use
+  std::optional<double> peak_force_in_use_N;            ///< at the hand; std::nullopt without continued use
+  std::optional<double> energy_in_use_J;                ///< delivered to the hand
+  Recovery recovery = Recovery::unknown;
+  std::optional<double> position_error_m;  ///< error of the device's position at the end
 
   bool operator==(const Result&) const = default;
 };
@@ -61,7 +91,7 @@ bool is_unnoticed(const Result& result);
 /// Reported faults, restarts and a lock-up; empty if none.
 std::string fault_text(const Result& result);
 
-/// A JSON object with a member for each field, and a line feed.
+/// A JSON object with a member for each field, and a line feed. Faults, situations and actions have names.
 std::string text_of(const Result& result);
 /// Throws device::Error if the text is not a result.
 Result parse_result(const std::string& text);

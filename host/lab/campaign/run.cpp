@@ -238,10 +238,9 @@ void observe(BoardRun& board, const Case& the_case, const ParameterSet& paramete
 }
 
 /// An earlier fault does not count.
-void note_fault(const BoardRun& board, const Result& result, std::string& name) {
-  if (!name.empty() || !board.is(State::fault)) return;
-  const std::string_view reported_name = protocol::info(board.pose()->fault).name;
-  if (reported_name != result.told_before) name = reported_name;
+void note_fault(const BoardRun& board, const Result& result, protocol::Fault& fault) {
+  if (fault != protocol::Fault::none || !board.is(State::fault)) return;
+  if (board.pose()->fault != result.told_before) fault = board.pose()->fault;
 }
 
 /// Returns FirstFault::none if the board does not answer.
@@ -317,15 +316,16 @@ void recover(BoardRun& board, const Case& the_case, bool could_report, Result& r
   board.run(0.05);
   if (the_case.situation == CaseSituation::fault && result.first_fault == FirstFault::none && board.connected())
     result.first_fault = outcome_of_first_fault(board, result.restarts > 0);
-  if (result.detected_as.empty() && result.told_once_cleared.empty() && result.noticed_in_use_as.empty())
+  if (result.detected_as == protocol::Fault::none && result.told_once_cleared == protocol::Fault::none &&
+      result.noticed_in_use_as.by == NoticedInUse::By::nothing)
     note_fault(board, result, could_report ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
   const bool was_fault = board.is(State::fault);
   if (tries_to_work(board)) {
-    result.recovery = was_fault ? "clear_fault" : stayed ? "none needed" : "force on again";
+    result.recovery = was_fault ? Recovery::clear_fault : stayed ? Recovery::none_needed : Recovery::force_on_again;
   } else {
     board.reset();
-    result.recovery = tries_to_work(board) ? "board reset" : "not recovered";
+    result.recovery = tries_to_work(board) ? Recovery::board_reset : Recovery::not_recovered;
   }
   if (!board.pose() || !board.force_is_on()) return;
   const Vector3 true_m = board.true_position_m();
@@ -338,10 +338,8 @@ void recover(BoardRun& board, const Case& the_case, bool could_report, Result& r
 }  // namespace
 
 Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
-  Result result{.number = the_case.number,
-                .fault = the_case.fault.name(),
-                .situation = std::string(name_of(the_case.situation)),
-                .phase = the_case.phase};
+  Result result{
+      .number = the_case.number, .fault = the_case.fault, .situation = the_case.situation, .phase = the_case.phase};
   options.real_time = false;
   options.paused = true;
   options.seconds = longest_case_s;
@@ -360,7 +358,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     board.run(slices_s);
     board.run_exactly(until_fault_s - slices_s);
     expect(the_case.situation != CaseSituation::update || board.is(State::update), "the board left too soon.");
-    if (the_case.situation == CaseSituation::fault) result.told_before = protocol::info(first_fault).name;
+    if (the_case.situation == CaseSituation::fault) result.told_before = first_fault;
     observe(board, the_case, parameters, result);
     const bool could_report = notice(board, the_case, result);
     const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;

@@ -38,9 +38,10 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   board.run(observed_s, false);  // includes the force on the hand during this time
   read_meter();
   if (restarted && !board.connected()) board.connect_after_restart();
-  result.noticed_in_use_as = board.is(protocol::State::fault) ? protocol::info(board.pose()->fault).name
-                             : restarted                      ? "restart"
-                                                              : "force off";
+  if (board.is(protocol::State::fault))
+    result.noticed_in_use_as = {NoticedInUse::By::fault, board.pose()->fault};
+  else
+    result.noticed_in_use_as = {restarted ? NoticedInUse::By::restart : NoticedInUse::By::force_off};
 }
 
 }  // namespace inkwell::campaign

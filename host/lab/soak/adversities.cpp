@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "host/lab/campaign/handling.hpp"
+#include "host/lab/campaign/wires.hpp"
 
 #include "host/lab/soak/bench.hpp"
 
@@ -51,7 +52,7 @@ bool may_lose_counts(const campaign::CaseFault& put_in) {
     case InjectedFault::encoder_stuck:
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip: return true;
-    default: return put_in.of.find("encoders[") != std::string::npos;
+    default: return campaign::wire_of(put_in.of) == campaign::Wire::encoder;
   }
 }
 
@@ -195,7 +196,7 @@ std::string put_fault_in(Bench& bench) {
   const Disturbance disturbance = disturbance_by(*put_in.fault);
   bench.disturb(disturbance);
   const std::string name(protocol::info(*put_in.fault).name);
-  ++bench.sitting.faults_put_in[name];
+  ++bench.sitting.faults_put_in[*put_in.fault];
   if (bench.random.chance(0.5)) bench.move_hand(bench.free_point_m(), bench.random.from(0.15, 0.5));
   bench.board.control().inject({name, put_in.of, put_in.amount, 0.0, put_in.for_s});
   bench.pass(bench.random.from(0.05, 0.8));

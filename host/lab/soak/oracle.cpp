@@ -101,7 +101,7 @@ void Oracle::see(const Snapshot& snapshot) {
 
 void Oracle::note(Press& hardest, double force_N) const {
   if (force_limit_N_ < judged_limit_N || force_N / force_limit_N_ <= hardest.part_of_limit()) return;
-  hardest = {force_N, force_limit_N_, phase_, std::string(info(kind_).name), now_s_};
+  hardest = {force_N, force_limit_N_, phase_, kind_, now_s_};
 }
 
 void Oracle::judge_force(const Snapshot& snapshot) {
@@ -147,7 +147,7 @@ void Oracle::require_report_of(protocol::Conditions faults) {
 
 void Oracle::note_report(Fault fault) {
   reported_.push_back(fault);
-  ++faults_reported_[std::string(protocol::info(fault).name)];
+  ++faults_reported_[fault];
   if (!(allowed_faults_ & protocol::condition(fault)).any())
     complain(Complaint::false_trip, fmt::format("{}", protocol::info(fault).name));
 }
@@ -155,9 +155,8 @@ void Oracle::note_report(Fault fault) {
 void Oracle::complain(Complaint complaint, std::string text) {
   // Only the first complaint of a kind is recorded in each phase.
   for (const Finding& finding : findings_)
-    if (finding.phase == phase_ && finding.complaint == name_of(complaint)) return;
-  findings_.push_back(
-      {phase_, std::string(info(kind_).name), now_s_, std::string(name_of(complaint)), std::move(text)});
+    if (finding.phase == phase_ && finding.complaint == complaint) return;
+  findings_.push_back({phase_, kind_, now_s_, complaint, std::move(text)});
 }
 
 }  // namespace inkwell::soak

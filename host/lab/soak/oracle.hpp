@@ -45,9 +45,9 @@ std::string_view name_of(Complaint complaint);
 
 struct Finding {
   unsigned phase = 0;  ///< from 1
-  std::string kind;    ///< of the phase
+  Kind kind{};         ///< of the phase
   double board_time_s = 0;
-  std::string complaint;
+  Complaint complaint{};
   std::string text;
 };
 
@@ -55,7 +55,7 @@ struct Finding {
 struct Press {
   double force_N = 0, limit_N = 0;
   unsigned phase = 0;  ///< from 1
-  std::string kind;    ///< of the phase
+  Kind kind{};         ///< of the phase
   double board_time_s = 0;
 
   double part_of_limit() const { return limit_N > 0 ? force_N / limit_N : 0.0; }
@@ -134,7 +134,7 @@ class Oracle {
   /// Bus frames without a pose during a disturbance, such as a halted core or a silent host.
   unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
-  const std::map<std::string, unsigned>& faults_reported() const { return faults_reported_; }
+  const std::map<protocol::Fault, unsigned>& faults_reported() const { return faults_reported_; }
 
  private:
   void note_report(protocol::Fault fault);
@@ -168,7 +168,7 @@ class Oracle {
   double peak_motor_force_N_ = 0, longest_interrupt_part_ = 0;
   Press hardest_press_, hardest_press_with_fault_, hardest_press_with_fault_over_ms_;
   unsigned long poses_ = 0, poses_lost_ = 0, poses_kept_back_ = 0;
-  std::map<std::string, unsigned> faults_reported_;
+  std::map<protocol::Fault, unsigned> faults_reported_;
 };
 
 }  // namespace inkwell::soak

@@ -8,16 +8,75 @@
 
 namespace inkwell::soak {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, phase, kind, board_time_s, complaint, text)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Press, force_N, limit_N, phase, kind, board_time_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseResult, number, kind, begin_s, duration_s, what)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Losses, poses, poses_kept_back, scope_samples, wide_scope_samples, program_forces,
-                                   recorded_samples)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sitting, number, board_time_s, phases, findings, faults_put_in, faults_told,
-                                   restarts, peak_motor_force_N, hardest_press, hardest_press_with_fault,
-                                   hardest_press_with_fault_over_ms, longest_interrupt_part, transactions,
-                                   refused_transactions, poses, lost)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Soak, seed, sitting_s, use_s, stopped, sittings)
+namespace {
+
+/// Counts by name, in alphabetical order.
+template <class Of>
+std::map<std::string, unsigned> by_name(const std::map<Of, unsigned>& counts) {
+  std::map<std::string, unsigned> named;
+  for (const auto& [of, count] : counts) named[std::string(protocol::info(of).name)] += count;
+  return named;
+}
+
+}  // namespace
+
+// Only written. Names stand for faults, kinds and complaints.
+static void to_json(nlohmann::json& out, Kind kind) { out = info(kind).name; }
+static void to_json(nlohmann::json& out, Complaint complaint) { out = name_of(complaint); }
+static void to_json(nlohmann::json& out, const Finding& of) {
+  out = {{"phase", of.phase},
+         {"kind", of.kind},
+         {"board_time_s", of.board_time_s},
+         {"complaint", of.complaint},
+         {"text", of.text}};
+}
+static void to_json(nlohmann::json& out, const Press& of) {
+  out = {{"force_N", of.force_N},
+         {"limit_N", of.limit_N},
+         {"phase", of.phase},
+         {"kind", of.kind},
+         {"board_time_s", of.board_time_s}};
+}
+static void to_json(nlohmann::json& out, const PhaseResult& of) {
+  out = {{"number", of.number},
+         {"kind", of.kind},
+         {"begin_s", of.begin_s},
+         {"duration_s", of.duration_s},
+         {"what", of.what}};
+}
+static void to_json(nlohmann::json& out, const Losses& of) {
+  out = {{"poses", of.poses},
+         {"poses_kept_back", of.poses_kept_back},
+         {"scope_samples", of.scope_samples},
+         {"wide_scope_samples", of.wide_scope_samples},
+         {"program_forces", of.program_forces},
+         {"recorded_samples", of.recorded_samples}};
+}
+static void to_json(nlohmann::json& out, const Sitting& of) {
+  out = {{"number", of.number},
+         {"board_time_s", of.board_time_s},
+         {"phases", of.phases},
+         {"findings", of.findings},
+         {"faults_put_in", by_name(of.faults_put_in)},
+         {"faults_told", by_name(of.faults_told)},
+         {"restarts", of.restarts},
+         {"peak_motor_force_N", of.peak_motor_force_N},
+         {"hardest_press", of.hardest_press},
+         {"hardest_press_with_fault", of.hardest_press_with_fault},
+         {"hardest_press_with_fault_over_ms", of.hardest_press_with_fault_over_ms},
+         {"longest_interrupt_part", of.longest_interrupt_part},
+         {"transactions", of.transactions},
+         {"refused_transactions", of.refused_transactions},
+         {"poses", of.poses},
+         {"lost", of.lost}};
+}
+static void to_json(nlohmann::json& out, const Soak& of) {
+  out = {{"seed", of.seed},
+         {"sitting_s", of.sitting_s},
+         {"use_s", of.use_s},
+         {"stopped", of.stopped},
+         {"sittings", of.sittings}};
+}
 
 namespace {
 
@@ -46,36 +105,37 @@ std::string rows_of_press(const Soak& soak, Press Sitting::*which, std::string_v
   const Press& press = (*hardest).*which;
   return row(what, fmt::format("{:.3f}", press.part_of_limit())) +
          fmt::format("    {:.2f} of {:.2f} N in {}.{} ({}) at {:.3f} s\n", press.force_N, press.limit_N,
-                     hardest->number, press.phase, press.kind, press.board_time_s);
+                     hardest->number, press.phase, info(press.kind).name, press.board_time_s);
 }
 
 template <class Which>
 std::string counts_of(const Soak& soak, Which which) {
   std::map<std::string, unsigned> counts;
   for (const Sitting& sitting : soak.sittings)
-    for (const auto& [name, count] : which(sitting)) counts[name] += count;
+    for (const auto& [name, count] : by_name(which(sitting))) counts[name] += count;
   std::string text;
   for (const auto& [name, count] : counts) text += row("  " + name, std::to_string(count));
   return text;
 }
 
-unsigned total(const std::map<std::string, unsigned>& counts) {
+template <class Of>
+unsigned total(const std::map<Of, unsigned>& counts) {
   return std::accumulate(counts.begin(), counts.end(), 0u,
                          [](unsigned sum, const auto& one) { return sum + one.second; });
 }
 
 std::string kinds_of(const Soak& soak) {
   std::string text;
-  for (const KindInfo& kind : kind_table) {
+  for (std::size_t i = 0; i < kind_table.size(); ++i) {
     unsigned phases = 0;
     double time_s = 0;
     for (const Sitting& sitting : soak.sittings)
       for (const PhaseResult& phase : sitting.phases)
-        if (phase.kind == kind.name) {
+        if (phase.kind == static_cast<Kind>(i)) {
           ++phases;
           time_s += phase.duration_s;
         }
-    text += row(fmt::format("  {}", kind.name), fmt::format("{} ({:.0f} s)", phases, time_s));
+    text += row(fmt::format("  {}", kind_table[i].name), fmt::format("{} ({:.0f} s)", phases, time_s));
   }
   return text;
 }
@@ -88,19 +148,18 @@ std::size_t finding_count(const Soak& soak) {
 
 unsigned false_trip_count(const Soak& soak) {
   return sum<unsigned>(soak, [](const Sitting& sitting) {
-    return static_cast<unsigned>(
-        std::ranges::count(sitting.findings, name_of(Complaint::false_trip), &Finding::complaint));
+    return static_cast<unsigned>(std::ranges::count(sitting.findings, Complaint::false_trip, &Finding::complaint));
   });
 }
 
 std::string line_of(const Sitting& sitting, const PhaseResult& phase) {
   return fmt::format("{}.{:<4} {:9.3f} s {:7.3f} s  {:<11} {}\n", sitting.number, phase.number, phase.begin_s,
-                     phase.duration_s, phase.kind, phase.what);
+                     phase.duration_s, info(phase.kind).name, phase.what);
 }
 
 std::string repeat_command(const Soak& soak, unsigned sitting) {
-  return fmt::format("inkwell soak --seed {} --sitting {} --sitting-seconds {} --use-seconds {}", soak.seed, sitting,
-                     soak.sitting_s, soak.use_s);
+  return fmt::format("inkwell-lab soak --seed {} --sitting {} --sitting-seconds {} --use-seconds {}", soak.seed,
+                     sitting, soak.sitting_s, soak.use_s);
 }
 
 std::string table_of(const Soak& soak) {
@@ -144,8 +203,9 @@ std::string table_of(const Soak& soak) {
   text += row("findings", std::to_string(finding_count(soak)));
   for (const Sitting& sitting : soak.sittings)
     for (const Finding& finding : sitting.findings)
-      text += fmt::format("  {} in phase {} ({}) at {:.3f} s: {}\n    again: {}\n", finding.complaint, finding.phase,
-                          finding.kind, finding.board_time_s, finding.text, repeat_command(soak, sitting.number));
+      text += fmt::format("  {} in phase {} ({}) at {:.3f} s: {}\n    again: {}\n", name_of(finding.complaint),
+                          finding.phase, info(finding.kind).name, finding.board_time_s, finding.text,
+                          repeat_command(soak, sitting.number));
   return text;
 }
 

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "host/lab/soak/oracle.hpp"
+#include "protocol/injections.hpp"
 
 namespace inkwell::soak {
 
 struct PhaseResult {
   unsigned number = 0;
-  std::string kind;
+  Kind kind{};
   double begin_s = 0, duration_s = 0;  ///< board time
   std::string what;                    ///< description: injected fault, number of changes
 };
@@ -34,9 +35,9 @@ struct Sitting {
   double board_time_s = 0;
   std::vector<PhaseResult> phases;
   std::vector<Finding> findings;
-  std::map<std::string, unsigned> faults_put_in,
-      faults_told;        ///< by name; faults_told includes faults caused by hand and host
-  unsigned restarts = 0;  ///< including intended restarts and restarts due to faults
+  std::map<protocol::InjectedFault, unsigned> faults_put_in;
+  std::map<protocol::Fault, unsigned> faults_told;  ///< includes faults caused by hand and host
+  unsigned restarts = 0;                            ///< including intended restarts and restarts due to faults
   double peak_motor_force_N = 0;
   Press hardest_press, hardest_press_with_fault, hardest_press_with_fault_over_ms;
   double longest_interrupt_part = 0;  ///< longest control interrupt, as a fraction of its period

@@ -40,7 +40,7 @@ class Run {
   /// Returns false if the board is unusable or the sitting is over.
   bool phase(Kind kind) {
     PhaseResult result{.number = static_cast<unsigned>(bench_.sitting.phases.size() + 1),
-                       .kind = std::string(info(kind).name),
+                       .kind = kind,
                        .begin_s = bench_.oracle.board_time_s()};
     bench_.oracle.begin(result.number, kind);
     bool goes_on = true;
@@ -93,8 +93,8 @@ class Run {
     std::string text;
     const auto& findings = bench_.oracle.findings();
     for (; printed_ < findings.size(); ++printed_)
-      text += fmt::format("    {} at {:.3f} s: {}\n", findings[printed_].complaint, findings[printed_].board_time_s,
-                          findings[printed_].text);
+      text += fmt::format("    {} at {:.3f} s: {}\n", name_of(findings[printed_].complaint),
+                          findings[printed_].board_time_s, findings[printed_].text);
     return text;
   }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <thread>
 
-#include "host/companion/command_line/interrupt.hpp"
+#include "host/client/command_line/interrupt.hpp"
 #include "host/companion/command_line/mark_keys.hpp"
 
 using namespace inkwell::command_line;

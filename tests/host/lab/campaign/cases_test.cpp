@@ -2,12 +2,14 @@
 #include "host/lab/campaign/cases.hpp"
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"
+#include "host/lab/campaign/wires.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <doctest/doctest.h>
@@ -92,14 +94,14 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   const TemporaryDirectory directory;
   Result result = seen("bridge_fault", "wall", 2);
   result.off_after_s = 43e-6;
-  result.detected_as = "bridge_fault";
+  result.detected_as = protocol::Fault::bridge_fault;
   result.peak_force_N = 2.5;
   result.position_error_m = 1e-5;
   result.peak_force_in_use_N = 2.75;
   result.energy_in_use_J = 0.125;
-  result.told_before = "host_silent";
+  result.told_before = protocol::Fault::host_silent;
   result.first_fault = FirstFault::black_box;
-  result.told_once_cleared = "bridge_fault";
+  result.told_once_cleared = protocol::Fault::bridge_fault;
   result.missed_boot_loader = true;
   save(result, directory.path());
   Result other = seen("none", "rest", 1);
@@ -119,11 +121,11 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   CHECK_THROWS_WITH_AS(parse_result("{}"), doctest::Contains("by this version: key 'number' not found. Remove it"),
                        device::Error);
   Result of_another_list = result;
-  of_another_list.fault = "exception_lost:15";
+  of_another_list.fault = *find_fault("exception_lost:14");
   std::ofstream(file_of(directory.path(), 9)) << text_of(of_another_list);
   CHECK_THROWS_WITH_AS(
       load_all(directory.path()),
-      doctest::Contains("case-00009.json: This is the result of `exception_lost:15 wall 2`, which is no case"),
+      doctest::Contains("case-00009.json: This is the result of `exception_lost:14 wall 2`, which is no case"),
       device::Error);
   of_another_list = result;
   of_another_list.number = static_cast<unsigned>(all_cases().size()) + 1;
@@ -152,7 +154,7 @@ TEST_CASE("a fault of the second of three is had at each of them, one of what th
   for (const char* of_none : {"none", "bus_suspended", "fast_hand", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
     CHECK(moved(of_none, 3) == of_none);
   for (const CaseFault& fault : listed)
-    for (const unsigned motor : {1, 2, 3}) CHECK(listed_name(at_another(fault, motor).name()) == fault.name());
+    for (const unsigned motor : {1, 2, 3}) CHECK(listed_fault(at_another(fault, motor)) == fault);
   std::set<std::string> wires;
   for (const auto& use : board::default_board.pin_uses()) wires.emplace(use.name);
   for (const CaseFault& fault : listed) {
@@ -165,7 +167,6 @@ TEST_CASE("a fault of the second of three is had at each of them, one of what th
 TEST_CASE("a result whose counts are no counts is refused with their name") {
   const std::string text = text_of({.number = 7, .phase = 2, .restarts = 1});
   CHECK(parse_result(text).number == 7);
-  CHECK(parse_result(text_of({.number = 7, .fault = "motor_open\x1B[2J:2"})).fault == "motor_open?[2J:2");
   for (const auto& [fault_free, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
                                             {"\"number\": 7", "\"number\": 4294967296"},
                                             {"\"phase\": 2", "\"phase\": -2"},
@@ -177,4 +178,52 @@ TEST_CASE("a result whose counts are no counts is refused with their name") {
     wrong.replace(wrong.find(fault_free), std::string(fault_free).size(), damaged);
     CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains((name + " is ").c_str()), device::Error);
   }
+}
+
+TEST_CASE("a file contains names, and names that this version does not know are refused") {
+  Result result = seen("motor_open:1", "wall", 3);
+  result.detected_as = protocol::Fault::current_jump;
+  result.noticed_in_use_as = {NoticedInUse::By::restart};
+  result.recovery = Recovery::force_on_again;
+  const std::string text = text_of(result);
+  for (const char* member :
+       {"\"fault\": \"motor_open:1\"", "\"situation\": \"wall\"", "\"detected_as\": \"current_jump\"",
+        "\"fault_on_healing\": \"\"", "\"noticed_in_use_as\": \"restart\"", "\"recovery\": \"force on again\""}) {
+    CAPTURE(member);
+    CHECK(text.find(member) != std::string::npos);
+  }
+  CHECK(parse_result(text) == result);
+  for (const auto& [known, unknown, complaint] :
+       {std::tuple{"motor_open:1", "motor_open\\u001B[2J:1", "the fault `motor_open?[2J:1`, which is in no case"},
+        {"\"wall\"", "\"floor\"", "the situation `floor`, which is in no case"},
+        {"\"current_jump\"", "\"current_leap\"", "the firmware has no fault `current_leap`"},
+        {"\"restart\"", "\"nap\"", "the firmware has no fault `nap`"},
+        {"\"force on again\"", "\"coffee\"", "there is no recovery `coffee`"}}) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(known), std::string(known).size(), unknown);
+    CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains(complaint), device::Error);
+  }
+  for (const auto recovery : {Recovery::unknown, Recovery::none_needed, Recovery::clear_fault, Recovery::board_reset,
+                              Recovery::not_recovered}) {
+    result.recovery = recovery;
+    CHECK(parse_result(text_of(result)) == result);
+  }
+  for (const auto& noticed : {NoticedInUse{}, NoticedInUse{NoticedInUse::By::force_off},
+                              NoticedInUse{NoticedInUse::By::fault, protocol::Fault::encoder_wire}}) {
+    result.noticed_in_use_as = noticed;
+    CHECK(parse_result(text_of(result)) == result);
+  }
+}
+
+TEST_CASE("each wire of a case has a function, and wires of host, console and debug probe have none") {
+  for (const auto& use : board::default_board.pin_uses()) {
+    const std::string name(use.name);
+    CAPTURE(name);
+    const bool is_other = name.starts_with("usb_minus") || name.starts_with("usb_plus") ||
+                          name.starts_with("console_") || name.starts_with("debug_") || name == "status_led";
+    CHECK((wire_of(name) == Wire::other) == is_other);
+  }
+  CHECK(wire_of("bridges[1].leg_a+bridges[1].leg_b") == Wire::bridge_leg);
+  CHECK(wire_of("bridge_fault_tim8") == Wire::bridge_fault_tim8);
+  CHECK(wire_of("2") == Wire::other);
 }

@@ -37,7 +37,7 @@ std::string section_of(const std::string& page, const std::string& heading) {
 /// Result of a case in which another fault was reported earlier.
 Result after_first(const std::string& fault, FirstFault first_fault) {
   Result result = seen(fault, "fault", 1);
-  result.told_before = "host_silent";
+  result.told_before = protocol::Fault::host_silent;
   result.first_fault = first_fault;
   return result;
 }
@@ -50,8 +50,8 @@ TEST_CASE("earlier faults are counted by their outcome, and each lost one has a 
          restarted = after_first("core_stalled", FirstFault::black_box),
          lost = after_first("logic_sag", FirstFault::lost), mute = after_first("usb_cut", FirstFault::none),
          failed = after_first("ram_bit", FirstFault::lost);
-  tripped.told_once_cleared = "bridge_fault";
-  restarted.detected_as = "watchdog";
+  tripped.told_once_cleared = protocol::Fault::bridge_fault;
+  restarted.detected_as = protocol::Fault::watchdog;
   failed.error = "The board did not start.";
   CHECK(is_detected(tripped));
   CHECK_FALSE(is_detected(quiet));
@@ -62,12 +62,13 @@ TEST_CASE("earlier faults are counted by their outcome, and each lost one has a 
             "these cases. In 1 cases the board restarted, and its black box contained the fault. After the "
             "first fault was cleared, the injected fault was reported in 1 cases.\n") != std::string::npos);
   const auto row = [](const Result& of, const std::string& what) {
-    return "| " + std::to_string(of.number) + " | `" + of.fault + "` fault 1 | `host_silent` was " + what + ". |";
+    return "| " + std::to_string(of.number) + " | `" + of.fault.name() + "` fault 1 | `host_silent` was " + what +
+           ". |";
   };
   CHECK(section.find(row(lost, "neither reported nor in the black box")) != std::string::npos);
   CHECK(section.find(row(mute, "unknown: no reply")) != std::string::npos);
   for (const Result* each : {&tripped, &quiet, &restarted, &failed})
-    CHECK(section.find("`" + each->fault + "`") == std::string::npos);
+    CHECK(section.find("`" + each->fault.name() + "`") == std::string::npos);
   CHECK(page.find("| `bridge_fault` | bridge_fault after clearing | already off |") != std::string::npos);
   CHECK(section_of(page_of({seen("none", "rest", 1)}), "Second fault").find("No case was run in which") !=
         std::string::npos);
@@ -92,7 +93,7 @@ TEST_CASE(
   tested.bridges_were_on = true;
   tested.peak_force_N = 9.1;
   flung.peak_force_N = 7.65;
-  flung.detected_as = "over_speed";
+  flung.detected_as = protocol::Fault::over_speed;
   flung.off_after_s = 0.15;
   missed.peak_force_N = 7.5;
   failed.error = "The board did not start.";
@@ -116,15 +117,16 @@ TEST_CASE(
 
 TEST_CASE("monitored faults that no case reported are listed with a reason, whenever the others were reported") {
   std::vector<Result> results;
-  const auto report_in = [&](std::string Result::*when, protocol::Fault fault) {
+  const auto report_in = [&](protocol::Fault Result::*when, protocol::Fault fault) {
     results.push_back(seen("bridge_fault", "rest", 1));
-    results.back().*when = protocol::info(fault).name;
+    results.back().*when = fault;
   };
   report_in(&Result::detected_as, protocol::Fault::watchdog);
   report_in(&Result::fault_on_healing, protocol::Fault::heartbeat_missed);
   report_in(&Result::told_before, protocol::Fault::host_silent);
   report_in(&Result::told_once_cleared, protocol::Fault::bridge_wire);
-  report_in(&Result::noticed_in_use_as, protocol::Fault::encoder_wire);
+  results.push_back(seen("bridge_fault", "rest", 1));
+  results.back().noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::encoder_wire};
   const std::string some = section_of(page_of(results), "Faults that no case reported");
   for (const char* name : {"watchdog", "heartbeat_missed", "host_silent", "bridge_wire", "encoder_wire"})
     CHECK(some.find("`" + std::string(name) + "`") == std::string::npos);

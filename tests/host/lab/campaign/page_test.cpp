@@ -24,14 +24,14 @@ using inkwell::tests::TemporaryDirectory;
 
 TEST_CASE("a row shows the worst of three instants") {
   Result a = seen("shunt_high:2", "wall", 1), b = seen("shunt_high:2", "wall", 2), c = seen("shunt_high:2", "wall", 3);
-  a.detected_as = b.detected_as = "over_current";
+  a.detected_as = b.detected_as = protocol::Fault::over_current;
   a.off_after_s = 20e-6;
   b.off_after_s = 90e-6;
   a.peak_force_N = 2.0;
   c.peak_force_N = 3.0;
   b.energy_J = 0.002;
   c.travel_m = 0.004;
-  a.recovery = b.recovery = "clear_fault";
+  a.recovery = b.recovery = Recovery::clear_fault;
   const std::array all{a, b, c};
   const Summary s = summarise(all);
   CHECK(s.cases == 3);
@@ -53,9 +53,9 @@ TEST_CASE("the row of the second part includes the first and third part, and the
   Result first = seen("leg_high:1A", "wall", 3), second = seen("leg_high:2A", "wall", 2),
          third = seen("leg_high:3A", "wall", 2);
   for (Result* each : {&first, &second, &third}) {
-    each->detected_as = "bridge_fault";
+    each->detected_as = protocol::Fault::bridge_fault;
     each->off_after_s = 50e-6;
-    each->recovery = "clear_fault";
+    each->recovery = Recovery::clear_fault;
   }
   third.off_after_s = 90e-6;
   first.peak_force_N = 2.5;
@@ -70,12 +70,12 @@ TEST_CASE("the row of the second part includes the first and third part, and the
 TEST_CASE("the pages contain all figures, all undetected faults and all cases that could not be run") {
   const TemporaryDirectory directory;
   Result quick = seen("bridge_fault", "wall", 1);
-  quick.detected_as = "bridge_fault";
+  quick.detected_as = protocol::Fault::bridge_fault;
   quick.off_after_s = 75e-6;
   quick.peak_force_N = 2.49;
   quick.energy_J = 0.00134;
   quick.travel_m = 0.00436;
-  quick.recovery = "clear_fault";
+  quick.recovery = Recovery::clear_fault;
   Result missed = seen("motor_hot:2", "motion", 2), off = seen("motor_hot:2", "ready", 2);
   missed.peak_force_N = 9.5;
   missed.position_error_m = 0.012;
@@ -122,9 +122,9 @@ TEST_CASE("the summary has one screen, counts faults and links to the details") 
          above = seen("bridge_fault", "wall", 1), lost = seen("bridge_fault", "update", 1);
   undetected.peak_force_in_use_N = revealed.peak_force_in_use_N = 2.0;
   revealed.noticed_in_use_s = 0.5;
-  revealed.noticed_in_use_as = "motor_implausible";
+  revealed.noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::motor_implausible};
   off.off_after_s = 1e-3;
-  above.detected_as = lost.detected_as = "bridge_fault";
+  above.detected_as = lost.detected_as = protocol::Fault::bridge_fault;
   above.peak_force_N = 9.0;
   lost.missed_boot_loader = true;
   const auto page = directory / "results.of.today.md";
@@ -238,7 +238,7 @@ TEST_CASE("the plots have titles, units, a legend and the force limit") {
   };
   Result later = seen("encoder_stuck:2", "wall", 1);
   later.peak_force_N = 2.45;
-  later.noticed_in_use_as = "encoder_implausible";
+  later.noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::encoder_implausible};
   CHECK(count(plots_of({fault_free, later}).first, "undetected: ") == 0);
   const auto [off, force] = plots_of({fault_free, button, hot, quick});
   CHECK(count(off, "in control periods of 50 μs</text>") == 1);

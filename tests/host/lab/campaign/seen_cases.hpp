@@ -31,12 +31,12 @@ inline campaign::Result seen(const std::string& fault, const std::string& situat
   for (const campaign::Case& c : campaign::all_cases())
     if (c.fault.name() == fault && campaign::name_of(c.situation) == situation && c.phase == phase)
       return {.number = c.number,
-              .fault = fault,
-              .situation = situation,
+              .fault = c.fault,
+              .situation = c.situation,
               .phase = phase,
               .bridges_were_on = campaign::is_active(c.situation),
               .force_limit_N = 3.3,
-              .recovery = "none needed"};
+              .recovery = campaign::Recovery::none_needed};
   FAIL("there is no such case: ", fault);
   return {};
 }

@@ -96,10 +96,10 @@ TEST_CASE("undetected faults are listed with their result during use, compared w
   Result stuck = seen("encoder_stuck:2", "rest", 1), stuck_later = seen("encoder_stuck:2", "wall", 2),
          hot = seen("motor_hot:2", "rest", 1), fault_free = seen("none", "rest", 1);
   for (Result* result : {&stuck, &stuck_later, &hot, &fault_free}) result->peak_force_in_use_N = 3.25;
-  stuck.noticed_in_use_as = "encoder_implausible";
+  stuck.noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::encoder_implausible};
   stuck.noticed_in_use_s = 0.9;
   stuck_later.peak_force_in_use_N = 3.4;
-  stuck_later.noticed_in_use_as = "motor_implausible";
+  stuck_later.noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::motor_implausible};
   stuck_later.noticed_in_use_s = 1.75;
   // Only one of the two situations has a fault-free case at the same instant for comparison.
   fault_free.energy_in_use_J = 0.04;
@@ -149,9 +149,9 @@ TEST_CASE("bridges that switched off without a report are listed with the later 
          told = seen("core_halted", "rest", 3), off_before = seen("core_halted", "ready", 1),
          stayed = seen("core_halted", "motion", 1), failed = seen("core_halted", "motion", 2);
   for (Result* result : {&halted, &halted_at_rest, &told, &failed}) result->off_after_s = 1e-6;
-  halted.fault_on_healing = "heartbeat_missed";
-  told.detected_as = "watchdog";
-  told.fault_on_healing = "over_speed";
+  halted.fault_on_healing = protocol::Fault::heartbeat_missed;
+  told.detected_as = protocol::Fault::watchdog;
+  told.fault_on_healing = protocol::Fault::over_speed;
   failed.error = "The board did not start.";
   const std::string row =
       "| `core_halted` | rest (1 of 2), wall | heartbeat_missed | A halted core cannot report a fault.";
@@ -171,7 +171,7 @@ TEST_CASE("self-test pulses do not count as force") {
     results.push_back(seen("motor_hot:2", situation, 1));
   }
   for (Result& result : results) {
-    const bool is_test = result.situation == "testing";
+    const bool is_test = result.situation == CaseSituation::testing;
     result.bridges_were_on = true;
     result.peak_force_N = is_test ? 9.0 : 2.0;
     result.energy_J = is_test ? 0.5 : 0.001;
@@ -202,7 +202,7 @@ TEST_CASE("faults that are undetected without force have a separate table") {
   };
   Result lost = seen("encoder_slip:2=400", "unreferenced", 1), jumped = seen("encoder_slip:2=400", "ready", 1),
          pressed = seen("encoder_slip:2=400", "wall", 1), fault_free = seen("none", "ready", 1);
-  jumped.detected_as = "encoder_implausible";
+  jumped.detected_as = protocol::Fault::encoder_implausible;
   const std::string section = section_of({lost, jumped, pressed, fault_free});
   CHECK(section.find("| `encoder_slip:2=400` | unreferenced | Without a reference, the slip has") != std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
@@ -225,8 +225,8 @@ TEST_CASE("if only some of three equivalent parts are undetected, the page names
   for (const auto& [fault, phase] :
        {std::pair{"leg_slow:2A", 1u}, {"leg_slow:2A", 2u}, {"leg_slow:1A", 3u}, {"leg_slow:3A", 2u}})
     results.push_back(seen(fault, "wall", phase));
-  results[6].detected_as = "motor_implausible";
-  results[0].detected_as = results[3].detected_as = results[4].detected_as = "motor_implausible";
+  results[6].detected_as = protocol::Fault::motor_implausible;
+  results[0].detected_as = results[3].detected_as = results[4].detected_as = protocol::Fault::motor_implausible;
   write_page(results, directory / "campaign.md");
   const std::string text = pages_of(directory / "campaign.md");
   CHECK(text.find("| `motor_open:2` | wall (2 of 3, at 1 and 3) | without use |") != std::string::npos);
@@ -280,14 +280,14 @@ TEST_CASE("each undetected fault has a reason in each of the three tables") {
     write_page(results, directory / "campaign.md");
     text = pages_of(directory / "campaign.md");
     for (const Result& result : results) {
-      CAPTURE(result.fault);
+      CAPTURE(result.fault.name());
       CAPTURE(table.before_reason);
       // The fault has a separate row or shares a row with faults of the same reason.
       std::string reason;
       std::istringstream lines(text);
       for (std::string line; reason.empty() && std::getline(lines, line);) {
         const auto at = line.find("` | " + table.before_reason);
-        if (line.starts_with("| `") && line.find("`" + result.fault + "`") <= at && at != std::string::npos)
+        if (line.starts_with("| `") && line.find("`" + result.fault.name() + "`") <= at && at != std::string::npos)
           reason = line.substr(at + 4 + table.before_reason.size());
       }
       REQUIRE(reason.ends_with(" |"));
@@ -295,7 +295,8 @@ TEST_CASE("each undetected fault has a reason in each of the three tables") {
       CHECK(reason.size() > 20);
       CHECK(reason.ends_with("."));
       // A reason that is valid only with the bridges off is not valid while the force is on.
-      if (result.situation == "rest") CHECK(reason.find("correct while the bridges are off") == std::string::npos);
+      if (result.situation == CaseSituation::rest)
+        CHECK(reason.find("correct while the bridges are off") == std::string::npos);
     }
   }
   CHECK(text.find("`shunt_frozen:2` | rest | without use | - | - | Voltage, reading and speed agree") !=

@@ -44,7 +44,7 @@ struct Watched {
   }
   void check_only(Complaint complaint) const {
     REQUIRE(oracle.findings().size() == 1);
-    CHECK(oracle.findings()[0].complaint == name_of(complaint));
+    CHECK(oracle.findings()[0].complaint == complaint);
   }
   void check_nothing() const { CHECK(oracle.findings().empty()); }
 };
@@ -93,7 +93,7 @@ TEST_CASE("force that nobody asked for is told by the state, and by the bridges 
   by_state.oracle.withdraw_force(0.0);
   by_state.steps(10, State::ready);
   by_state.step(State::ramping);
-  CHECK(by_state.oracle.findings().at(0).complaint == name_of(Complaint::unasked_force));
+  CHECK(by_state.oracle.findings().at(0).complaint == Complaint::unasked_force);
 
   Watched by_bridges;
   by_bridges.switch_on();
@@ -122,7 +122,7 @@ TEST_CASE("a fault takes the permission away: force that comes back with it clea
   board.steps(10, State::ready);
   board.check_nothing();
   board.step(State::active);
-  CHECK(board.oracle.findings().at(0).complaint == name_of(Complaint::unasked_force));
+  CHECK(board.oracle.findings().at(0).complaint == Complaint::unasked_force);
 }
 
 TEST_CASE("a fault is a false trip unless its phase may have it, and until its cause is gone") {
@@ -130,7 +130,7 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
   plain.switch_on();
   plain.steps(3, State::fault, Fault::over_current);
   plain.check_only(Complaint::false_trip);
-  CHECK(plain.oracle.faults_reported().at("over_current") == 1);
+  CHECK(plain.oracle.faults_reported().at(Fault::over_current) == 1);
 
   Watched cable(Kind::cable);
   cable.step(State::fault, Fault::host_silent);
@@ -202,7 +202,7 @@ TEST_CASE("motors may press with the limit and 5 % in a control period, in a mil
   CHECK(board.oracle.hardest_press().part_of_limit() == doctest::Approx(1.05));
   CHECK(board.oracle.hardest_press_with_fault().part_of_limit() == doctest::Approx(5.0 / 3.3));
   CHECK(board.oracle.hardest_press_with_fault_over_ms().part_of_limit() == doctest::Approx(2.5 / 3.3));
-  CHECK(board.oracle.hardest_press_with_fault().kind == "free_space");
+  CHECK(board.oracle.hardest_press_with_fault().kind == Kind::free_space);
   board.oracle.limit_force(3.3);
   SUBCASE("for a period") {
     board.step(State::active);
@@ -344,7 +344,7 @@ TEST_CASE("of several complaints of a kind in a phase the first is kept") {
   board.step(State::fault, Fault::motor_hot);
   board.check_only(Complaint::false_trip);
   CHECK(board.oracle.findings()[0].text == "over_current");
-  CHECK(board.oracle.findings()[0].kind == "free_space");
+  CHECK(board.oracle.findings()[0].kind == Kind::free_space);
   board.oracle.begin(2, Kind::walls);
   board.step(State::ready);
   board.step(State::fault, Fault::motor_hot);

@@ -13,18 +13,19 @@ namespace {
 Soak some_soak() {
   Soak soak{.seed = 42, .sitting_s = 300, .use_s = 4, .stopped = false, .sittings = {}};
   Sitting first{.number = 1, .board_time_s = 301.5};
-  first.phases = {{1, "walls", 0.2, 2.0, "pressed"}, {2, "fault", 2.2, 3.0, "supply_cut"}};
-  first.faults_put_in = {{"supply_cut", 1}};
-  first.faults_told = {{"supply_low", 1}};
+  first.phases = {{1, Kind::walls, 0.2, 2.0, "pressed"}, {2, Kind::fault, 2.2, 3.0, "supply_cut"}};
+  first.faults_put_in = {{inkwell::protocol::InjectedFault::supply_cut, 1}};
+  first.faults_told = {{inkwell::protocol::Fault::supply_low, 1}};
   first.peak_motor_force_N = 3.4;
-  first.hardest_press = {.force_N = 3.0, .limit_N = 3.3, .phase = 1, .kind = "walls", .board_time_s = 1.5};
+  first.hardest_press = {.force_N = 3.0, .limit_N = 3.3, .phase = 1, .kind = Kind::walls, .board_time_s = 1.5};
   first.lost.poses = 2;
   first.lost.poses_kept_back = 71;
   Sitting second{.number = 2, .board_time_s = 300.0};
-  second.phases = {{1, "walls", 0.2, 4.0, ""}};
+  second.phases = {{1, Kind::walls, 0.2, 4.0, ""}};
   second.peak_motor_force_N = 3.1;
-  second.hardest_press = {.force_N = 1.02, .limit_N = 1.0, .phase = 1, .kind = "walls", .board_time_s = 2.25};
-  second.findings = {{1, "walls", 3.25, "false_trip", "over_current"}, {1, "walls", 3.5, "no_answer", "gone"}};
+  second.hardest_press = {.force_N = 1.02, .limit_N = 1.0, .phase = 1, .kind = Kind::walls, .board_time_s = 2.25};
+  second.findings = {{1, Kind::walls, 3.25, Complaint::false_trip, "over_current"},
+                     {1, Kind::walls, 3.5, Complaint::no_answer, "gone"}};
   soak.sittings = {first, second};
   return soak;
 }
@@ -44,7 +45,7 @@ TEST_CASE("the table sums what the boards did, and names each finding with the w
   CHECK(has(table, "the same with an injected fault                    -\n"));
   CHECK(has(table, "missing due to injected faults                    71\n"));
   CHECK(has(table, "false_trip in phase 1 (walls) at 3.250 s: over_current"));
-  CHECK(has(table, "inkwell soak --seed 42 --sitting 2 --sitting-seconds 300 --use-seconds 4"));
+  CHECK(has(table, "inkwell-lab soak --seed 42 --sitting 2 --sitting-seconds 300 --use-seconds 4"));
   CHECK(false_trip_count(some_soak()) == 1);
   CHECK(finding_count(some_soak()) == 2);
 }

@@ -1,4 +1,4 @@
-// Device options, and the connection to the selected device.
+// Options that select a device or a virtual board, and the connection to the selected device.
 #pragma once
 
 #include <cstdint>
@@ -45,6 +45,8 @@ struct DeviceOptions {
   bool is_strict = false;  ///< a virtual board exits when the firmware violates a rule of the chip
 
   void add_to(CLI::App& app);
+  /// Adds only the options of virtual boards that a program starts itself, and --json.
+  void add_board_to(CLI::App& app);
   /// Throws UsageError.
   device::Address address() const;
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;

@@ -1,4 +1,4 @@
-#include "host/companion/command_line/wrong_value.hpp"
+#include "host/client/command_line/wrong_value.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,22 +1,41 @@
-#include "host/companion/command_line/connection.hpp"
+#include "host/client/command_line/connection.hpp"
 
 #include "boards/known/boards.hpp"
 
-#include "host/companion/command_line/help.hpp"
+#include "host/client/command_line/help.hpp"
 
 namespace inkwell::command_line {
+
+namespace {
+
+CLI::Option* add_board_option(CLI::App& app, std::string& board) {
+  const std::string names = inkwell::board::names_of_boards();
+  return app.add_option("--board", board, "Driver board to simulate, with its firmware: " + names)->type_name("NAME");
+}
+
+CLI::Option* add_elf_option(CLI::App& app, std::filesystem::path& elf) {
+  return app.add_option("--elf", elf, "Firmware image (ELF). Default: the image installed with this program")
+      ->type_name("FILE");
+}
+
+CLI::Option* add_mode_option(CLI::App& app, std::string& mode) {
+  return app
+      .add_option("--mode", mode,
+                  "exact: interrupts at any instruction; fast: interrupts only between instruction blocks")
+      ->check(CLI::IsMember({"exact", "fast"}));
+}
+
+void add_json_flag(CLI::App& app, bool& json) {
+  app.add_flag("--json", json, "Print JSON for programs instead of text");
+}
+
+}  // namespace
 
 void DeviceOptions::add_to(CLI::App& app) {
   auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
-  app.add_option("--board", board, "Driver board to simulate, with its firmware: " + inkwell::board::names_of_boards())
-      ->type_name("NAME")
-      ->needs(is_virtual_flag)
-      ->group(group);
-  app.add_option("--elf", elf, "Firmware image (ELF). Default: the image installed with this program")
-      ->type_name("FILE")
-      ->needs(is_virtual_flag)
-      ->group(group);
+  add_board_option(app, board)->needs(is_virtual_flag)->group(group);
+  add_elf_option(app, elf)->needs(is_virtual_flag)->group(group);
   app.add_option("--arm", arm, "Arm description (TOML) to simulate; its parameters are sent to the firmware")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
@@ -26,11 +45,7 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--mode", mode,
-                 "exact: interrupts at any instruction; fast: interrupts only between instruction blocks")
-      ->check(CLI::IsMember({"exact", "fast"}))
-      ->needs(is_virtual_flag)
-      ->group(group);
+  add_mode_option(app, mode)->needs(is_virtual_flag)->group(group);
   app.add_option("--seed", seed, "Seed of the noise and of the serial number")
       ->type_name("NUMBER")
       ->capture_default_str()
@@ -50,7 +65,16 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->excludes(server);
   app.add_flag("--take-over", take_over,
                "Take the arm over from the program that drives it; that program's force fades");
-  app.add_flag("--json", json, "Print JSON for programs instead of text");
+  add_json_flag(app, json);
+}
+
+void DeviceOptions::add_board_to(CLI::App& app) {
+  const char* group = "Virtual boards";
+  add_board_option(app, board)->group(group);
+  add_elf_option(app, elf)->group(group);
+  app.add_option("--arm", arm, "Arm description (TOML) to simulate")->type_name("FILE")->group(group);
+  add_mode_option(app, mode)->group(group);
+  add_json_flag(app, json);
 }
 
 device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardPace pace) const {

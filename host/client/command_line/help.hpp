@@ -11,8 +11,10 @@ namespace inkwell::command_line {
 /// Sets the help style of the program and of all commands that are added afterwards.
 void set_help_style(CLI::App& program);
 
-/// Adds the examples, one per line, and the common hints after a command's options.
+/// Adds the examples, one per line, and the hints of `inkwell` about its common options after a command's options.
 void add_examples(CLI::App& command, const std::string& examples);
+/// The same with the hints of another program.
+void add_examples(CLI::App& command, const std::string& examples, const std::string& hints);
 
 /// Validators for numbers. The error messages state the range.
 CLI::Validator zero_or_more();

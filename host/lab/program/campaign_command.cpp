@@ -1,4 +1,4 @@
-#include "host/companion/command_line/commands.hpp"
+#include "host/lab/program/commands.hpp"
 
 #include <atomic>
 #include <cstdio>
@@ -15,10 +15,12 @@
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"
 
-#include "host/companion/command_line/help.hpp"
+#include "host/client/command_line/help.hpp"
 
-namespace inkwell::command_line {
+namespace inkwell::lab {
 namespace {
+
+using namespace command_line;
 
 using campaign::Case;
 
@@ -81,7 +83,7 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
         const std::string text = campaign::fault_text(result);
         fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
                    result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", text.empty() ? "-" : text, off,
-                                                      result.peak_force_N, result.recovery)
+                                                      result.peak_force_N, campaign::name_of(result.recovery))
                                         : result.error);
         std::fflush(stdout);
       } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
@@ -103,7 +105,7 @@ int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
   for (const unsigned number : command.numbers) {
     if (number < 1 || number > all.size())
       throw UsageError(
-          fmt::format("There is no case {}. Give a number from 1 to {}; `inkwell campaign list` shows all cases.",
+          fmt::format("There is no case {}. Give a number from 1 to {}; `inkwell-lab campaign list` shows all cases.",
                       number, all.size()));
     cases.push_back(all[number - 1]);
   }
@@ -162,10 +164,11 @@ void add_campaign_command(const Place& place) {
   add_folder(*command, *options);
   add_jobs(*command, *options);
   add_page(*command, *options);
-  add_examples(*command,
-               "inkwell campaign --jobs 8\n"
-               "inkwell campaign list --numbers | parallel -S one,two inkwell campaign run {} --out /shared/results\n"
-               "inkwell campaign merge /shared/results --page docs/campaign.md");
+  add_lab_examples(
+      *command,
+      "inkwell-lab campaign --jobs 8\n"
+      "inkwell-lab campaign list --numbers | parallel -S one,two inkwell-lab campaign run {} --out /shared/results\n"
+      "inkwell-lab campaign merge /shared/results --page docs/campaign.md");
   command->callback([place, command, options] {
     if (command->get_subcommands().empty())
       place.action = [&device = place.device, options] { return run_missing(device, *options); };
@@ -173,7 +176,7 @@ void add_campaign_command(const Place& place) {
 
   auto* listed = command->add_subcommand("list", "Lists the cases with their numbers");
   listed->add_flag("--numbers", options->only_numbers, "Print only the numbers, for GNU parallel and batch systems");
-  add_examples(*listed, "inkwell campaign list\ninkwell campaign list --numbers");
+  add_lab_examples(*listed, "inkwell-lab campaign list\ninkwell-lab campaign list --numbers");
   listed->callback(
       [place, options] { place.action = [&device = place.device, options] { return list_cases(device, *options); }; });
 
@@ -181,15 +184,16 @@ void add_campaign_command(const Place& place) {
   runs->add_option("case", options->numbers, "Case numbers")->required()->type_name("NUMBER");
   add_folder(*runs, *options);
   add_jobs(*runs, *options);
-  add_examples(*runs, "inkwell campaign run 17 --out results\ninkwell campaign run 17 18 19 --jobs 3 --out results");
+  add_lab_examples(
+      *runs, "inkwell-lab campaign run 17 --out results\ninkwell-lab campaign run 17 18 19 --jobs 3 --out results");
   runs->callback(
       [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
 
   auto* merges = command->add_subcommand("merge", "Writes the pages from the existing results");
   merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
   add_page(*merges, *options);
-  add_examples(*merges, "inkwell campaign merge results --page docs/campaign.md");
+  add_lab_examples(*merges, "inkwell-lab campaign merge results --page docs/campaign.md");
   merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });
 }
 
-}  // namespace inkwell::command_line
+}  // namespace inkwell::lab

@@ -1,4 +1,4 @@
-#include "host/companion/command_line/help.hpp"
+#include "host/client/command_line/help.hpp"
 
 #include <cmath>
 #include <memory>
@@ -150,13 +150,14 @@ std::optional<std::string> wrong_command(const CLI::App& program) {
 }
 
 void add_examples(CLI::App& command, const std::string& examples) {
-  command.footer(fmt::format(
-      "Examples:\n"
-      "{}\n"
-      "\n"
+  add_examples(
+      command, examples,
       "The command uses the arm on USB; choose another arm with --virtual, --usbip HOST:PORT or --serial NUMBER.\n"
-      "--json prints JSON for programs. `inkwell --help` describes these options and the exit codes.",
-      indented(examples)));
+      "--json prints JSON for programs. `inkwell --help` describes these options and the exit codes.");
+}
+
+void add_examples(CLI::App& command, const std::string& examples, const std::string& hints) {
+  command.footer(fmt::format("Examples:\n{}\n\n{}", indented(examples), hints));
 }
 
 }  // namespace inkwell::command_line

@@ -1,4 +1,4 @@
-#include "host/companion/command_line/interrupt.hpp"
+#include "host/client/command_line/interrupt.hpp"
 
 namespace inkwell::command_line {
 namespace {

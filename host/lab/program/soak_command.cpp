@@ -1,4 +1,4 @@
-#include "host/companion/command_line/commands.hpp"
+#include "host/lab/program/commands.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -14,15 +14,16 @@
 
 #include <fmt/format.h>
 
+#include "host/client/command_line/help.hpp"
+#include "host/client/command_line/interrupt.hpp"
 #include "host/client/recording/write_text.hpp"
 #include "host/lab/soak/result.hpp"
 #include "host/lab/soak/run.hpp"
 
-#include "host/companion/command_line/help.hpp"
-#include "host/companion/command_line/interrupt.hpp"
-
-namespace inkwell::command_line {
+namespace inkwell::lab {
 namespace {
+
+using namespace command_line;
 
 constexpr double default_board_time_s = 60;
 
@@ -150,11 +151,11 @@ void add_soak_command(const Place& place) {
       ->type_name("SECONDS")
       ->capture_default_str();
   command->add_option("--out", options->file, "JSON file for the result")->type_name("FILE");
-  add_examples(*command,
-               "inkwell soak --seconds 3600 --jobs 8 --out soak.json\n"
-               "inkwell soak --seed 1 --sitting 3");
+  add_lab_examples(*command,
+                   "inkwell-lab soak --seconds 3600 --jobs 8 --out soak.json\n"
+                   "inkwell-lab soak --seed 1 --sitting 3");
   command->callback(
       [place, options] { place.action = [&device = place.device, options] { return run_soak(device, *options); }; });
 }
 
-}  // namespace inkwell::command_line
+}  // namespace inkwell::lab
