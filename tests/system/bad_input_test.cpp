@@ -362,7 +362,7 @@ TEST_CASE("every command explains itself") {
   // clang-format on
   check_help("inkwell", commands);
   CHECK(run_program("inkwell", {"--help"}).out.find("--virtual") != std::string::npos);
-  check_help("inkwell-lab", {"campaign", "campaign list", "campaign run", "campaign merge", "soak"});
+  check_help("inkwell-lab", {"campaign", "campaign list", "campaign run", "campaign check", "campaign merge", "soak"});
   CHECK(run_program("virtual-board", {"--help"}).out.find("--real-time") != std::string::npos);
 }
 

@@ -2,15 +2,18 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include "boards/stm32f405/core/exception_numbers.hpp"
 #include "host/client/firmware_update/image.hpp"
 #include "host/lab/campaign/board_run.hpp"
 #include "host/lab/campaign/cases.hpp"
+#include "host/lab/campaign/expected.hpp"
 #include "host/lab/campaign/handling.hpp"
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"
@@ -27,25 +30,30 @@ using campaign::Result;
 
 namespace {
 
-campaign::Case the_case(const std::string& name) {
-  for (const auto& c : campaign::all_cases())
-    if (c.name() == name) return c;
-  FAIL("there is no case ", name);
-  return {};
-}
-
-Result result_of(const std::string& name) {
+/// Result of a case. A case that several tests need is run only once, because its result is always the same.
+const Result& result_of(const std::string& name) {
+  static std::map<std::string, Result> results;
   CAPTURE(name);
-  const Result result = campaign::run_case(the_case(name));
+  if (!results.contains(name)) results[name] = campaign::run_case(campaign::case_named(name));
+  const Result& result = results.at(name);
   INFO("error: ", result.error);
   REQUIRE(result.error.empty());
   return result;
 }
 
-/// Energy exchange of an arm in motion without a fault.
-double energy_without_fault_J(const Result& result) {
-  if (result.situation != campaign::CaseSituation::motion) return 0.0;
-  return result_of(fmt::format("none motion {}", result.phase)).energy_J;
+/// Checks the cases of the sample whose detection is one of these.
+void check_sample(bool (*is_chosen)(const campaign::Expected&)) {
+  for (const campaign::Expected& expected : campaign::expected_cases()) {
+    if (!expected.is_in_sample || !is_chosen(expected)) continue;
+    const std::string name(expected.name);
+    CAPTURE(name);
+    const Result& result = result_of(name);
+    const std::string fault_free = campaign::fault_free_name(campaign::case_named(name));
+    const auto found =
+        campaign::deviations(expected, result, fault_free.empty() ? 0.0 : result_of(fault_free).energy_J);
+    INFO(fmt::format("{}", fmt::join(found, " ")));
+    CHECK(found.empty());
+  }
 }
 
 }  // namespace
@@ -147,39 +155,8 @@ TEST_CASE("the interrupts that are lost and late in the campaign are those that 
 }
 
 TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {
-  struct Known {
-    const char* name;
-    protocol::Fault detected_as;
-  };
-  for (const Known& known : {Known{"wire_low:bridge_fault_tim1 rest 2", protocol::Fault::bridge_fault},
-                             {"shunt_high:2 wall 1", protocol::Fault::over_current},
-                             {"wire_low:motor_current[1] motion 3", protocol::Fault::over_current},
-                             {"leg_low:2A motion 1", protocol::Fault::bridge_fault},
-                             {"leg_high:1B limited 3", protocol::Fault::bridge_fault},
-                             {"shunt_high:3 wall 2", protocol::Fault::over_current},
-                             {"motor_open:2 wall 1", protocol::Fault::current_jump},
-                             {"leg_open:2A wall 1", protocol::Fault::current_jump},
-                             {"wire_open:bridges[1].leg_a wall 2", protocol::Fault::current_jump},
-                             {"wire_low:bridges[1].leg_a motion 1", protocol::Fault::current_jump},
-                             {"wire_open:motor_current[1] rest 1", protocol::Fault::current_jump},
-                             {"wire_open:motor_current[1] limited 1", protocol::Fault::current_jump},
-                             {"wire_open:motor_current[1] motion 2", protocol::Fault::current_jump},
-                             {"shunt_gain:2 wall 3", protocol::Fault::current_jump},
-                             {"shunt_gain:2=2 wall 1", protocol::Fault::current_jump},
-                             {"shunt_offset:2 limited 1", protocol::Fault::current_jump},
-                             {"wires_shorted:motor_current[1]+motor_current[2] wall 2", protocol::Fault::current_jump},
-                             {"adc_stopped:2 wall 1", protocol::Fault::samples_stale},
-                             {"adc_stopped:3 motion 2", protocol::Fault::samples_stale}}) {
-    CAPTURE(known.name);
-    const Result result = result_of(known.name);
-    REQUIRE(result.off_after_s);
-    CHECK(*result.off_after_s < 2 * control_period_s);
-    CHECK(result.detected_as == known.detected_as);
-    CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
-    CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
-    CHECK(result.recovery == Recovery::clear_fault);
-    CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be one millisecond old
-  }
+  check_sample(
+      [](const campaign::Expected& expected) { return expected.longest_off_periods <= campaign::quick_periods; });
 }
 
 TEST_CASE("the wire of the supply's divider that breaks is a supply far too low, as soon as its capacitor is empty") {
@@ -191,24 +168,8 @@ TEST_CASE("the wire of the supply's divider that breaks is a supply far too low,
 }
 
 TEST_CASE("a motor that does not do as its voltage says is let go of before the hand feels more than it may") {
-  struct Known {
-    const char* name;
-    int periods;  ///< large where the current drifts from a frozen reading that was initially correct
-  };
-  for (const Known& known : {Known{"wires_shorted:bridges[1].leg_a+bridges[1].leg_b wall 2", 40},
-                             {"shunt_frozen:2 wall 3", 4000},
-                             {"motor_shorted:2 wall 1", 2000}}) {
-    CAPTURE(known.name);
-    const Result result = result_of(known.name);
-    REQUIRE(result.off_after_s);
-    CHECK(*result.off_after_s < known.periods * control_period_s);
-    // Depending on the time of the fault, a current jump may be detected first.
-    CHECK((result.detected_as == protocol::Fault::motor_implausible ||
-           result.detected_as == protocol::Fault::current_jump));
-    CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
-    CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
-    CHECK(result.recovery == Recovery::clear_fault);
-  }
+  check_sample(
+      [](const campaign::Expected& expected) { return expected.longest_off_periods > campaign::quick_periods; });
 }
 
 TEST_CASE(
@@ -375,7 +336,7 @@ TEST_CASE("a hand that flings the arm is told it was too fast, feels no more tha
 
 TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   const TemporaryDirectory directory;
-  const auto c = the_case("encoder_lost_counts:2=0.1 motion 2");
+  const auto c = campaign::case_named("encoder_lost_counts:2=0.1 motion 2");
   const Result here = campaign::run_case(c);
   const auto run = run_program("inkwell-lab", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
   CHECK(run.exit_code == 0);
@@ -392,7 +353,7 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
 
 TEST_CASE("a place that the seed chose is told with the case") {
   const TemporaryDirectory directory;
-  const auto c = the_case("ram_bit unreferenced 1");
+  const auto c = campaign::case_named("ram_bit unreferenced 1");
   const auto run = run_program("inkwell-lab", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
   CHECK(run.exit_code == 0);
   const auto results = campaign::load_all(directory.path());
@@ -409,4 +370,53 @@ TEST_CASE("the list of the campaign is for people and for batch systems; a case 
   const auto none = run_program("inkwell-lab", {"campaign", "run", "999999"});
   CHECK(none.exit_code == 2);
   CHECK(none.err.find("There is no case 999999") != std::string::npos);
+}
+
+TEST_CASE("the sample has each detection, most injected faults, and each of three equivalent parts") {
+  std::set<protocol::Fault> detections, in_sample;
+  std::set<protocol::InjectedFault> injected, injected_in_sample;
+  std::set<char> motors;
+  for (const campaign::Expected& expected : campaign::expected_cases()) {
+    const campaign::CaseFault put_in = campaign::case_named(expected.name).fault;
+    const protocol::InjectedFault fault = put_in.fault.value();
+    detections.insert(expected.detected_as);
+    injected.insert(fault);
+    if (!expected.is_in_sample) continue;
+    in_sample.insert(expected.detected_as);
+    injected_in_sample.insert(fault);
+    if (const auto place = protocol::info(fault).place;
+        place == protocol::InjectionPlace::motor || place == protocol::InjectionPlace::leg)
+      motors.insert(put_in.of[0]);
+  }
+  CHECK(in_sample == detections);
+  CHECK(injected_in_sample.size() * 2 > injected.size());
+  CHECK(motors == std::set{'1', '2', '3'});
+}
+
+TEST_CASE("a check of a case with a known detection names each difference") {
+  const campaign::Expected& expected = campaign::expected_cases().front();
+  const campaign::Case the_case = campaign::case_named(expected.name);
+  Result result{
+      .number = the_case.number, .fault = the_case.fault, .situation = the_case.situation, .phase = the_case.phase};
+  result.off_after_s = control_period_s;
+  result.detected_as = expected.detected_as;
+  result.force_limit_N = 3.3;
+  result.recovery = Recovery::clear_fault;
+  result.position_error_m = 0.0;
+  CHECK(campaign::deviations(expected, result, 0.0).empty());
+  const auto differs = [&](auto change, const char* text) {
+    Result other = result;
+    change(other);
+    const auto found = campaign::deviations(expected, other, 0.0);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].find(text) != std::string::npos);
+  };
+  differs([](Result& other) { other.off_after_s = std::nullopt; }, "did not switch off");
+  differs([](Result& other) { other.off_after_s = 2 * control_period_s; }, "after 2.0 control periods");
+  differs([](Result& other) { other.detected_as = protocol::Fault::none; }, "`none` instead of");
+  differs([](Result& other) { other.peak_force_N = 3.5; }, "3.50 N");
+  differs([](Result& other) { other.energy_J = 0.02; }, "20.0 mJ");
+  differs([](Result& other) { other.recovery = Recovery::board_reset; }, "`board reset`");
+  differs([](Result& other) { other.position_error_m = 0.002; }, "2.00 mm");
+  differs([](Result& other) { other.error = "The board did not start."; }, "did not start");
 }

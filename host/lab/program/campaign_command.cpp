@@ -8,14 +8,15 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "host/client/command_line/help.hpp"
 #include "host/lab/campaign/cases.hpp"
+#include "host/lab/campaign/expected.hpp"
 #include "host/lab/campaign/page.hpp"
 #include "host/lab/campaign/result.hpp"
 #include "host/lab/campaign/run.hpp"
-
-#include "host/client/command_line/help.hpp"
 
 namespace inkwell::lab {
 namespace {
@@ -132,6 +133,54 @@ int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
   return exit_code;
 }
 
+/// Returns the results in the order of the cases. Runs `jobs` boards in parallel.
+std::vector<campaign::Result> results_of(const DeviceOptions& options, unsigned jobs, const std::vector<Case>& cases) {
+  const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
+  std::vector<campaign::Result> results(cases.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < cases.size();) try {
+        results[i] = campaign::run_case(cases[i], board);
+      } catch (const std::exception& error) {  // an exception that leaves a thread would terminate the program
+        results[i].error = error.what();
+      }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned i = 0; i < jobs; ++i) workers.emplace_back(work);
+  for (auto& worker : workers) worker.join();
+  return results;
+}
+
+/// Runs the cases with a known detection, and their fault-free cases. Returns exit code 1 if a result differs.
+int check_known(const DeviceOptions& options, const CampaignOptions& command) {
+  const auto expected = campaign::expected_cases();
+  std::vector<Case> cases;
+  for (const campaign::Expected& each : expected) cases.push_back(campaign::case_named(each.name));
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    if (const std::string name = campaign::fault_free_name(cases[i]); !name.empty())
+      cases.push_back(campaign::case_named(name));
+  const auto results = results_of(options, command.jobs, cases);
+  const auto energy_without_fault_J = [&](const Case& the_case) {
+    const std::string name = campaign::fault_free_name(the_case);
+    for (std::size_t i = expected.size(); i < cases.size(); ++i)
+      if (cases[i].name() == name) return results[i].energy_J;
+    return 0.0;
+  };
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  bool differs = false;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const auto found = campaign::deviations(expected[i], results[i], energy_without_fault_J(cases[i]));
+    differs |= !found.empty();
+    if (options.json)
+      json.push_back({{"number", cases[i].number}, {"name", expected[i].name}, {"differences", found}});
+    else
+      fmt::print("{:5} {}: {}\n", cases[i].number, expected[i].name,
+                 found.empty() ? "as expected" : fmt::format("{}", fmt::join(found, " ")));
+  }
+  if (options.json) fmt::print("{}\n", json.dump(1));
+  return differs ? 1 : 0;
+}
+
 void add_folder(CLI::App& command, CampaignOptions& options) {
   command.add_option("--out", options.folder, "Folder for the results, with one file per case")
       ->type_name("FOLDER")
@@ -188,6 +237,15 @@ void add_campaign_command(const Place& place) {
       *runs, "inkwell-lab campaign run 17 --out results\ninkwell-lab campaign run 17 18 19 --jobs 3 --out results");
   runs->callback(
       [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
+
+  auto* checks = command->add_subcommand(
+      "check",
+      "Runs the cases with a known detection, and lists results that differ\n"
+      "Exit code 1: a fault was detected too late or as another fault, or its effect was too large.");
+  add_jobs(*checks, *options);
+  add_lab_examples(*checks, "inkwell-lab campaign check --jobs 8");
+  checks->callback(
+      [place, options] { place.action = [&device = place.device, options] { return check_known(device, *options); }; });
 
   auto* merges = command->add_subcommand("merge", "Writes the pages from the existing results");
   merges->add_option("results", options->folder, "Folder with the results")->required()->type_name("FOLDER");
