@@ -1,4 +1,4 @@
-// Crash record. The fault handler writes this record before the reset, and the next boot reports the record.
+// Crash record. The CPU fault handler writes this record before the reset, and the next boot reports the record.
 #pragma once
 
 #include "firmware/drivers/kept_over_reset.hpp"

@@ -1,4 +1,4 @@
-// Reset, fault and interrupt handlers.
+// Handlers of resets, CPU faults and interrupts.
 #pragma once
 
 namespace inkwell::application {
@@ -6,8 +6,8 @@ namespace inkwell::application {
 extern "C" {
 /// First instruction after a reset.
 [[noreturn]] void reset_handler();
-/// Handles all faults, the non-maskable interrupt and all unexpected interrupts.
-[[noreturn]] void fault_handler();
+/// Handles all CPU faults, the non-maskable interrupt and all unexpected interrupts.
+[[noreturn]] void cpu_fault_handler();
 /// PendSV handler. After all other interrupts, this handler records the code location of the main loop. The function
 /// drivers::CallAfterInterrupts::request() requests this handler.
 void hang_handler();

@@ -55,8 +55,8 @@ extern "C" [[noreturn, gnu::used]] void start() {
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();
-  // Separate fault handlers are enabled before any interrupt. A fault whose frame cannot be stacked then becomes a hard
-  // fault and is not lost. A hard fault whose frame cannot be stacked would lock up the processor.
+  // Separate CPU fault handlers are enabled before any interrupt. A CPU fault whose frame cannot be stacked then
+  // becomes a hard fault and is not lost. A hard fault whose frame cannot be stacked would lock up the processor.
   SCB::SHCSR::modify(SCB::SHCSR::MEMFAULTENA(1), SCB::SHCSR::BUSFAULTENA(1), SCB::SHCSR::USGFAULTENA(1));
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 

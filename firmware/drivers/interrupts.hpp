@@ -36,8 +36,8 @@ template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {
     require_claim<Driver, interrupt(line)>();
-    constexpr std::uint8_t after_faults = 0x10;
-    registers::NVIC::IPR::write(position, after_faults);
+    constexpr std::uint8_t after_cpu_faults = 0x10;
+    registers::NVIC::IPR::write(position, after_cpu_faults);
     registers::NVIC::ISER::write(position / 32, 1u << position % 32);
   }
 

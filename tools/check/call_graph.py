@@ -32,7 +32,7 @@ class Image:
     functions: dict[str, Function]
     virtual_tables: list[list[str]]  # functions of each class's virtual table, in slot order
     constructors: list[str]  # called by the startup code
-    interrupts: list[str]  # handlers of the vector table, except reset and fault handlers
+    interrupts: list[str]  # handlers of the vector table, except reset and CPU fault handlers
     pended: str  # handler that only PendSV uses, or an empty string
     symbols: dict[str, int]
 
@@ -177,7 +177,7 @@ def read_interrupts(elf: str, by_address: dict[int, str]) -> tuple[list[str], st
     words = read_words(elf, int(section[2]), int(section[1]) // 4)
     handlers = [by_address.get(word & ~1, "") for word in words]
     pended = handlers[PENDSV] if len(handlers) > PENDSV and handlers.count(handlers[PENDSV]) == 1 else ""
-    return sorted(set(handlers) - {"", "reset_handler", "fault_handler"}), pended
+    return sorted(set(handlers) - {"", "reset_handler", "cpu_fault_handler"}), pended
 
 
 def read_image(elf: str) -> Image:

@@ -3,8 +3,8 @@
 
     tools/check/stack_bound.py build/board/inkwell.elf
 
-The bound is the deepest path from the reset handler, plus all nested interrupts, plus the frame of a fault. The fault
-handler then uses a separate stack. The bound requires that no function recurses; direct calls are checked for
+The bound is the deepest path from the reset handler, plus all nested interrupts, plus the frame of a CPU fault. The
+CPU fault handler then uses a separate stack. The bound requires that no function recurses; direct calls are checked for
 recursion. Without recursion every call chain visits each function at most once, so the deepest such path is searched. A
 virtual call may reach any function in this slot of any class.
 """
@@ -20,7 +20,7 @@ EXCEPTION_FRAME_BYTES = 27 * 4
 
 # These functions set the stack pointer on purpose: the interrupted stack may be invalid, or the boot loader has a
 # separate stack.
-MAY_SET_STACK = {"fault_handler", "enter_boot_loader"}
+MAY_SET_STACK = {"cpu_fault_handler", "enter_boot_loader"}
 
 
 def find_direct_cycle(image: Image, start: str) -> list[str]:
@@ -88,7 +88,7 @@ def main() -> int:
         return 2
 
     problems = []
-    bound = EXCEPTION_FRAME_BYTES  # frame of a fault
+    bound = EXCEPTION_FRAME_BYTES  # frame of a CPU fault
     print("stack, in bytes:")
     for start in ("reset_handler", *image.interrupts):
         if cycle := find_direct_cycle(image, start):

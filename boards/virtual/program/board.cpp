@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include "boards/stm32f405/debugger/fault_report.hpp"
+#include "boards/stm32f405/debugger/cpu_fault_report.hpp"
 
 #include "boards/virtual/program/log.hpp"
 
@@ -122,7 +122,7 @@ Stop Board::run_chip_until(Ticks when) {
   const Stop stop = chip_.run_until(when);
   if (stop == Stop::locked_up && !locked_up_) {
     locked_up_ = true;
-    for (const auto& line : explain_fault(chip_, symbols_, elf_)) log_line(line);
+    for (const auto& line : explain_cpu_fault(chip_, symbols_, elf_)) log_line(line);
   }
   return stop;
 }

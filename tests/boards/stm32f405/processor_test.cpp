@@ -47,7 +47,7 @@ TEST_SUITE("virtual chip: processor") {
   }
 
   TEST_CASE("faults leave their record, and a fault inside HardFault locks up") {
-    ChipUnderTest test("faults");
+    ChipUnderTest test("cpu_faults");
     CHECK(test.chip.run_until(ticks(0.01)) == Stop::locked_up);
     REQUIRE(test.result(0) == finished);
     // A precise bus fault with its address. The fault escalates because BusFault is disabled.

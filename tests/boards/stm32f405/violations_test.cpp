@@ -54,12 +54,12 @@ constexpr Case cases[] = {
 
 /// A test firmware with one violation, and the USB core. The host resets the bus when a device connects.
 struct Planted {
-  explicit Planted(unsigned fault, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
-    test.breaks_rules = fault != 0;
+  explicit Planted(unsigned violation, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
+    test.breaks_rules = violation != 0;
     test.circuit.voltages = {{{'C', 0}, 1.0}, {{'C', 1}, 1.0}, {{'C', 2}, 1.0}};
     test.chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", core);
     for (unsigned pin = 0; pin < 8; ++pin)
-      test.chip.input_pins().drive('D', pin, (fault >> pin & 1) != 0 ? PinLevel::high : PinLevel::low);
+      test.chip.input_pins().drive('D', pin, (violation >> pin & 1) != 0 ? PinLevel::high : PinLevel::low);
     core.set_bus_power(true);
     test.chip.reset();
     test.run_for(0.11);
@@ -95,7 +95,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     }
   }
 
-  TEST_CASE("each fault is seen, and it alone") {
+  TEST_CASE("each violation is seen, and it alone") {
     for (const Case& planted : cases) {
       CAPTURE(info(planted.rule).name);
       const Planted faulty(planted.number);

@@ -20,7 +20,7 @@ extern "C" void note_access(std::uint32_t* frame) {
   if (resume_at != 0) frame[6] = resume_at, frame[7] &= ~0x0600FC00u;
 }
 // The first instruction would be skipped if the IT state of the faulting code were still active.
-[[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_access\n pop {r4, pc}"); }
+[[gnu::naked]] void cpu_fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_access\n pop {r4, pc}"); }
 
 // Records the address of the instruction and of the continuation, then executes the instruction.
 #define FAULTING(instruction, input)                                                                      \
@@ -29,9 +29,9 @@ extern "C" void note_access(std::uint32_t* frame) {
                "r"(&resume_at), "r"(input)                                                                \
                : "r3", "r4", "s0", "memory")
 
-/// The third instruction of the block reads an unmapped address. The fault handler changes the address to the first
+/// The third instruction of the block reads an unmapped address. The CPU fault handler changes the address to the first
 /// word of the flash.
-[[gnu::naked, gnu::noinline]] std::uint32_t fault_in_block(std::uint32_t*) {
+[[gnu::naked, gnu::noinline]] std::uint32_t cpu_fault_in_block(std::uint32_t*) {
   asm volatile(
       "adr r3, 1f\n str r3, [r0]\n movs r1, #0\n mov r0, #0x60000000\n cmp r1, #0\n b 2f\n .balign 4\n"
       "2: itete eq\n addeq r1, #1\n addne.w r1, r1, #64\n"
@@ -43,12 +43,12 @@ extern "C" void mend_source(std::uint32_t* frame) {
   note_access(frame);
   frame[0] = 0;
 }
-[[gnu::naked]] void mended_fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl mend_source\n pop {r4, pc}"); }
+[[gnu::naked]] void mended_cpu_fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl mend_source\n pop {r4, pc}"); }
 
 }  // namespace
 
 void run() {
-  for (unsigned exception = 3; exception <= 6; ++exception) set_handler(exception, fault);
+  for (unsigned exception = 3; exception <= 6; ++exception) set_handler(exception, cpu_fault);
   word(shcsr) = 7 << 16;
   const auto odd = reinterpret_cast<std::uint32_t>(words) + 2;
   results[1] = word(odd);               // a single word may be unaligned
@@ -89,9 +89,9 @@ void run() {
   guarded[8] = 8;
   results[101] = guarded[8];
 
-  set_handler(5, mended_fault);
-  results[102] = fault_in_block(&expected) - word(0);  // 12
-  set_handler(5, fault);
+  set_handler(5, mended_cpu_fault);
+  results[102] = cpu_fault_in_block(&expected) - word(0);  // 12
+  set_handler(5, cpu_fault);
   constexpr std::uint32_t gpio_a_inputs = gpio::a + gpio::idr;
   word(rcc::ahb1enr) |= 1;
   FAULTING("ldr r3, [%2]", gpio_a_inputs - 2);  // 13 to 17: registers, independent of CCR

@@ -1,5 +1,5 @@
 // Exception frames that the memory protection unit partly refuses: during stacking, unstacking and lazy stacking. The
-// fault handler removes the cause.
+// CPU fault handler removes the cause.
 #include "tests/boards/stm32f405/firmware/protection.hpp"
 
 namespace {

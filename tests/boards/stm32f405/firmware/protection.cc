@@ -7,7 +7,7 @@ namespace {
 constexpr std::uint32_t came_as_hard_fault = 1u << 30, other_address = 1u << 31;
 
 volatile std::uint32_t status = 0, place = 0, program_counter = 0;
-/// Action of a fault handler before it returns.
+/// Action of a CPU fault handler before it returns.
 Handler volatile mend = nullptr;
 
 /// A probe that faults returns to its caller.
@@ -230,7 +230,7 @@ void run() {
   results[0] = finished;
   // With HFNMIENA, FAULTMASK no longer bypasses the protection, and no handler can handle the fault.
   set_rights(0, 0x2001'0000, 12, read_only);
-  protect(enable | default_map | above_faults_too);
+  protect(enable | default_map | above_cpu_faults_too);
   asm volatile("cpsid f" ::: "memory");
   store_word(0x2001'0000);
 }

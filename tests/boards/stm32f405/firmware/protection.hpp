@@ -6,7 +6,7 @@
 inline constexpr std::uint32_t shcsr = 0xE000ED24, cfsr = 0xE000ED28, hfsr = 0xE000ED2C, mmfar = 0xE000ED34,
                                mpu_control = 0xE000ED94, mpu_number = 0xE000ED98, mpu_base = 0xE000ED9C,
                                mpu_attributes = 0xE000EDA0;
-inline constexpr std::uint32_t enable = 1, above_faults_too = 2, default_map = 4;
+inline constexpr std::uint32_t enable = 1, above_cpu_faults_too = 2, default_map = 4;
 inline constexpr std::uint32_t normal = 3u << 16, device = 1u << 16, execute_never = 1u << 28;
 enum Rights : std::uint32_t { none = 0, all_privileged = 1, all = 3, read_only = 6 };
 /// SIZE field of a region of 2^bits bytes.

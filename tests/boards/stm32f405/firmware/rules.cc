@@ -5,7 +5,7 @@
 namespace {
 
 // The numbers match violations_test.cpp.
-enum Fault : std::uint32_t {
+enum Violation : std::uint32_t {
   none,
   float_unit_off,
   voltage_scale,
@@ -44,7 +44,7 @@ enum Fault : std::uint32_t {
   reference_hurried_on,
 };
 
-std::uint32_t fault;
+std::uint32_t violation;
 
 void read_back(std::uint32_t address) { [[maybe_unused]] const std::uint32_t value = word(address); }
 
@@ -57,17 +57,17 @@ void wait_us(std::uint32_t time_us) {
 void start_clocks() {
   word(rcc::apb1enr) |= 1u << 28;
   read_back(rcc::apb1enr);
-  word(0x40007000) = fault == voltage_scale ? 0 : 1u << 14;
-  word(0x40023C00) = (fault == flash_wait_states ? 4 : 5) | 7 << 8;
+  word(0x40007000) = violation == voltage_scale ? 0 : 1u << 14;
+  word(0x40023C00) = (violation == flash_wait_states ? 4 : 5) | 7 << 8;
   word(rcc::cr) |= 1u << 16;
   while ((word(rcc::cr) & 1u << 17) == 0) {
   }
-  const std::uint32_t q = fault == usb_clock ? 8 : 7;
-  word(rcc::pllcfgr) = (fault == pll_input ? 2 | 84 << 6 : 4 | 168 << 6) | 1 << 22 | q << 24;
+  const std::uint32_t q = violation == usb_clock ? 8 : 7;
+  word(rcc::pllcfgr) = (violation == pll_input ? 2 | 84 << 6 : 4 | 168 << 6) | 1 << 22 | q << 24;
   word(rcc::cr) |= 1u << 24;
   while ((word(rcc::cr) & 1u << 25) == 0) {
   }
-  word(rcc::cfgr) = (fault == pclk1_too_fast ? 4 : 5) << 10 | 4 << 13;
+  word(rcc::cfgr) = (violation == pclk1_too_fast ? 4 : 5) << 10 | 4 << 13;
   word(rcc::cfgr) = word(rcc::cfgr) | 2;
   while ((word(rcc::cfgr) & 0xC) != 8) {
   }
@@ -75,16 +75,16 @@ void start_clocks() {
 
 void convert() {
   word(rcc::ahb1enr) |= 7;
-  word(rcc::apb2enr) |= (fault == converter_clock_off ? 1 : 7) << 8;
+  word(rcc::apb2enr) |= (violation == converter_clock_off ? 1 : 7) << 8;
   read_back(rcc::apb2enr);
-  if (fault != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
-  word(adc::ccr) = fault == converter_too_fast ? 0 : 1 << 16;
+  if (violation != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
+  word(adc::ccr) = violation == converter_too_fast ? 0 : 1 << 16;
   for (unsigned i = 0; i < 3; ++i) {
     word(adc::adc1 + 0x100 * i + adc::smpr1) = 1 << 3 * i;  // 15 cycles, used for the first conversion
     word(adc::adc1 + 0x100 * i + adc::sqr3) = 10 + i;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
   }
-  if (fault != converter_not_stable) wait_us(4);
+  if (violation != converter_not_stable) wait_us(4);
   for (unsigned i = 0; i < 3; ++i) word(adc::adc1 + 0x100 * i + adc::cr2) = 1 | 1u << 30;
   wait_us(10);
   for (unsigned i = 0; i < 3; ++i) results[1 + i] = word(adc::adc1 + 0x100 * i + adc::dr);
@@ -92,9 +92,9 @@ void convert() {
 
 /// Converts the internal reference with the first converter.
 void convert_reference() {
-  if (fault != reference_off) word(adc::ccr) |= 1 << 23;
-  if (fault != reference_hurried_on) wait_us(12);
-  word(adc::adc1 + adc::smpr1) = (fault == reference_hurried ? 3 : 7) << 21;  // 480 cycles
+  if (violation != reference_off) word(adc::ccr) |= 1 << 23;
+  if (violation != reference_hurried_on) wait_us(12);
+  word(adc::adc1 + adc::smpr1) = (violation == reference_hurried ? 3 : 7) << 21;  // 480 cycles
   word(adc::adc1 + adc::sqr3) = 17;
   word(adc::adc1 + adc::cr2) = 1 | 1u << 30;
   wait_us(30);
@@ -111,7 +111,7 @@ void copy() {
   for (unsigned i = 0; i < 2; ++i) {
     word(s0ndtr) = 1;
     word(s0cr) = 2 << 13 | 2 << 11 | 2 << 6 | 1;
-    if (fault != stream_flags_left) word(lifcr) = 0x3D;
+    if (violation != stream_flags_left) word(lifcr) = 0x3D;
   }
 }
 
@@ -119,8 +119,8 @@ void send() {
   constexpr std::uint32_t usart2 = 0x40004400;
   word(rcc::apb1enr) |= 1 << 17;
   read_back(rcc::apb1enr);
-  if (fault != usart_pin) gpio::alternate(gpio::a, 2, 7);
-  word(usart2 + 0x08) = fault == usart_divider ? 15 : 16;
+  if (violation != usart_pin) gpio::alternate(gpio::a, 2, 7);
+  word(usart2 + 0x08) = violation == usart_divider ? 15 : 16;
   word(usart2 + 0x0C) = 1 << 13 | 1 << 3;
   word(usart2 + 0x04) = 'x';
 }
@@ -132,13 +132,13 @@ void use_others() {
   word(rcc::apb2enr) |= 2;
   read_back(rcc::apb2enr);
   word(tim8 + timer::psc) = 0;
-  if (fault == narrow_register_write) byte(tim8 + timer::psc) = 3;
+  if (violation == narrow_register_write) byte(tim8 + timer::psc) = 3;
   results[6] = word(tim8 + timer::psc);
   word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12;
-  word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12 | 1u << 15 | (fault == timer_locked ? 20 : 0);
+  word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12 | 1u << 15 | (violation == timer_locked ? 20 : 0);
   results[4] = word(tim8 + timer::bdtr) & 0xFF;
 
-  if (fault == clock_fresh)
+  if (violation == clock_fresh)
     asm volatile("str %1, [%0]\n str %3, [%2]" ::"r"(rcc::apb1enr), "r"(word(rcc::apb1enr) | 1),
                  "r"(timer::tim2 + timer::arr), "r"(1000)
                  : "memory");
@@ -146,21 +146,21 @@ void use_others() {
   word(0x40003000) = 0xCCCC;
   word(0x40003000) = 0x5555;
   word(0x40003008) = 4000;
-  if (fault != watchdog_busy)
+  if (violation != watchdog_busy)
     while (word(0x4000300C) != 0) {
     }
   word(0x40003000) = 0x5555;
   word(0x40003008) = 3000;
 
   constexpr std::uint32_t optkeyr = 0x40023C08, optcr = 0x40023C14;
-  if (fault != option_bytes_locked) {
+  if (violation != option_bytes_locked) {
     word(optkeyr) = 0x08192A3B;
     word(optkeyr) = 0x4C5D6E7F;
   }
   word(optcr) = (word(optcr) & ~0xFu) | 1;  // brown-out level 3, not programmed yet
   results[7] = word(optcr);
 
-  if (fault == ccm_clock_off) word(rcc::ahb1enr) &= ~(1u << 20);
+  if (violation == ccm_clock_off) word(rcc::ahb1enr) &= ~(1u << 20);
   word(0x10000000) = 1;
 }
 
@@ -169,22 +169,22 @@ void start_usb() {
   constexpr std::uint32_t core = 0x50000000, gusbcfg = core + 0x0C, grstctl = core + 0x10;
   word(0x40023834) |= 1u << 7;  // AHB2ENR
   read_back(0x40023834);
-  if (fault != usb_pins) {
+  if (violation != usb_pins) {
     gpio::alternate(gpio::a, 11, 10);
     gpio::alternate(gpio::a, 12, 10);
   }
-  if (fault != usb_transceiver) word(gusbcfg) |= 1u << 6;
-  if (fault != usb_core_reset) word(grstctl) |= 1;
-  if (fault != usb_disturbed) {
+  if (violation != usb_transceiver) word(gusbcfg) |= 1u << 6;
+  if (violation != usb_core_reset) word(grstctl) |= 1;
+  if (violation != usb_disturbed) {
     while ((word(grstctl) & 1) != 0) {
     }
     wait_us(1);
   }
   word(core + 0x38) = 1u << 16 | 1u << 21;
-  word(gusbcfg) =
-      (word(gusbcfg) & ~(0xFu << 10)) | (fault == usb_mode ? 0 : 1u << 30) | (fault == usb_turnaround ? 0 : 6u << 10);
-  if (fault != usb_mode_wait) wait_us(25'100);
-  word(core + 0x800) |= fault == usb_speed ? 0 : 3;
+  word(gusbcfg) = (word(gusbcfg) & ~(0xFu << 10)) | (violation == usb_mode ? 0 : 1u << 30) |
+                  (violation == usb_turnaround ? 0 : 6u << 10);
+  if (violation != usb_mode_wait) wait_us(25'100);
+  word(core + 0x800) |= violation == usb_speed ? 0 : 3;
   word(core + 0x804) &= ~2u;
   // The following steps need no host: an endpoint is loaded as if the device had been configured.
   word(core + 0x024) = 56;
@@ -193,7 +193,7 @@ void start_usb() {
   word(core + 0x940) = 1u << 28 | 2u << 22 | 2u << 18 | 1u << 15 | 64;
   word(core + 0x950) = 9u << 19 | 9 * 64;
   word(core + 0x940) |= 1u << 31 | 1u << 26;
-  const unsigned packets = fault == usb_fifo_packets ? 9 : 8;
+  const unsigned packets = violation == usb_fifo_packets ? 9 : 8;
   for (unsigned i = 0; i < packets * 16; ++i) word(core + 0x3000) = i;
 }
 
@@ -204,7 +204,7 @@ void use_narrow_writes() {
   byte(0xE000E403) = 0x40;
   byte(0xE000ED29) = 0xFF;
   byte(0xE0000000) = 'x';
-  if (fault == narrow_core_write) byte(0xE000ED10) = 0;
+  if (violation == narrow_core_write) byte(0xE000ED10) = 0;
 }
 
 }  // namespace
@@ -212,22 +212,22 @@ void use_narrow_writes() {
 void run() {
   word(rcc::ahb1enr) |= 8;
   read_back(rcc::ahb1enr);
-  fault = word(0x40020C00 + gpio::idr);
+  violation = word(0x40020C00 + gpio::idr);
   set_handler(3, [] {
     results[5] = word(0xE000ED28);
     for (;;) wait_for_interrupt();
   });
-  if (fault == float_unit_off) word(0xE000ED88) = 0;
+  if (violation == float_unit_off) word(0xE000ED88) = 0;
   asm volatile("dsb\n isb\n vmov.f32 s0, #1.0" ::: "s0", "memory");
   start_clocks();
   convert();
   convert_reference();
   use_others();
   start_usb();
-  word(0xE000ED9C) = 0x2001'0000 | (fault == region_undefined ? 1u << 5 : 0) | 1 << 4;
+  word(0xE000ED9C) = 0x2001'0000 | (violation == region_undefined ? 1u << 5 : 0) | 1 << 4;
   word(0xE000EDA0) = 3 << 24 | 3 << 16 | 9 << 1 | 1;
-  word(0xE000ED98) = fault == region_number ? 8 : 7;
-  if (fault == region_number_of_base) word(0xE000ED9C) = 1 << 4 | 8;
+  word(0xE000ED98) = violation == region_number ? 8 : 7;
+  if (violation == region_number_of_base) word(0xE000ED9C) = 1 << 4 | 8;
   word(0xE000ED9C) = 8;  // the region number is ignored without VALID
   use_narrow_writes();
   results[0] = finished;

@@ -42,7 +42,7 @@ extern "C" void note_hard_fault() {
 [[gnu::naked]] void hard_fault() { asm volatile("ldr r1, =0x20018000\n mov sp, r1\n b note_hard_fault"); }
 
 void second() {
-  // 1 kB that only fault handlers may write, because HFNMIENA is 0.
+  // 1 kB that only CPU fault handlers may write, because HFNMIENA is 0.
   word(mpu_base) = 0x20010000 | 1 << 4;
   word(mpu_attributes) = 6u << 24 | 9 << 1 | 1;
   word(mpu_control) = 1 | 1 << 2;

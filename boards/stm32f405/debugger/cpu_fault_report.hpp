@@ -1,4 +1,4 @@
-// Report of a lock-up: the first fault with registers, function and call stack.
+// Report of a lock-up: the first CPU fault with registers, function and call stack.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ using MemoryReader = std::function<std::uint32_t(std::uint32_t address)>;
 /// wrong results.
 std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const MemoryReader& word, std::size_t limit);
 
-/// Returns text lines that describe the first fault of a lock-up. `elf` is part of the suggested addr2line command.
-std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf);
+/// Returns text lines that describe the first CPU fault of a lock-up. `elf` is part of the suggested addr2line command.
+std::vector<std::string> explain_cpu_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf);
 
 }  // namespace inkwell::virtual_board

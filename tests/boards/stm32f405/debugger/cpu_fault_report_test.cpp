@@ -2,7 +2,7 @@
 
 #include <fstream>
 #include <map>
-#include "boards/stm32f405/debugger/fault_report.hpp"
+#include "boards/stm32f405/debugger/cpu_fault_report.hpp"
 
 #include "tests/temporary_directory.hpp"
 
@@ -56,12 +56,12 @@ TEST_SUITE("virtual board: debugger") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("lock_up", mode);
-      CHECK(explain_fault(test.chip, {}, "x.elf").empty());
+      CHECK(explain_cpu_fault(test.chip, {}, "x.elf").empty());
       REQUIRE(test.chip.run_until(ticks(0.01)) == Stop::locked_up);
       CHECK(test.chip.lockup_reason().find("breakpoint") != std::string::npos);
       std::string text;
       const std::filesystem::path elf = firmware_path("lock_up");
-      for (const auto& line : explain_fault(test.chip, Symbols(elf), elf)) text += line + "\n";
+      for (const auto& line : explain_cpu_fault(test.chip, Symbols(elf), elf)) text += line + "\n";
       CAPTURE(text);
       for (const char* part : {"nothing answers on the bus at 0x60000000", "thread mode", "read_too_far", "sum_up+0x",
                                "run()+0x", "reset_handler+0x", "R0  60000000", "addr2line"})

@@ -1,4 +1,4 @@
-#include "boards/stm32f405/debugger/fault_report.hpp"
+#include "boards/stm32f405/debugger/cpu_fault_report.hpp"
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> guess_callers(const CoreRegisters& registers, const M
   return callers;
 }
 
-std::vector<std::string> explain_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf) {
+std::vector<std::string> explain_cpu_fault(const Chip& chip, const Symbols& symbols, const std::filesystem::path& elf) {
   if (!chip.first_fault()) return {};
   const Fault& fault = *chip.first_fault();
   const auto& r = fault.registers.general;

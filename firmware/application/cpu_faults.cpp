@@ -32,7 +32,7 @@ struct ExceptionFrame {
   std::uint32_t r12, link_register, program_counter, program_status;
 };
 
-std::uint32_t address_of(const void* place) { return reinterpret_cast<std::uint32_t>(place); }
+std::uint32_t address_of(const void* pointer) { return reinterpret_cast<std::uint32_t>(pointer); }
 
 /// Stack pointer before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
 std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_return) {
@@ -94,10 +94,10 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 /// The handler first switches the motors off with three stores that need no stack, because the stack may be damaged.
 /// The handler then uses the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless
-/// the stack has overflowed. No interrupt can preempt this function, because faults have the highest priority. A second
-/// fault in this function restarts the function as a hard fault handler. A fault in the hard fault handler locks up the
-/// processor until the watchdog expires.
-extern "C" [[gnu::naked]] void fault_handler() {
+/// the stack has overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A
+/// second CPU fault in this function restarts the function as a hard fault handler. A CPU fault in the hard fault
+/// handler locks up the processor until the watchdog expires.
+extern "C" [[gnu::naked]] void cpu_fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
       "ldr r3, =%c[enable_low] \n"
@@ -112,13 +112,13 @@ extern "C" [[gnu::naked]] void fault_handler() {
       "mov sp, r1 \n"
       "push {r4-r11, lr} \n"
       "mov r1, sp \n"
-      "b record_fault \n"
+      "b record_cpu_fault \n"
       ".ltorg \n" ::[enable_address] "i"(drivers::bridge_enable_low.address),
       [enable_low] "i"(drivers::bridge_enable_low.value), [legs_a_address] "i"(drivers::legs_a_off.address),
       [legs_b_address] "i"(drivers::legs_b_off.address), [off] "i"(drivers::outputs_off));
 }
 
-extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {
+extern "C" [[noreturn, gnu::used]] void record_cpu_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {
   crash_record.store(facts_of(frame, saved));
   drivers::reset_chip();
 }

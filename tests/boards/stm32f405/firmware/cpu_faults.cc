@@ -1,5 +1,5 @@
-// One fault of each kind in sequence. Each record contains CFSR, HFSR, BFAR, and whether the stacked program counter is
-// that of the faulting instruction.
+// One CPU fault of each kind in sequence. Each record contains CFSR, HFSR, BFAR, and whether the stacked program
+// counter is that of the faulting instruction.
 #include "tests/boards/stm32f405/firmware/support.hpp"
 
 namespace {
@@ -7,7 +7,7 @@ namespace {
 std::uint32_t record = 0;
 std::uint32_t resume_at = 0, expected = 0;
 
-extern "C" void note_fault(std::uint32_t* frame) {
+extern "C" void note_cpu_fault(std::uint32_t* frame) {
   const std::uint32_t place = 4 + 4 * record++;
   results[place] = word(0xE000ED28);
   results[place + 1] = word(0xE000ED2C);
@@ -17,7 +17,7 @@ extern "C" void note_fault(std::uint32_t* frame) {
   word(0xE000ED2C) = 0xFFFFFFFF;
   frame[6] = resume_at;
 }
-[[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_fault\n pop {r4, pc}"); }
+[[gnu::naked]] void cpu_fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_cpu_fault\n pop {r4, pc}"); }
 
 // Records the address of the instruction and of the continuation, then executes the instruction.
 #define FAULTING(instruction, input)                                                                      \
@@ -29,15 +29,15 @@ extern "C" void note_fault(std::uint32_t* frame) {
 }  // namespace
 
 void run() {
-  set_handler(3, fault);
-  set_handler(5, fault);
-  set_handler(6, fault);
+  set_handler(3, cpu_fault);
+  set_handler(5, cpu_fault);
+  set_handler(6, cpu_fault);
   FAULTING("ldr r3, [%2]", 0x60000000);  // unmapped address, escalates
   word(0xE000ED24) = 7 << 16;            // enables MemManage, BusFault and UsageFault
   FAULTING("str r3, [%2]", 0x2F000000);
   FAULTING("udf #0", 0);
   results[0] = finished;
-  // Without an executable handler, a fault inside HardFault locks up the core.
+  // Without an executable handler, a CPU fault inside HardFault locks up the core.
   set_handler(3, [] { word(0x60000000) = 0; });
   word(0xE000ED24) = 0;
   word(0x60000000) = 0;
