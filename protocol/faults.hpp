@@ -5,7 +5,7 @@
 // (1) Append a row with the next code to INKWELL_FAULTS. For a new placeholder in braces, extend with_figures() in
 //     host/client/device/fault_text.cpp.
 // (2) Add the condition to firmware/control/controller.cpp if the fault must be raised in the same control period. If a
-//     delay of about 0.15 ms is acceptable, use firmware/application/background_watch.cpp instead. The file
+//     delay of about 0.15 ms is acceptable, use firmware/application/background_check.cpp instead. The file
 //     firmware/application/control_interrupt.cpp raises the faults for a late interrupt, a stalled main loop and a lost
 //     USB connection.
 // (3) Add a row to condition_table in protocol/supervision.hpp and a separate row to

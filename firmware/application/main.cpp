@@ -8,7 +8,7 @@
 #include "firmware/drivers/system.hpp"
 #include "firmware/usb/device.hpp"
 
-#include "firmware/application/background_watch.hpp"
+#include "firmware/application/background_check.hpp"
 #include "firmware/application/crash.hpp"
 #include "firmware/application/main_loop.hpp"
 #include "firmware/application/parameter_memory.hpp"
@@ -59,7 +59,7 @@ protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::opti
   return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
 }
 
-[[noreturn]] void run_main_loop(usb::Device& usb_device, BackgroundWatch& background_watch) {
+[[noreturn]] void run_main_loop(usb::Device& usb_device, BackgroundCheck& background_check) {
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
@@ -69,8 +69,8 @@ protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::opti
       drivers::start_boot_loader();
     host_link.scope.pack();
     host_link.black_box.follow();
-    background_watch.check();
-    follow_self_test(background_watch);
+    background_check.run();
+    follow_self_test(background_check);
     keep_motor_heat();
     feed_watchdogs();
     show_state();
@@ -112,8 +112,8 @@ int main() {
   if (fault != protocol::Fault::none) controller.raise(fault);
   take_motor_heat(reset_cause.power_on());
   host_link.black_box.start(fault, crash.value_or(protocol::CrashFacts{}));
-  BackgroundWatch background_watch;
-  host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
+  BackgroundCheck background_check;
+  host_link.self_test.note(protocol::SelfTestItem::flash, background_check.start());
 
   // Directly after an update event, nearly a whole period is available to arm all three converters.
   if (!bridges.wait_for_update()) stop_forever();
@@ -131,5 +131,5 @@ int main() {
                            watchdog_trial.expired_after_ms);
 
   feed_watchdogs();  // from here on a hang is detected, even in the first round
-  run_main_loop(usb_device, background_watch);
+  run_main_loop(usb_device, background_check);
 }

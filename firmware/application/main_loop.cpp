@@ -48,10 +48,10 @@ void keep_motor_heat() {
   motor_heat_keeper.store(controller.warmth());
 }
 
-void follow_self_test(const BackgroundWatch& background_watch) {
+void follow_self_test(const BackgroundCheck& background_check) {
   link::SelfTest& test = host_link.self_test;
   if (!test.goes_on()) return;
-  const control::AnalogSupply& supply = background_watch.analog_supply();
+  const control::AnalogSupply& supply = background_check.analog_supply();
   const std::uint16_t reference_counts = analog_inputs.reference_counts();
   test.follow(controller, host_link.parameters.settings(),
               {.gimbal_ratio = analog_inputs.gimbal_ratio(),

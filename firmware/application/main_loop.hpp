@@ -1,7 +1,7 @@
 // In each round, the main loop runs these tasks in addition to USB.
 #pragma once
 
-#include "firmware/application/background_watch.hpp"
+#include "firmware/application/background_check.hpp"
 
 namespace inkwell::application {
 
@@ -14,7 +14,7 @@ inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(p
 void feed_watchdogs();
 
 /// Continues a self-test that is in progress.
-void follow_self_test(const BackgroundWatch& background_watch);
+void follow_self_test(const BackgroundCheck& background_check);
 
 /// Restores the motor heat of the previous run, except after power-on. Call this function before the control interrupt
 /// is enabled.

@@ -250,19 +250,19 @@ void Controller::update_resistance(const Settings& settings) {
                                        settings.motor_model.resistance_ohm[turn_]);
 }
 
-void Controller::watch_motors(const Settings& settings) {
+void Controller::check_motors(const Settings& settings) {
   // While the force is on, the resistance is updated only when the heat is updated.
   if (!force_is_on() || heat_.readings == 0) update_resistance(settings);
   if (!force_is_on()) {
-    reset(motor_watch_);
-    watch_idle_currents();
+    reset(motor_check_);
+    check_idle_currents();
     return;
   }
-  if (!update_motor_check(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_,
+  if (!update_motor_check(motor_check_, current_A_, joint_speed_rad_per_s_, resistances_,
                           settings.motor_model.back_emf_Vs_per_rad)) [[unlikely]]
     raise(Fault::motor_implausible);
   // The duty cycles of the previous period remain active until the next period.
-  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
+  turn_to(motor_check_, turn_, drive_.duty[turn_] * supply_.supply_V,
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
@@ -280,11 +280,11 @@ void Controller::bound_voltages(const Settings& settings) {
   const float most_A = std::fabs(reference_A_[turn_]) + left_N * settings.motors.ampere_per_N[turn_];
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[turn_] * joint_speed_rad_per_s_[turn_];
   voltage_ranges_[turn_] =
-      voltage_range(most_A, resistances_[turn_], back_emf_V, motor_watch_.loss.expected_V(), bound_V);
+      voltage_range(most_A, resistances_[turn_], back_emf_V, motor_check_.loss.expected_V(), bound_V);
 }
 
 /// After the bridges have been off for a while, the sensors must read their measured offsets.
-void Controller::watch_idle_currents() {
+void Controller::check_idle_currents() {
   bool off_zero = false;
   if (!drive_.enabled && !drive_.brake && offsets_.measured())
     for (const float each_A : current_A_) off_zero = off_zero || !(std::fabs(each_A) <= CurrentOffsets::plausible_A);
@@ -293,7 +293,7 @@ void Controller::watch_idle_currents() {
 }
 
 void Controller::regulate_currents(const Settings& settings) {
-  watch_motors(settings);
+  check_motors(settings);
   bound_voltages(settings);
   drive_ = {};
   if (!force_is_on() && !test_.runs()) {
@@ -337,7 +337,7 @@ void Controller::follow_test(protocol::Conditions found, const Settings& setting
 
 /// Compares one joint angle per period with the angle for a stylus in the inkwell. If the arm is not referenced, the
 /// joint angle is meaningless, and the supervisor ignores this fault.
-void Controller::watch_inkwell_switch(const Settings& settings) {
+void Controller::check_inkwell_switch(const Settings& settings) {
   if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
     raise(Fault::inkwell_implausible);
 }
@@ -381,7 +381,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (over_current_for_A_[turn_] != settings.limits.over_current_A[turn_]) [[unlikely]]
     follow_over_current(settings);
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
-    watch_inkwell_switch(settings);
+    check_inkwell_switch(settings);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
   // Force and torques need no separate check, because the current references of all motors in use depend on them.
   const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +

@@ -130,11 +130,11 @@ class Controller {
   [[gnu::cold]] Force reduce_driving_part(const Force& requested, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
   [[gnu::cold]] void update_resistance(const Settings& settings);
-  void watch_motors(const Settings& settings);
+  void check_motors(const Settings& settings);
   void bound_voltages(const Settings& settings);
   void regulate_currents(const Settings& settings);
-  [[gnu::cold]] void watch_idle_currents();
-  [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
+  [[gnu::cold]] void check_idle_currents();
+  [[gnu::cold]] void check_inkwell_switch(const Settings& settings);
   /// Largest reliably measured current magnitude.
   float known_A(std::size_t motor) const { return board_.current_measurable_A - std::fabs(offsets_.offset_A[motor]); }
   [[gnu::cold]] void follow_over_current(const Settings& settings);
@@ -159,7 +159,7 @@ class Controller {
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   std::array<Resistance, 3> resistances_{};
-  MotorWatch motor_watch_;
+  MotorCheck motor_check_;
   std::array<VoltageRange, 3> voltage_ranges_{};
   Triple over_current_A_{};             ///< bound of the over-current fault
   Triple over_current_for_A_{};         ///< current limits that over_current_A_ has reached, else 0

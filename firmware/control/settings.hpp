@@ -12,8 +12,8 @@
 #include "firmware/control/signal_path/program_force.hpp"
 #include "firmware/control/signal_path/speed_limit.hpp"
 #include "firmware/control/signal_path/torque.hpp"
+#include "firmware/control/supervision/motor_check.hpp"
 #include "firmware/control/supervision/motor_heat.hpp"
-#include "firmware/control/supervision/motor_watch.hpp"
 #include "protocol/parameters.hpp"
 
 namespace inkwell::control {

@@ -25,7 +25,7 @@ class StoredParameters {
   /// Requests store_parameters or factory_reset. `may` is true if the command is allowed.
   void ask(protocol::Command command, bool may);
   /// Executes one step of the requested command. If a bit of the command's data has flipped, the command fails with
-  /// flash_failed, and the background watch reports the damage.
+  /// flash_failed, and the background check reports the damage.
   ///
   /// A step may block the main loop while the flash programs one word. `periods` is the number of the control period.
   /// This number is used to separate the words in time, so that poses are not delayed.

@@ -121,9 +121,9 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 }  // namespace
 
 TEST_CASE(
-    "what watches costs the longest control interrupt at most 300 instructions, 420 where the state changes, the "
+    "what checks costs the longest control interrupt at most 300 instructions, 420 where the state changes, the "
     "bounds of the loops' voltages 100") {
-  const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-watches-{}", getpid());
+  const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-checks-{}", getpid());
   {
     auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
     options.profile = profile;
@@ -146,7 +146,7 @@ TEST_CASE(
           executed, [place = firmware_place(function)](std::uint32_t address) { return place.contains(address); });
     return count;
   };
-  const auto watching = instructions_in({"Controller9supervise", "Controller12watch_motors"});
+  const auto checking = instructions_in({"Controller9supervise", "Controller12check_motors"});
   const auto heartbeat = instructions_in({"Bridges12begin_period", "Bridges10end_period"});
   const auto heat = instructions_in({"7control11update_heat"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
@@ -164,18 +164,18 @@ TEST_CASE(
   // instructions of other code are included.
   const auto current_jumps = conditioning_by("current_jump.hpp") + 4 - 3;
   const auto change_of_state = instructions_in({"Controller12change_state", "7control7advanceERKNS0_10Supervisor"});
-  MESSAGE("simulation: of ", executed.size(), " instructions ", watching, " supervise, ", heartbeat,
+  MESSAGE("simulation: of ", executed.size(), " instructions ", checking, " supervise, ", heartbeat,
           " are the heartbeat's, ", jumps, " look for jumps of encoders, ", current_jumps, " of currents, ", heat,
           " are the motors' heat, ", bounds, " the bounds of the loops' voltages, ", resistance,
           " the motors' resistance, ", change_of_state, " a change of state");
   CHECK(executed.size() > 1'000);
-  CHECK(watching > 100);
+  CHECK(checking > 100);
   CHECK(heartbeat > 10);
   CHECK(jumps > 10);
   CHECK(current_jumps > 10);
   CHECK(heat > 10);
   // The longest interrupt may include a change of a limit's state.
-  CHECK(watching + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 420 : 300));
+  CHECK(checking + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 420 : 300));
   CHECK(bounds > 10);
   CHECK(bounds + resistance <= 100);
 }

@@ -3,7 +3,7 @@
 //
 // While the bridges are off, the enable wire, the monostable output and all legs must be low. While the bridges are on,
 // the enable wire must be high. The control interrupt checks in each period that the monostable output is also high.
-// The legs switch while the bridges are on, so the leg levels are not checked. The check in motor_watch.hpp
+// The legs switch while the bridges are on, so the leg levels are not checked. The check in motor_check.hpp
 // ensures that the motors follow the legs. The heartbeat is high only during the control interrupt, so the main loop
 // always reads a low level.
 #pragma once

@@ -2,13 +2,13 @@
 //
 // The inductance of a winding limits the rate of change of its current. An open motor or bridge leg interrupts the
 // current within one control period, and the reading of a failed sensor changes instantly. The motor equation
-// (MotorWatch) detects these failures within milliseconds. The jump check needs only a single reading.
+// (MotorCheck) detects these failures within milliseconds. The jump check needs only a single reading.
 #pragma once
 
 #include <cmath>
 
 #include "firmware/control/signal_path/vector.hpp"
-#include "firmware/control/supervision/motor_watch.hpp"
+#include "firmware/control/supervision/motor_check.hpp"
 
 namespace inkwell::control {
 

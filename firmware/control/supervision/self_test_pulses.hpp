@@ -11,7 +11,7 @@
 
 #include "firmware/control/signal_path/conditioning.hpp"
 #include "firmware/control/signal_path/vector.hpp"
-#include "firmware/control/supervision/motor_watch.hpp"
+#include "firmware/control/supervision/motor_check.hpp"
 
 namespace inkwell::control {
 

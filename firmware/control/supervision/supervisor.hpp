@@ -8,7 +8,7 @@ namespace inkwell::control {
 /// Conditions in this period, and requests since the previous period.
 struct Situation {
   protocol::Events events;
-  protocol::Conditions found;  ///< includes faults that the state does not watch
+  protocol::Conditions found;  ///< includes faults that the state does not monitor
 };
 
 struct Supervisor {

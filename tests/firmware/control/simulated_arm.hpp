@@ -43,7 +43,7 @@ inline protocol::CommandReport command(protocol::Command which) {
 
 /// For tests without motor currents. The low voltage limit prevents the detection of a missing motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
-  set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::tolerance_V;
+  set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorCheck::tolerance_V;
   return set;
 }
 

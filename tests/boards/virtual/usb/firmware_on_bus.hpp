@@ -76,9 +76,9 @@ class Cable : public virtual_board::BusDevice {
 
 /// The core's registers on the chip's bus. This object reports each register write. It reports each register read
 /// before the firmware receives the value.
-class WatchedRegisters final : public virtual_board::Peripheral {
+class ObservedRegisters final : public virtual_board::Peripheral {
  public:
-  explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
+  explicit ObservedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
   std::uint32_t read(std::uint32_t offset, unsigned size) override {
     const std::uint32_t value = registers_.read(offset, size);
     if (on_read) on_read(offset, value);
@@ -143,7 +143,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   Chip chip;
   virtual_board::Connector connector;
   virtual_board::OtgFsDevice& core = connector.core();
-  WatchedRegisters registers;
+  ObservedRegisters registers;
   Cable cable;
   virtual_board::RootPort port;
 

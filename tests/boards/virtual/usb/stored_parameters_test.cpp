@@ -271,8 +271,8 @@ const Contents before_an_erase[] = {
 
 /// A board and its parameters after start-up, read directly from memory. A request by the host would take a quarter of
 /// a second of board time.
-struct WatchedStarts {
-  explicit WatchedStarts(const Contents& contents) {
+struct ObservedStarts {
+  explicit ObservedStarts(const Contents& contents) {
     contents.make(board.bus.chip);
     at_first = store_image(board.bus.chip);
     board.switch_off_and_on();
@@ -368,7 +368,7 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);
-    WatchedStarts starts(contents);
+    ObservedStarts starts(contents);
     const std::vector<Word> words = words_of_a_store(starts.board);
     REQUIRE(words.size() > 2 * protocol::parameter_count);
     CHECK(words.front().place / (sector_bytes / sizeof(std::uint32_t)) == contents.sector);
@@ -392,7 +392,7 @@ TEST_CASE("a power cut at any word of a store leaves all of the old parameters o
 TEST_CASE("a power cut at any word and any erase of a start leaves the parameters that were stored") {
   for (const Contents& contents : before_an_erase) {
     CAPTURE(contents.name);
-    WatchedStarts starts(contents);
+    ObservedStarts starts(contents);
     Chip& chip = starts.board.bus.chip;
     const std::uint64_t before = chip.flash_operations();
     REQUIRE(starts.after_power_on(starts.at_first) == starts.old_set);

@@ -39,7 +39,7 @@ TEST_CASE("with a measured reference a VDDA that is off by 4.7 % is borne, by 5.
     }
 }
 
-TEST_CASE("a calibration that was never written or is lost makes the watch coarser, and no sound part trips it") {
+TEST_CASE("a calibration that was never written or is lost makes the check coarser, and no sound part trips it") {
   for (const std::uint16_t calibrated_counts : {0, 1'100, 1'440, 1'560, 4'095, 0xFFFF}) {
     CAPTURE(calibrated_counts);
     for (const float reference_V : {1.18f, 1.21f, 1.24f}) {

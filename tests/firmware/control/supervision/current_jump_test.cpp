@@ -114,7 +114,7 @@ TEST_CASE("a sensor whose gain halves or doubles at 0.7 A is told in the period 
     }
 }
 
-TEST_CASE("a small current that ends is left to the motors' watch") {
+TEST_CASE("a small current that ends is left to the motor check") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     HeldArm arm;

@@ -37,7 +37,7 @@ Supervisor in(State state) { return {state, Fault::none}; }
 State next(State state, Events now) { return advance(in(state), {now, {}}).state; }
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
-TEST_CASE("what has no row in the table of what is watched has a place behind it") {
+TEST_CASE("what has no row in the table of what is monitored has a place behind it") {
   CHECK(protocol::place_of(Fault::none) == protocol::condition_table.size());
   CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
 }
@@ -182,7 +182,7 @@ TEST_CASE("each fault is looked for in its states and in no other") {
       if (state == State::limited) now |= events(Event::held_back);
       if (state == State::update) now |= events(Event::update);
       bool expected = false;
-      for (const State watched : row.monitored_in) expected |= watched == state;
+      for (const State monitored : row.monitored_in) expected |= monitored == state;
       CHECK(advance(in(state), {now, condition(row.fault)}) == (expected ? faulty(row.fault) : in(state)));
     }
 }

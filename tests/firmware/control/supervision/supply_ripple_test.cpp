@@ -14,7 +14,7 @@ using control::ripples;
 using control::SupplyRipple;
 
 constexpr float nominal_V = 18.0f, step_V = 0.01f;
-constexpr SupplyRipple watch{.tolerance_counts = 100};
+constexpr SupplyRipple ripple_check{.tolerance_counts = 100};
 
 std::uint16_t counts_of(float supply_V) { return static_cast<std::uint16_t>(supply_V / step_V); }
 
@@ -24,7 +24,7 @@ constexpr std::uint32_t never = periods_in(2.0f);
 /// reported.
 template <class Supply>
 std::uint32_t periods_until_ripple(Supply supply_V, std::uint32_t begin = 0, std::uint32_t every = 1) {
-  SupplyRipple ripple = watch;
+  SupplyRipple ripple = ripple_check;
   for (std::uint32_t period = 0; period < never; period += every)
     if (ripples(ripple, counts_of(supply_V(static_cast<float>(period) * protocol::servo_period_s)), begin + period))
       return period;
@@ -68,7 +68,7 @@ TEST_CASE("a step, a sag, a spike and a supply that is cut are no ripple") {
 }
 
 TEST_CASE("ripple lasts as long as the supply swings, and is over a tenth of a second later at most") {
-  SupplyRipple ripple = watch;
+  SupplyRipple ripple = ripple_check;
   std::uint32_t period = 0;
   for (; period < periods_in(0.5f); ++period) {
     const bool found =
@@ -88,7 +88,7 @@ TEST_CASE("looks that are skipped, and a count of periods that wraps, change not
   CHECK(periods_until_ripple(swing(5.0f, 20.0f), 0xFFFF'0000u, 5) == never);
   // The mean follows the supply with a time constant of `within_periods`.
   for (const std::uint32_t every : {1u, 7u}) {
-    SupplyRipple ripple = watch;
+    SupplyRipple ripple = ripple_check;
     ripples(ripple, counts_of(12.0f), 0);
     for (std::uint32_t period = every; period <= SupplyRipple::within_periods; period += every)
       ripples(ripple, counts_of(nominal_V), period);

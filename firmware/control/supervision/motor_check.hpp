@@ -77,7 +77,7 @@ struct Resistance {
   }
 };
 
-struct MotorWatch {
+struct MotorCheck {
   /// Tolerance for brushes, diodes and sensor errors, in addition to the bridge drop. The flux tolerance covers short
   /// effects. Examples are the inductive voltage of a current change, and the delay of the speed measurement when the
   /// arm stops.
@@ -112,30 +112,30 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const float left_V = voltage_V - ohmic_V - back_emf_V;
   const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance =
-      is_more ? resistance.tolerated_increase : MotorWatch::tolerated_decrease_of_resistance;
+      is_more ? resistance.tolerated_increase : MotorCheck::tolerated_decrease_of_resistance;
   // The bridge drop opposes the current. If the voltage is too small for its current, the drop therefore reduces the
   // tolerance.
-  const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
-  return {std::fabs(left_V), bridge_V + MotorWatch::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
-                                 MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
+  const float bridge_V = is_more || !(std::fabs(current_A) > MotorCheck::steady_A) ? loss.most_V : -loss.least_V();
+  return {std::fabs(left_V), bridge_V + MotorCheck::tolerance_V + part_of_resistance * std::fabs(ohmic_V) +
+                                 MotorCheck::tolerated_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
 /// Checks the motor of this period. Returns true if voltage, current and speed of the motor are consistent.
-bool update_motor_check(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
+bool update_motor_check(MotorCheck& check, const Triple& current_A, const Triple& joint_speed_rad_per_s,
                         const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
 
 /// Clears the sums. Call this function while the current loops do not drive the bridges.
-inline void reset(MotorWatch& watch) {
-  watch.beyond_V = {};
-  watch.voltage_V = 0.0f;
+inline void reset(MotorCheck& check) {
+  check.beyond_V = {};
+  check.voltage_V = 0.0f;
 }
 
 /// Completes the period. The next call of update_motor_check() checks `motor`, 0..2. `voltage_V` is the bridge voltage
 /// of this motor until the next call, and `loss` is the voltage drop of the bridge.
-inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
-  watch.motor = motor;
-  watch.voltage_V = voltage_V;
-  watch.loss = loss;
+inline void turn_to(MotorCheck& check, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
+  check.motor = motor;
+  check.voltage_V = voltage_V;
+  check.loss = loss;
 }
 
 /// Returns the voltage range of a motor for currents up to +-`most_A`. The range is limited to +-`bound_V`.
@@ -144,7 +144,7 @@ inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
   const float half_V =
-      resistance.with_room_ohm() * most_A + bridge_V + MotorWatch::tolerated_part_of_back_emf * std::fabs(back_emf_V);
+      resistance.with_room_ohm() * most_A + bridge_V + MotorCheck::tolerated_part_of_back_emf * std::fabs(back_emf_V);
   return {std::max(std::min(back_emf_V - half_V, 0.0f), -bound_V),
           std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
 }

@@ -14,7 +14,7 @@
 #include "boards/omni_driver/facts.hpp"
 #include "firmware/control/settings.hpp"
 #include "firmware/control/supervision/current_jump.hpp"
-#include "firmware/control/supervision/motor_watch.hpp"
+#include "firmware/control/supervision/motor_check.hpp"
 
 #include "tests/system/board_rig.hpp"
 
@@ -22,17 +22,17 @@ namespace inkwell::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using control::MotorWatch;
+using control::MotorCheck;
 using protocol::ForceMode;
 using protocol::Parameter;
 using protocol::Signal;
 
 /// Repeats the firmware's check with the streamed signals of all three motors, because the sums of the firmware are not
 /// streamed.
-class WatchedRig : public BoardRig {
+class CheckedRig : public BoardRig {
  public:
   /// `hotter_K`: additional motor temperature during the self-test.
-  explicit WatchedRig(double hotter_K = 0.0) {
+  explicit CheckedRig(double hotter_K = 0.0) {
     set({{Parameter::force_ramp_s, 0.0f}, {Parameter::speed_limit_m_per_s, 10.0f}});
     heat(hotter_K);
     take_to(free_point_m);
@@ -52,7 +52,7 @@ class WatchedRig : public BoardRig {
         Signal::joint_speed_1_rad_s, Signal::joint_speed_2_rad_s, Signal::joint_speed_3_rad_s, Signal::supply_V,
         Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3, Signal::current_reference_1_A,
         Signal::current_reference_2_A, Signal::current_reference_3_A});
-    watch(0.05);
+    advance(0.05);
     restart();
   }
 
@@ -63,7 +63,7 @@ class WatchedRig : public BoardRig {
   }
 
   void restart() {
-    watch_ = {};
+    motor_check_ = {};
     previous_V_.clear();
     nearest_V = largest_left_V = largest_beyond_V = fastest_rad_per_s = strongest_N = 0.0f;
     before_.clear();
@@ -77,13 +77,13 @@ class WatchedRig : public BoardRig {
 
   /// Advances board time and runs `each_millisecond` every millisecond.
   template <class Action>
-  void watch(double time_s, const Action& each_millisecond) {
+  void advance(double time_s, const Action& each_millisecond) {
     for (auto left = std::lround(1000 * time_s); left > 0; --left) {
       each_millisecond();
       pass(0.001);
     }
   }
-  void watch(double time_s) {
+  void advance(double time_s) {
     constexpr double slice_s = 0.01;  // the stream buffers are larger
     for (auto left = std::lround(time_s / slice_s); left > 0; --left) {
       device->send(protocol::Command::heartbeat);
@@ -91,7 +91,7 @@ class WatchedRig : public BoardRig {
     }
   }
 
-  /// Largest sum, relative to the fault threshold MotorWatch::tolerance_sum_V.
+  /// Largest sum, relative to the fault threshold MotorCheck::tolerance_sum_V.
   float nearest_V = 0.0f;
   /// Largest difference between the voltage and the expected voltage, and the largest excess of this difference over
   /// the tolerance.
@@ -131,10 +131,10 @@ class WatchedRig : public BoardRig {
       const control::MotorModel& model = settings_.motor_model;
       const auto resistance =
           control::Resistance::of(measured_.resistance_ohm[motor], value[10 + motor], model.resistance_ohm[motor]);
-      turn_to(watch_, motor, previous_V, loss);
-      update_motor_check(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]},
+      turn_to(motor_check_, motor, previous_V, loss);
+      update_motor_check(motor_check_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]},
                          {resistance, resistance, resistance}, model.back_emf_Vs_per_rad);
-      nearest_V = std::max(nearest_V, watch_.beyond_V[motor]);
+      nearest_V = std::max(nearest_V, motor_check_.beyond_V[motor]);
       const auto deviation = control::unexplained(previous_V, loss, value[3 + motor], value[6 + motor], resistance,
                                                   model.back_emf_Vs_per_rad[motor]);
       largest_left_V = std::max(largest_left_V, deviation.voltage_V);
@@ -156,58 +156,58 @@ class WatchedRig : public BoardRig {
   control::Settings settings_ = control::prepare(protocol::default_parameters());
   std::vector<float> before_;         ///< values of the previous period
   control::MeasuredMotors measured_;  ///< from the self-test; the firmware assumes cold motors there
-  MotorWatch watch_;
+  MotorCheck motor_check_;
   std::deque<control::Triple> previous_V_;
   std::size_t period_ = 0;
 };
 
-void check(WatchedRig& rig, const std::string& what) {
+void check(CheckedRig& rig, const std::string& what) {
   MESSAGE("simulation, ", what, ": at ", rig.fastest_rad_per_s, " rad/s of a joint and ", rig.strongest_N,
-          " N a motor came to ", rig.nearest_V, " of ", MotorWatch::tolerance_sum_V, " V; a look left ",
+          " N a motor came to ", rig.nearest_V, " of ", MotorCheck::tolerance_sum_V, " V; a look left ",
           rig.largest_left_V, " V, at most ", rig.largest_beyond_V, " V more than is bearable; a current changed by ",
           rig.largest_change_A, " A in a period, by ", rig.largest_sudden_A, " A without a reason");
   CHECK(rig.force_is_on);
   CHECK(rig.largest_left_V > 0.1f);  // the check was active
   CHECK(rig.largest_change_A > 0.01f);
   CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::tolerance_A);
-  CHECK(rig.nearest_V < 0.2f * MotorWatch::tolerance_sum_V);
+  CHECK(rig.nearest_V < 0.2f * MotorCheck::tolerance_sum_V);
   rig.restart();
 }
 
 /// Moves the hand back and forth between two points, `times` times.
-void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
+void swing(CheckedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
            double stiffness_N_per_m = 1500, double damping_Ns_per_m = 12) {
   rig.control.hand({true, from_m, stiffness_N_per_m, damping_Ns_per_m});
   std::vector<device::HandWaypoint> path{{0.0, from_m}};
   for (int i = 1; i <= times; ++i) path.push_back({i * half_period_s, i % 2 == 0 ? from_m : to_m});
   rig.control.hand_path(path);
-  rig.watch(times * half_period_s);
+  rig.advance(times * half_period_s);
 }
 
-void shake(WatchedRig& rig, const std::string& how) {
+void shake(CheckedRig& rig, const std::string& how) {
   swing(rig, offset_from_free_point(-0.05, -0.02, -0.02), offset_from_free_point(0.05, 0.03, 0.02), 0.045, 12, 4000,
         30);
   check(rig, how + "shaken");
 }
 
-void knock_on_a_stiff_wall(WatchedRig& rig, const std::string& how) {
+void knock_on_a_stiff_wall(CheckedRig& rig, const std::string& how) {
   rig.change({{Parameter::wall_stiffness_N_per_m, 3000.0f}, {Parameter::force_limit_N, 8.0f}});
-  rig.watch(0.2);
+  rig.advance(0.2);
   swing(rig, free_point_m, offset_from_free_point(0.0, 0.0, -0.10), 0.1, 4);
   check(rig, how + "knocked on a stiff wall");
 }
 
-void press_into_three_walls(WatchedRig& rig, const std::string& how) {
+void press_into_three_walls(CheckedRig& rig, const std::string& how) {
   swing(rig, free_point_m, offset_from_free_point(0.12, -0.12, -0.12), 0.3, 2);
   check(rig, how + "pressed into three walls");
 }
 
-void drive_to_and_fro(WatchedRig& rig, const std::string& how) {
+void drive_to_and_fro(CheckedRig& rig, const std::string& how) {
   rig.change({{Parameter::program_force_change_N_per_s, 20000.0f}, {Parameter::force_change_N_per_s, 20000.0f}});
   rig.control.hand({true, free_point_m, 600, 8});
   for (const int milliseconds : {10, 3, 2, 1}) {
     int millisecond = 0;
-    rig.watch(0.4, [&] {
+    rig.advance(0.4, [&] {
       const float sign = millisecond++ / milliseconds % 2 == 0 ? 1.0f : -1.0f;
       rig.device->send_force({.force_N = {4.0f * sign, 5.0f * sign, 4.0f * sign}, .mode = ForceMode::beside_walls});
     });
@@ -218,24 +218,24 @@ void drive_to_and_fro(WatchedRig& rig, const std::string& how) {
 }  // namespace
 
 TEST_CASE("sound motors keep far from a fault") {
-  WatchedRig rig;
+  CheckedRig rig;
   shake(rig, "");
   knock_on_a_stiff_wall(rig, "");
   press_into_three_walls(rig, "");
   drive_to_and_fro(rig, "");
   rig.change({{Parameter::voltage_limit_V, 5.0f}});
-  rig.watch(0.1);
+  rig.advance(0.1);
   swing(rig, offset_from_free_point(-0.05, -0.02, -0.02), offset_from_free_point(0.05, 0.03, 0.02), 0.08, 4, 4000, 30);
   press_into_three_walls(rig, "with loops that get too little voltage, ");
   rig.change({{Parameter::voltage_limit_V, 16.0f}});
   rig.control.hand({false, {}, 0, 0});
-  rig.watch(0.3);
+  rig.advance(0.3);
   check(rig, "let go of");
 }
 
 TEST_CASE(
     "motors that are 100 K hotter as they are tested keep far from a fault, and so they do when they have cooled") {
-  WatchedRig rig(100.0);
+  CheckedRig rig(100.0);
   for (const std::string how : {"hot, ", "cooled, "}) {
     knock_on_a_stiff_wall(rig, how);
     press_into_three_walls(rig, how);
@@ -245,7 +245,7 @@ TEST_CASE(
 }
 
 TEST_CASE("motors that are 50 K hotter than their currents explain keep far from a fault") {
-  WatchedRig rig;
+  CheckedRig rig;
   rig.heat(50.0);
   knock_on_a_stiff_wall(rig, "50 K hotter, ");
   press_into_three_walls(rig, "50 K hotter, ");
@@ -253,7 +253,7 @@ TEST_CASE("motors that are 50 K hotter than their currents explain keep far from
 }
 
 TEST_CASE("motors with a supply that sags keep far from a fault") {
-  WatchedRig rig;
+  CheckedRig rig;
   rig.control.inject({.fault = "supply_sag", .amount = 13.0});
   knock_on_a_stiff_wall(rig, "from 13 V, ");
   drive_to_and_fro(rig, "from 13 V, ");

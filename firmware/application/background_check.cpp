@@ -1,4 +1,4 @@
-#include "firmware/application/background_watch.hpp"
+#include "firmware/application/background_check.hpp"
 
 #include "firmware/application/parts.hpp"
 
@@ -8,7 +8,7 @@ using protocol::condition;
 using protocol::Fault;
 using protocol::Signal;
 
-bool BackgroundWatch::start() {
+bool BackgroundCheck::start() {
   analog_supply_ = control::analog_supply(drivers::AnalogInputs::calibrated_reference_counts());
   const bool memory_intact = memory_check_.start();
   report(condition(Fault::memory_damaged, !memory_intact));
@@ -19,23 +19,23 @@ bool BackgroundWatch::start() {
 // every 0.15 ms. If these checks ran in every round, they would use a tenth of the main loop's time and displace main
 // loop code from the flash cache. Each result is stored for three rounds, so the control interrupt always reads the
 // result.
-void BackgroundWatch::check() {
+void BackgroundCheck::run() {
   const bool memory_intact = memory_check_.step();
   if (++rounds_ < rounds_per_check) return;
   rounds_ = 0;
   report(condition(Fault::memory_damaged, !memory_intact) | supply_faults() | encoder_faults() | bridge_faults());
 }
 
-void BackgroundWatch::report(protocol::Conditions found) { host_link.found_in_main_loop.store(found); }
+void BackgroundCheck::report(protocol::Conditions found) { host_link.found_in_main_loop.store(found); }
 
-protocol::Conditions BackgroundWatch::supply_faults() {
+protocol::Conditions BackgroundCheck::supply_faults() {
   const bool swings = ripples(supply_ripple_, analog_inputs.supply_counts(), completed_periods.load());
   return condition(Fault::logic_supply_low, logic_supply.is_low()) |
          condition(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
          condition(Fault::supply_ripple, swings);
 }
 
-protocol::Conditions BackgroundWatch::encoder_faults() {
+protocol::Conditions BackgroundCheck::encoder_faults() {
   const std::uint32_t now_periods = completed_periods.load();
   const auto timer_counts = encoders.read();
   bool dead = false;
@@ -44,7 +44,7 @@ protocol::Conditions BackgroundWatch::encoder_faults() {
   return condition(Fault::encoder_wire, dead) | condition(Fault::encoder_implausible, an_encoder_is_stuck());
 }
 
-bool BackgroundWatch::an_encoder_is_stuck() {
+bool BackgroundCheck::an_encoder_is_stuck() {
   const link::Sample* const sample = host_link.samples.newest();
   if (sample == nullptr) return false;
   const link::Sample& newest = *sample;
@@ -61,7 +61,7 @@ bool BackgroundWatch::an_encoder_is_stuck() {
   return stuck;
 }
 
-protocol::Conditions BackgroundWatch::bridge_faults() {
+protocol::Conditions BackgroundCheck::bridge_faults() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};

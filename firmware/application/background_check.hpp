@@ -19,7 +19,7 @@
 
 namespace inkwell::application {
 
-class BackgroundWatch {
+class BackgroundCheck {
  public:
   /// Checks the whole memory. Call this function after the drivers have started and before a motor can be driven.
   /// Returns false if a memory bit is wrong.
@@ -27,7 +27,7 @@ class BackgroundWatch {
 
   /// Call this function in each round of the main loop, at most once per control period. The control interrupt reads
   /// the results.
-  void check();
+  void run();
 
   const control::AnalogSupply& analog_supply() const { return analog_supply_; }
 

@@ -11,8 +11,8 @@ namespace {
 
 using namespace inkwell;
 using control::BridgeLoss;
+using control::MotorCheck;
 using control::MotorModel;
-using control::MotorWatch;
 using control::Resistance;
 using control::Triple;
 using control::update_motor_check;
@@ -30,13 +30,13 @@ const std::array<Resistance, 3> all_unmeasured{unmeasured(0), unmeasured(1), unm
 /// Checks one motor with constant values. Returns the number of checks until a mismatch is reported.
 int checks_until_fault(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s,
                        BridgeLoss loss, const Resistance& resistance) {
-  MotorWatch watch;
+  MotorCheck motor_check;
   Triple currents_A{}, speeds_rad_per_s{};
   currents_A[motor] = current_A;
   speeds_rad_per_s[motor] = joint_speed_rad_per_s;
   for (int check = 1; check < never; ++check) {
-    turn_to(watch, motor, voltage_V, loss);
-    if (!update_motor_check(watch, currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad))
+    turn_to(motor_check, motor, voltage_V, loss);
+    if (!update_motor_check(motor_check, currents_A, speeds_rad_per_s, all(resistance), model.back_emf_Vs_per_rad))
       return check;
   }
   return never;
@@ -56,13 +56,13 @@ TEST_CASE("a motor with the voltage of its resistance and its speed fits, in eit
 }
 
 TEST_CASE("a motor at rest without current may have the bearable voltage, and what dead time takes, and no more") {
-  CHECK(checks_until_fault(0, 0.99f * MotorWatch::tolerance_V, 0.0f, 0.0f) == never);
-  CHECK(checks_until_fault(0, -0.99f * MotorWatch::tolerance_V, 0.0f, 0.0f) == never);
-  CHECK(checks_until_fault(0, 1.1f * MotorWatch::tolerance_V, 0.0f, 0.0f) < never);
-  CHECK(checks_until_fault(2, -1.1f * MotorWatch::tolerance_V, 0.0f, 0.0f) < never);
+  CHECK(checks_until_fault(0, 0.99f * MotorCheck::tolerance_V, 0.0f, 0.0f) == never);
+  CHECK(checks_until_fault(0, -0.99f * MotorCheck::tolerance_V, 0.0f, 0.0f) == never);
+  CHECK(checks_until_fault(0, 1.1f * MotorCheck::tolerance_V, 0.0f, 0.0f) < never);
+  CHECK(checks_until_fault(2, -1.1f * MotorCheck::tolerance_V, 0.0f, 0.0f) < never);
   for (const float dead_V : {0.1f, 0.5f}) {
-    CHECK(checks_until_fault(0, 0.99f * (MotorWatch::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) == never);
-    CHECK(checks_until_fault(0, 1.1f * (MotorWatch::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) < never);
+    CHECK(checks_until_fault(0, 0.99f * (MotorCheck::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) == never);
+    CHECK(checks_until_fault(0, 1.1f * (MotorCheck::tolerance_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) < never);
   }
 }
 
@@ -72,18 +72,18 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
     // The resistance accounts for 2 V, and its value may be 28 % too high.
     for (const float bridge_V : {0.4f, 0.5f})
       CHECK(checks_until_fault(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
-    const float least_V = 2.0f + 0.4f - MotorWatch::tolerance_V - 0.56f;
+    const float least_V = 2.0f + 0.4f - MotorCheck::tolerance_V - 0.56f;
     CHECK(checks_until_fault(0, sign * (least_V + 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(checks_until_fault(0, sign * (least_V - 0.02f), sign * 1.0f, 0.0f, loss) < never);
-    const float most_V = 2.0f + 0.5f + MotorWatch::tolerance_V + 0.86f;
+    const float most_V = 2.0f + 0.5f + MotorCheck::tolerance_V + 0.86f;
     CHECK(checks_until_fault(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(checks_until_fault(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
     // The lower bound assumes at most the dead-time loss, because the voltage drop of brushes is not reliable.
-    CHECK(checks_until_fault(0, sign * (2.0f + 0.5f - MotorWatch::tolerance_V - 0.56f + 0.02f), sign * 1.0f, 0.0f,
+    CHECK(checks_until_fault(0, sign * (2.0f + 0.5f - MotorCheck::tolerance_V - 0.56f + 0.02f), sign * 1.0f, 0.0f,
                              {0.9f, 0.5f}) == never);
     // A small current may change sign in each PWM period, and the dead time then has no net effect.
-    const float steady_A = MotorWatch::steady_A;
-    const float small_V = -0.5f - MotorWatch::tolerance_V + 0.72f * 2.0f * steady_A + 0.02f;
+    const float steady_A = MotorCheck::steady_A;
+    const float small_V = -0.5f - MotorCheck::tolerance_V + 0.72f * 2.0f * steady_A + 0.02f;
     CHECK(checks_until_fault(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
     CHECK(checks_until_fault(0, sign * small_V, sign * 1.01f * steady_A, 0.0f, loss) < never);
   }
@@ -93,12 +93,12 @@ TEST_CASE(
     "a hot motor fits, and one that was hot when it was measured: 43 % more resistance, 28 % less, back EMF a quarter "
     "less") {
   for (const float sign : {1.0f, -1.0f}) {
-    CHECK(checks_until_fault(0, sign * (1.42f * 5.0f + MotorWatch::tolerance_V), sign * 2.5f, 0.0f) == never);
-    CHECK(checks_until_fault(0, sign * (1.5f * 5.0f + MotorWatch::tolerance_V), sign * 2.5f, 0.0f) < never);
-    CHECK(checks_until_fault(0, sign * (0.73f * 5.0f - MotorWatch::tolerance_V), sign * 2.5f, 0.0f) == never);
-    CHECK(checks_until_fault(0, sign * (0.7f * 5.0f - MotorWatch::tolerance_V), sign * 2.5f, 0.0f) < never);
-    CHECK(checks_until_fault(0, sign * (0.76f * 6.0f - MotorWatch::tolerance_V), 0.0f, sign * 20.0f) == never);
-    CHECK(checks_until_fault(0, sign * (0.65f * 6.0f - MotorWatch::tolerance_V), 0.0f, sign * 20.0f) < never);
+    CHECK(checks_until_fault(0, sign * (1.42f * 5.0f + MotorCheck::tolerance_V), sign * 2.5f, 0.0f) == never);
+    CHECK(checks_until_fault(0, sign * (1.5f * 5.0f + MotorCheck::tolerance_V), sign * 2.5f, 0.0f) < never);
+    CHECK(checks_until_fault(0, sign * (0.73f * 5.0f - MotorCheck::tolerance_V), sign * 2.5f, 0.0f) == never);
+    CHECK(checks_until_fault(0, sign * (0.7f * 5.0f - MotorCheck::tolerance_V), sign * 2.5f, 0.0f) < never);
+    CHECK(checks_until_fault(0, sign * (0.76f * 6.0f - MotorCheck::tolerance_V), 0.0f, sign * 20.0f) == never);
+    CHECK(checks_until_fault(0, sign * (0.65f * 6.0f - MotorCheck::tolerance_V), 0.0f, sign * 20.0f) < never);
   }
 }
 
@@ -109,15 +109,15 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
     };
     // A measured motor resistance of 2.5 ohm overrides the parameters.
     const auto as_measured = Resistance::of(2.5f, 0.0f, 2.0f);
-    CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorWatch::tolerance_V));
-    CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorWatch::tolerance_V));
-    CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorWatch::tolerance_V));
-    CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorWatch::tolerance_V));
+    CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorCheck::tolerance_V));
+    CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorCheck::tolerance_V));
+    CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorCheck::tolerance_V));
+    CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorCheck::tolerance_V));
     // The heating at the continuous current increases the resistance by 39 %.
     const auto warmer = Resistance::of(2.5f, 1.0f, 2.0f);
     CHECK(warmer.value_ohm == doctest::Approx(1.39 * 2.5));
-    CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorWatch::tolerance_V));
-    CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorWatch::tolerance_V));
+    CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorCheck::tolerance_V));
+    CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorCheck::tolerance_V));
     // A colder motor does not reduce the resistance.
     CHECK(Resistance::of(2.5f, -1.0f, 2.0f).value_ohm == 2.5f);
   }
@@ -125,19 +125,19 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
 
 TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
   // The voltage is 4 V beyond the tolerance, and one check runs every three periods.
-  const float voltage_V = 4.0f + MotorWatch::tolerance_V;
+  const float voltage_V = 4.0f + MotorCheck::tolerance_V;
   const float flux_of_check_Vs = 4.0f * 3.0f * protocol::servo_period_s;
   CHECK(checks_until_fault(0, voltage_V, 0.0f, 0.0f) ==
-        static_cast<int>(MotorWatch::tolerance_flux_Vs / flux_of_check_Vs) + 1);
+        static_cast<int>(MotorCheck::tolerance_flux_Vs / flux_of_check_Vs) + 1);
   CHECK(checks_until_fault(0, 16.0f, 0.0f, 0.0f) == 2);
 }
 
 TEST_CASE("a current that turns round from one limit to the other in no time is borne, and forgotten") {
-  MotorWatch watch;
+  MotorCheck motor_check;
   const Triple still{};
   const auto check = [&](float voltage_V, float current_A) {
-    turn_to(watch, 0, voltage_V, {0.43f, 0.43f});
-    return update_motor_check(watch, {current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
+    turn_to(motor_check, 0, voltage_V, {0.43f, 0.43f});
+    return update_motor_check(motor_check, {current_A, 0.0f, 0.0f}, still, all_unmeasured, model.back_emf_Vs_per_rad);
   };
   for (int turn = 0; turn < 1'000; ++turn) {
     const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
@@ -147,14 +147,14 @@ TEST_CASE("a current that turns round from one limit to the other in no time is 
 }
 
 TEST_CASE("each motor has its own sum") {
-  MotorWatch watch;
+  MotorCheck motor_check;
   for (int check = 0; check < 300; ++check) {
     const std::size_t motor = static_cast<std::size_t>(check % 3);
-    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f, {});
-    if (update_motor_check(watch, {}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
+    turn_to(motor_check, motor, motor == 2 ? 6.0f : 0.0f, {});
+    if (update_motor_check(motor_check, {}, {}, all_unmeasured, model.back_emf_Vs_per_rad)) continue;
     CHECK(motor == 2);
-    CHECK(watch.beyond_V[0] == 0.0f);
-    CHECK(watch.beyond_V[1] == 0.0f);
+    CHECK(motor_check.beyond_V[0] == 0.0f);
+    CHECK(motor_check.beyond_V[1] == 0.0f);
     return;
   }
   FAIL("motor 3 was not noticed");
@@ -356,7 +356,7 @@ TEST_CASE("a motor that turns is believed with the back EMF of its speed, and no
     }
 }
 
-TEST_CASE("without force nothing is watched: the pulses that measure a motor find any resistance") {
+TEST_CASE("without force nothing is checked: the pulses that measure a motor find any resistance") {
   const auto settings = control::prepare(tests::omni_parameters());
   control::Controller controller = tests::ready_controller(settings);
   auto pulse = tests::command(protocol::Command::test_voltage);
