@@ -46,9 +46,9 @@ void set_up() {
 /// The bridge number is a template argument, so that no channel table is read.
 template <std::size_t bridge>
 void write_legs(const LegCompares& legs) {
-  constexpr unsigned place = board::facts.bridges[bridge].channel - 1u;
-  TIM1::CCR::write(place, legs.leg_a);
-  TIM8::CCR::write(place, legs.leg_b);
+  constexpr unsigned channel_index = board::facts.bridges[bridge].channel - 1u;
+  TIM1::CCR::write(channel_index, legs.leg_a);
+  TIM8::CCR::write(channel_index, legs.leg_b);
 }
 
 /// All legs A are connected to one port and all legs B to another port, so one access reads three legs.

@@ -40,14 +40,14 @@ void forget_cached_data() {
 
 }  // namespace
 
-bool ParameterFlash::program(volatile std::uint32_t* place, std::uint32_t value) {
+bool ParameterFlash::program(volatile std::uint32_t* address, std::uint32_t value) {
   unlock();
   Flash::SR::write(Flash::SR::all_errors);
   Flash::CR::write(Flash::CR::PSIZE(by_words), Flash::CR::PG(1));
-  *place = value;
+  *address = value;
   const bool ended = finish();
   forget_cached_data();
-  return ended && *place == value;
+  return ended && *address == value;
 }
 
 void ParameterFlash::erase(const volatile std::uint32_t* begin) {

@@ -17,7 +17,7 @@ class ParameterFlash {
   static constexpr std::array claims{peripheral<registers::FLASH_PROGRAMMING>()};
 
   /// Programs an erased word. Returns false if the word does not read as `value` afterwards.
-  [[nodiscard]] bool program(volatile std::uint32_t* place, std::uint32_t value);
+  [[nodiscard]] bool program(volatile std::uint32_t* address, std::uint32_t value);
   /// Erases the 16 KB sector that starts at `begin`.
   void erase(const volatile std::uint32_t* begin);
 };

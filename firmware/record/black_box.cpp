@@ -35,7 +35,7 @@ std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
   return hash_words(hash_basis ^ number, &row, sizeof row);
 }
 
-bool is_intact(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
+bool is_intact(const BlackBoxSlot& slot, std::uint32_t number) { return slot.check == check_of(slot.row, number); }
 
 /// Number of the first row that is not before the fault. Rows before the fault have smaller numbers.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
@@ -52,10 +52,10 @@ std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
 /// writes.
 void in_this_order() { std::atomic_signal_fence(std::memory_order_seq_cst); }
 
-void write(BlackBoxPlace& place, std::uint32_t number, const Sample& sample) {
-  place.row.time_periods = sample.summary.periods;
-  std::ranges::copy(sample.signals.values, place.row.values);
-  place.check = check_of(place.row, number);
+void write(BlackBoxSlot& slot, std::uint32_t number, const Sample& sample) {
+  slot.row.time_periods = sample.summary.periods;
+  std::ranges::copy(sample.signals.values, slot.row.values);
+  slot.check = check_of(slot.row, number);
   in_this_order();
 }
 
@@ -150,12 +150,12 @@ void BlackBox::start_fault_record(Fault fault, std::uint32_t period, bool is_res
 
 void BlackBox::add_after_fault(const Sample& sample) {
   const std::uint32_t since = sample.summary.periods - notes_.cause.period;
-  const std::uint32_t place = since / protocol::black_box_step_periods;
-  if (since % protocol::black_box_step_periods == 0 && place < line_.size()) {
+  const std::uint32_t slot_index = since / protocol::black_box_step_periods;
+  if (since % protocol::black_box_step_periods == 0 && slot_index < line_.size()) {
     write(line_[rows_from_fault_], first_number_from_fault + rows_from_fault_, sample);
     notes_.rows_added = ++rows_from_fault_;
   }
-  if (place + 1 >= line_.size()) phase_ = Phase::complete;
+  if (slot_index + 1 >= line_.size()) phase_ = Phase::complete;
 }
 
 protocol::BlackBoxReport BlackBox::report() const {
@@ -186,8 +186,8 @@ protocol::BlackBoxRowsReport BlackBox::rows() const {
   report.fault_periods = notes_.cause.period;
   for (std::uint32_t i = first_row_; i < row_count() && report.row_count < protocol::black_box_report_rows; ++i) {
     const std::uint32_t number = notes_.rows_written - rows_before_ + i;
-    const BlackBoxPlace& place = i < rows_before_ ? before(number) : line_[i - rows_before_];
-    report.rows[report.row_count] = place.row;
+    const BlackBoxSlot& slot = i < rows_before_ ? before(number) : line_[i - rows_before_];
+    report.rows[report.row_count] = slot.row;
     report.row_count = (report.row_count + 1u) & 0xFu;
   }
   return report;

@@ -30,7 +30,7 @@ struct BlackBoxNotes {
   std::uint32_t rows_added;  ///< number of rows from the fault on
 };
 
-struct BlackBoxPlace {
+struct BlackBoxSlot {
   protocol::BlackBoxRow row;
   std::uint32_t check;
 };
@@ -38,8 +38,8 @@ struct BlackBoxPlace {
 template <std::size_t before, std::size_t from_fault>
 struct BlackBoxMemory {
   BlackBoxNotes notes;
-  std::array<BlackBoxPlace, before> ring;
-  std::array<BlackBoxPlace, from_fault> line;
+  std::array<BlackBoxSlot, before> ring;
+  std::array<BlackBoxSlot, from_fault> line;
 };
 
 /// Only the main loop uses the black box, because the control interrupt has no spare time. The main loop reads the
@@ -78,13 +78,13 @@ class BlackBox {
   void record_sample(const Sample& sample);
   void add_after_fault(const Sample& sample);
   /// Returns the slot of a row before the fault. `number` counts rows since recording started.
-  BlackBoxPlace& before(std::uint32_t number) const { return ring_[number % ring_.size()]; }
+  BlackBoxSlot& before(std::uint32_t number) const { return ring_[number % ring_.size()]; }
   std::uint32_t row_count() const { return rows_before_ + rows_from_fault_; }
 
   const SampleRing& samples_;
   BlackBoxNotes& notes_;
-  std::span<BlackBoxPlace> ring_;  ///< rows before the fault
-  std::span<BlackBoxPlace> line_;  ///< rows from the fault on
+  std::span<BlackBoxSlot> ring_;  ///< rows before the fault
+  std::span<BlackBoxSlot> line_;  ///< rows from the fault on
   Phase phase_ = Phase::recording;
   std::uint32_t tables_hash_ = 0;
   std::uint32_t followed_;  ///< number of samples read from the ring

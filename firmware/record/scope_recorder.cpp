@@ -114,8 +114,8 @@ void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
 }
 
 void ScopeRecorder::write_changes(const protocol::SignalValues& signals) {
-  std::byte* const mask_place = cursor_;
-  std::byte* cursor = mask_place + sizeof(std::uint32_t);
+  std::byte* const mask_position = cursor_;
+  std::byte* cursor = mask_position + sizeof(std::uint32_t);
   if (sample_count_ == 0) previous_.fill(bits_of_no_value);
   std::uint32_t mask = 0;
   std::uint32_t bit = 1;
@@ -141,7 +141,7 @@ void ScopeRecorder::write_changes(const protocol::SignalValues& signals) {
       mask |= bit;
     }
   }
-  std::memcpy(mask_place, &mask, sizeof mask);
+  std::memcpy(mask_position, &mask, sizeof mask);
   cursor_ = cursor;
 }
 

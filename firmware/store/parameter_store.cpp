@@ -11,13 +11,13 @@ bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
-// A new set does not replace a damaged set, because the replacement would hide the damage from the background watch.
-control::Settings* ParameterStore::place_of_next() { return values_.is_intact() ? settings_.next() : nullptr; }
+// A new set does not replace a damaged set, because the replacement would hide the damage from the background check.
+control::Settings* ParameterStore::next_settings_slot() { return values_.is_intact() ? settings_.next() : nullptr; }
 
-void ParameterStore::offer(control::Settings& place, const protocol::ParameterSet& set) {
+void ParameterStore::offer(control::Settings& slot, const protocol::ParameterSet& set) {
   values_.put(set);
-  place = control::prepare(set);
-  settings_sum_ = sum_of(place);
+  slot = control::prepare(set);
+  settings_sum_ = sum_of(slot);
   settings_.offer();
 }
 
@@ -27,7 +27,7 @@ void ParameterStore::start_with(const protocol::ParameterSet& set) {
 }
 
 bool ParameterStore::restore_defaults() {
-  control::Settings* next = place_of_next();
+  control::Settings* next = next_settings_slot();
   if (next != nullptr) offer(*next, image_defaults());
   return next != nullptr;
 }
@@ -37,7 +37,7 @@ protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool
   ++transactions_;
   ticket_ = header_of(report).ticket;
   ParameterCheck check;
-  control::Settings* next = place_of_next();
+  control::Settings* next = next_settings_slot();
   if (next == nullptr || (stored != nullptr && !stored->is_intact()))
     check.refusal = protocol::Refusal::busy;
   else

@@ -34,7 +34,7 @@ class ParameterStore {
   /// only result(). `stored` is the parameter set for restore_stored, or null.
   ///
   /// Returns `busy` while the interrupt has not accepted the previous transaction. Also returns `busy` for every report
-  /// if a bit of a parameter set has flipped. The background watch reports the flipped bit as a fault.
+  /// if a bit of a parameter set has flipped. The background check reports the flipped bit as a fault.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
@@ -74,8 +74,8 @@ class ParameterStore {
   const control::Settings& settings() const { return settings_.used(); }
 
  private:
-  control::Settings* place_of_next();
-  void offer(control::Settings& place, const protocol::ParameterSet& set);
+  control::Settings* next_settings_slot();
+  void offer(control::Settings& slot, const protocol::ParameterSet& set);
 
   Guarded<protocol::ParameterSet> values_;
   Handover<control::Settings> settings_;

@@ -95,8 +95,8 @@ void ControlEndpoint::send_next_packet() {
 void ControlEndpoint::collect(std::span<const std::byte> packet) {
   const std::size_t wanted = setup_.length - collected_;
   if (packet.size() > wanted) return stall();
-  const auto place = std::span(buffer_).subspan(std::min(collected_, buffer_size));
-  std::ranges::copy(packet.first(std::min(packet.size(), place.size())), place.begin());
+  const auto destination = std::span(buffer_).subspan(std::min(collected_, buffer_size));
+  std::ranges::copy(packet.first(std::min(packet.size(), destination.size())), destination.begin());
   collected_ += packet.size();
   if (collected_ == setup_.length) {
     if (requests_.data_received(setup_, std::span(buffer_).first(std::min(collected_, buffer_size))))

@@ -146,7 +146,7 @@ TEST_CASE("a wire of the bridges that touches 3.3 V for a tenth of a millisecond
   }
 }
 
-TEST_CASE("before the arm knows its place a wire of the bridges is checked as well") {
+TEST_CASE("before the arm is referenced a wire of the bridges is checked as well") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.take_to(free_point_m);

@@ -188,35 +188,35 @@ class Comparison:
         for field in register.fields:
             self.compare_field(label, peripheral, register.name, field, kin)
 
-    def svd_place(self, peripheral: Peripheral, register: str, field: str) -> tuple[int, int] | None:
+    def svd_position(self, peripheral: Peripheral, register: str, field: str) -> tuple[int, int] | None:
         name = self.svd_name(peripheral.name, register, field)
         for view in self.svd_views(peripheral, register) or []:
-            if name is not None and (place := view.fields.get(name) or gathered(view.fields, name)):
-                return place
+            if name is not None and (position := view.fields.get(name) or gathered(view.fields, name)):
+                return position
         return None
 
     def compare_field(self, label: str, peripheral: Peripheral, register: str, field: Field, kin) -> None:
         if self.svd_name(peripheral.name, register, field.name) is None:
             return
         self.fields += 1
-        place = self.svd_place(peripheral, register, field.name)
-        if place is None:
-            place = next(filter(None, (self.svd_place(other, register, field.name) for other in kin)), None)
-        if place is None:
+        position = self.svd_position(peripheral, register, field.name)
+        if position is None:
+            position = next(filter(None, (self.svd_position(other, register, field.name) for other in kin)), None)
+        if position is None:
             self.differences.append(f"{label}: the SVD has no field {field.name} there")
-        elif place != (field.position, field.width):
+        elif position != (field.position, field.width):
             self.differences.append(
                 f"{label}.{field.name} is at bit {field.position}, {field.width} wide; "
-                f"in the SVD at bit {place[0]}, {place[1]} wide"
+                f"in the SVD at bit {position[0]}, {position[1]} wide"
             )
 
 
 def gathered(fields: dict[str, tuple[int, int]], name: str) -> tuple[int, int] | None:
     """Returns the position of a field that the SVD describes as adjacent single bits, such as PLLN0 to PLLN8."""
-    bits = {int(match[1]): place for key, place in fields.items() if (match := re.fullmatch(rf"{name}(\d)", key))}
+    bits = {int(match[1]): position for key, position in fields.items() if (match := re.fullmatch(rf"{name}(\d)", key))}
     if not bits or sorted(bits) != list(range(len(bits))):
         return None
-    if any(place != (bits[0][0] + bit, 1) for bit, place in bits.items()):
+    if any(position != (bits[0][0] + bit, 1) for bit, position in bits.items()):
         return None
     return bits[0][0], len(bits)
 
@@ -252,8 +252,8 @@ def main() -> int:
     together = [peripheral for peripherals in maps.values() for peripheral in peripherals]
     used = [known for known in comparison.known if known.uses]
     for known in used:
-        place = ".".join(pattern for pattern in (known.peripheral, known.register, known.field) if pattern)
-        print(f"known: {place}: {known.reason}")
+        name = ".".join(pattern for pattern in (known.peripheral, known.register, known.field) if pattern)
+        print(f"known: {name}: {known.reason}")
     problems = comparison.differences + unused(comparison, together)
     for problem in problems:
         print(f"DIFFERS: {problem}")

@@ -126,7 +126,7 @@ class Bound:
                 paths[address] = set(addresses[i + 1:])  # a jump through a table
         if loops := outer_loops(paths):
             raise Refused(
-                f"the force law has a loop at {self.place(min(loops[0]))} of which the compiler does not know how often it "
+                f"the force law has a loop at {self.source_location(min(loops[0]))} of which the compiler does not know how often it "
                 "runs. Let it run a constant number of times, at most 64, with a condition inside for what must not be done.")
         calls = self.calls(function)
         dearest: dict[int, int] = {}
@@ -156,7 +156,7 @@ class Bound:
                 found[address] = target[1]
         return found
 
-    def place(self, address: int) -> str:
+    def source_location(self, address: int) -> str:
         line = run("arm-none-eabi-addr2line", "-e", self.elf, f"{address:#x}").split(" ")[0].strip()
         return f"{address:#x}" if line.startswith("??") else line
 

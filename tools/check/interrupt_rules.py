@@ -29,7 +29,7 @@ READS_ONLY = re.compile(r"(?:v?st|cm[pn]|tst|teq|v?push|vcmp|it|nop|b|cb|dmb|dsb
 FIRST_TWO = re.compile(r"(?:ldrd|[us]mull|[us]mlal|vmov)\S*\t(\w+), (\w+)")
 FIRST = re.compile(r"\S+\t(\w+)")
 LIST = re.compile(r"(?:ldm|pop).*\{(.*)\}")
-PLACE = re.compile(r"(ldr|str)\S*\t.*(\[[^\]]*\])$")
+ACCESS = re.compile(r"(ldr|str)\S*\t.*(\[[^\]]*\])$")
 CALL_SPOILS = {"r0", "r1", "r2", "r3", "ip", "lr"}
 
 
@@ -54,8 +54,8 @@ def counts(loop: list[str], own: list[str]) -> bool:
     """True if a loop contains a counter: a register in `own` (the loop without inner loops) that changes only by steps,
     or a word in memory that is loaded and stored."""
     steps = set().union(*map(steps_of, own)) - set().union(*map(written_otherwise, loop))
-    places = {kind: {place[2] for place in map(PLACE.match, loop) if place and place[1] == kind} for kind in ("ldr", "str")}
-    return bool(steps or places["ldr"] & places["str"])
+    addresses = {kind: {access[2] for access in map(ACCESS.match, loop) if access and access[1] == kind} for kind in ("ldr", "str")}
+    return bool(steps or addresses["ldr"] & addresses["str"])
 
 
 # ---- loops -----------------------------------------------------------------------------------------------------
@@ -211,6 +211,6 @@ def broken_interrupt_rules(image: Image, section: range) -> list[str]:
         if function.address in section and reads_flash(function):
             problems.append(f"{name} runs in an interrupt and reads the flash: its tables belong into .interrupt_tables")
         if name not in priced:
-            problems += [f"division in an interrupt, in {name} at {place}" for place in function.divides]
-        problems += [f"{name} runs in an interrupt and waits at {place}" for place in waits(function)]
+            problems += [f"division in an interrupt, in {name} at {address}" for address in function.divides]
+        problems += [f"{name} runs in an interrupt and waits at {address}" for address in waits(function)]
     return problems

@@ -71,14 +71,14 @@ def cases(program: str, root: Command) -> str:
     possible."""
     lines = []
     for command, follow, options, values in tables(program, root):
-        place = " ".join(command.words[1:])
+        words = " ".join(command.words[1:])
 
         def line(pattern: str, choices: list[str]) -> str:
             given = " ".join(each for each in choices if each != FILES)
             return f"    {shlex.quote(pattern)}) choices={shlex.quote(given)}{'; files=1' if FILES in choices else ''} ;;"
 
-        lines += [line(f"{place}|{name}", choices) for name, choices in values.items()]
-        lines.append(line(f"{place}|", follow).replace(") choices", f"*) options={shlex.quote(' '.join(options))}; choices", 1))
+        lines += [line(f"{words}|{name}", choices) for name, choices in values.items()]
+        lines.append(line(f"{words}|", follow).replace(") choices", f"*) options={shlex.quote(' '.join(options))}; choices", 1))
     return "\n".join(lines)
 
 

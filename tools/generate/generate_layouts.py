@@ -51,15 +51,15 @@ def fields(struct: str, body: list[str]) -> list[str]:
             raise NotUnderstood(f"{struct}: {line}")
         bits, member = int(field["bits"] or 0), f"{struct}::{field['name']}"
         if bits:
-            place = f"offsetof({struct}, {before}) + sizeof({struct}::{before}) + {bits_before // 8}"
+            offset = f"offsetof({struct}, {before}) + sizeof({struct}::{before}) + {bits_before // 8}"
             size, first_bit = "1", bits_before % 8
             bits_before += bits
         else:
-            place, size, first_bit = f"offsetof({struct}, {field['name']})", f"sizeof({member})", 0
+            offset, size, first_bit = f"offsetof({struct}, {field['name']})", f"sizeof({member})", 0
             before, bits_before = field["name"], 0
         count = f"sizeof({member}) / sizeof({member}[0])" if field["extent"] else "0"
         type_name = re.sub(r"^std::|_t$", "", field["type"])
-        rows.append(f"{{{text(type_name)}, {text(field['name'])}, {place}, {size}, {count}, {first_bit}, {bits}, "
+        rows.append(f"{{{text(type_name)}, {text(field['name'])}, {offset}, {size}, {count}, {first_bit}, {bits}, "
                     f"{text(field['value'])}, {text(' '.join(filter(None, [*doc, field['meaning']])))}}},")
         doc = []
     return rows

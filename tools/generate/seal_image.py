@@ -53,8 +53,8 @@ def flash_of(elf: str, folder: Path) -> bytes:
     gaps = [(first[0] + first[1], second[0]) for first, second in zip(sections, sections[1:])
             if first[0] + first[1] != second[0]]
     symbols = subprocess.run(["arm-none-eabi-nm", elf], check=True, capture_output=True, text=True).stdout
-    places = {name: int(value, 16) for value, name in re.findall(r"^([0-9a-f]+) \w (\w+)$", symbols, re.MULTILINE)}
-    if gaps != [(places["copied_end"], places["code_begin"])]:
+    addresses = {name: int(value, 16) for value, name in re.findall(r"^([0-9a-f]+) \w (\w+)$", symbols, re.MULTILINE)}
+    if gaps != [(addresses["copied_end"], addresses["code_begin"])]:
         raise ValueError("there is a gap between two sections in the flash; align them in the linker script")
     image = b""
     for _, _, name in sections:

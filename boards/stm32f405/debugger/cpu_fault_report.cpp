@@ -16,7 +16,7 @@ bool is_after_call(std::uint32_t address, const MemoryReader& word) {
   return ((before & 0xF800) == 0xF000 && (last & 0xD000) == 0xD000) || (last & 0xFF87) == 0x4780;
 }
 
-std::string place(std::uint32_t address, const Symbols& symbols) {
+std::string location(std::uint32_t address, const Symbols& symbols) {
   const std::string name = symbols.name(address);
   return name.empty() ? fmt::format("0x{:08X}", address) : fmt::format("0x{:08X} {}", address, name);
 }
@@ -51,7 +51,7 @@ std::vector<std::string> explain_cpu_fault(const Chip& chip, const Symbols& symb
   std::vector<std::string> lines;
   lines.push_back(
       fmt::format("first fault at {:.6f} s in {}: {}", seconds(fault.when), running(fault.registers.xpsr), fault.what));
-  lines.push_back("  at " + place(r[CoreRegisters::pc], symbols));
+  lines.push_back("  at " + location(r[CoreRegisters::pc], symbols));
   for (unsigned i = 0; i < 12; i += 4)
     lines.push_back(fmt::format("  R{:<2} {:08X}  R{:<2} {:08X}  R{:<2} {:08X}  R{:<2} {:08X}", i, r[i], i + 1,
                                 r[i + 1], i + 2, r[i + 2], i + 3, r[i + 3]));
@@ -60,7 +60,7 @@ std::vector<std::string> explain_cpu_fault(const Chip& chip, const Symbols& symb
   const auto callers = guess_callers(
       fault.registers, [&chip](std::uint32_t address) { return chip.memory_word(address); }, 8);
   if (!callers.empty()) lines.push_back("  probable callers, from LR and the stack:");
-  for (const std::uint32_t caller : callers) lines.push_back("    " + place(caller, symbols));
+  for (const std::uint32_t caller : callers) lines.push_back("    " + location(caller, symbols));
   std::string command = fmt::format("  source lines: arm-none-eabi-addr2line -pfiaCe {} 0x{:X}", elf.string(), r[15]);
   for (const std::uint32_t caller : callers) command += fmt::format(" 0x{:X}", caller - 2);
   lines.push_back(command);

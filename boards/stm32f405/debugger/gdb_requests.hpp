@@ -19,12 +19,12 @@ constexpr std::size_t size_of_register(unsigned number) {
   return number >= first_double && number < fpscr_number ? 8 : 4;
 }
 /// Byte offset of a register in `g` and `G` packets.
-constexpr std::size_t place_of_register(unsigned number) {
-  std::size_t place = 0;
-  for (unsigned i = 0; i < number; ++i) place += size_of_register(i);
-  return place;
+constexpr std::size_t offset_of_register(unsigned number) {
+  std::size_t offset = 0;
+  for (unsigned i = 0; i < number; ++i) offset += size_of_register(i);
+  return offset;
 }
-inline constexpr std::size_t size_of_all_registers = place_of_register(register_count);
+inline constexpr std::size_t size_of_all_registers = offset_of_register(register_count);
 
 struct Range {
   std::uint32_t address, bytes;

@@ -64,10 +64,10 @@ std::string GdbSession::stop_reply(unsigned signal) const {
   std::string reply = fmt::format("T{:02x}thread:1;", signal);
   const DebugStop stop = chip_.debug_port().last_stop();
   if (signal != signal_trap || stop.reason != DebugStop::Reason::watch_point) return reply;
-  for (const auto& [place, kind] : watched_)
-    if (stop.address - place.address < place.bytes) {
+  for (const auto& [point, kind] : watched_)
+    if (stop.address - point.address < point.bytes) {
       const char* name = kind == '2' ? "watch" : kind == '3' ? "rwatch" : "awatch";
-      return reply + fmt::format("{}:{:x};", name, place.address);
+      return reply + fmt::format("{}:{:x};", name, point.address);
     }
   return reply;
 }
@@ -86,12 +86,12 @@ std::string GdbSession::carry_out(const gdb::WriteRegisters& parsed) {
 std::string GdbSession::carry_out(gdb::ReadRegister parsed) {
   const auto all = all_registers();
   return hexadecimal(
-      std::span(all).subspan(gdb::place_of_register(parsed.number), gdb::size_of_register(parsed.number)));
+      std::span(all).subspan(gdb::offset_of_register(parsed.number), gdb::size_of_register(parsed.number)));
 }
 
 std::string GdbSession::carry_out(const gdb::WriteRegister& parsed) {
   auto all = all_registers();
-  std::ranges::copy(parsed.bytes, all.begin() + static_cast<std::ptrdiff_t>(gdb::place_of_register(parsed.number)));
+  std::ranges::copy(parsed.bytes, all.begin() + static_cast<std::ptrdiff_t>(gdb::offset_of_register(parsed.number)));
   set_all_registers(all);
   return ok;
 }
@@ -113,14 +113,14 @@ std::string GdbSession::carry_out(gdb::ChangeBreakpoint parsed) {
 
 std::string GdbSession::carry_out(gdb::ChangeWatchPoint parsed) {
   auto& port = chip_.debug_port();
-  const WatchPoint place{parsed.range.address, parsed.range.bytes, parsed.kind != '2', parsed.kind != '3'};
+  const WatchPoint point{parsed.range.address, parsed.range.bytes, parsed.kind != '2', parsed.kind != '3'};
   const auto found = std::ranges::find_if(
-      watched_, [&](const Watched& watched) { return watched.place == place && watched.kind == parsed.kind; });
+      watched_, [&](const Watched& watched) { return watched.point == point && watched.kind == parsed.kind; });
   if (parsed.sets && found == watched_.end()) {
-    port.add_watch_point(place);
-    watched_.push_back({place, parsed.kind});
+    port.add_watch_point(point);
+    watched_.push_back({point, parsed.kind});
   } else if (!parsed.sets && found != watched_.end()) {
-    port.remove_watch_point(place);
+    port.remove_watch_point(point);
     watched_.erase(found);
   }
   return ok;
@@ -158,9 +158,9 @@ std::vector<std::uint8_t> GdbSession::all_registers() const {
   const auto floats = chip_.debug_port().float_registers();
   std::vector<std::uint8_t> bytes(gdb::size_of_all_registers);
   std::memcpy(bytes.data(), core.general.data(), sizeof core.general);
-  std::memcpy(bytes.data() + gdb::place_of_register(gdb::xpsr_number), &core.xpsr, sizeof core.xpsr);
-  std::memcpy(bytes.data() + gdb::place_of_register(gdb::first_double), floats.doubles.data(), sizeof floats.doubles);
-  std::memcpy(bytes.data() + gdb::place_of_register(gdb::fpscr_number), &floats.fpscr, sizeof floats.fpscr);
+  std::memcpy(bytes.data() + gdb::offset_of_register(gdb::xpsr_number), &core.xpsr, sizeof core.xpsr);
+  std::memcpy(bytes.data() + gdb::offset_of_register(gdb::first_double), floats.doubles.data(), sizeof floats.doubles);
+  std::memcpy(bytes.data() + gdb::offset_of_register(gdb::fpscr_number), &floats.fpscr, sizeof floats.fpscr);
   return bytes;
 }
 
@@ -168,9 +168,9 @@ void GdbSession::set_all_registers(const std::vector<std::uint8_t>& bytes) {
   CoreRegisters core;
   FloatRegisters floats;
   std::memcpy(core.general.data(), bytes.data(), sizeof core.general);
-  std::memcpy(&core.xpsr, bytes.data() + gdb::place_of_register(gdb::xpsr_number), sizeof core.xpsr);
-  std::memcpy(floats.doubles.data(), bytes.data() + gdb::place_of_register(gdb::first_double), sizeof floats.doubles);
-  std::memcpy(&floats.fpscr, bytes.data() + gdb::place_of_register(gdb::fpscr_number), sizeof floats.fpscr);
+  std::memcpy(&core.xpsr, bytes.data() + gdb::offset_of_register(gdb::xpsr_number), sizeof core.xpsr);
+  std::memcpy(floats.doubles.data(), bytes.data() + gdb::offset_of_register(gdb::first_double), sizeof floats.doubles);
+  std::memcpy(&floats.fpscr, bytes.data() + gdb::offset_of_register(gdb::fpscr_number), sizeof floats.fpscr);
   chip_.debug_port().set_core_registers(core);
   chip_.debug_port().set_float_registers(floats);
 }

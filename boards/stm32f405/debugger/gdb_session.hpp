@@ -30,7 +30,7 @@ class GdbSession {
 
  private:
   struct Watched {
-    WatchPoint place;
+    WatchPoint point;
     char kind;  ///< of the packet: '2' write, '3' read, '4' both
   };
   // Each function returns the reply to GDB. The reply is empty if the request makes the processor run.

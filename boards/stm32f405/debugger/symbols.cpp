@@ -64,9 +64,9 @@ class SymbolTable {
 
   /// Returns the bytes at the symbol up to the first zero byte.
   std::string text(const Elf32_Sym& symbol) const {
-    const auto place = section(symbol.st_shndx);
-    if (!place || place->sh_type != SHT_PROGBITS || symbol.st_value < place->sh_addr) return {};
-    return text_at(file_, std::size_t{place->sh_offset} + (symbol.st_value - place->sh_addr));
+    const auto header = section(symbol.st_shndx);
+    if (!header || header->sh_type != SHT_PROGBITS || symbol.st_value < header->sh_addr) return {};
+    return text_at(file_, std::size_t{header->sh_offset} + (symbol.st_value - header->sh_addr));
   }
 
  private:

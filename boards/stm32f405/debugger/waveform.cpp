@@ -9,7 +9,7 @@ namespace {
 constexpr char exception_code[] = "e";
 constexpr unsigned exception_bits = 7;
 
-unsigned place_of(char port, unsigned pin) { return static_cast<unsigned>(port - 'A') * 16 + pin; }
+unsigned index_of(char port, unsigned pin) { return static_cast<unsigned>(port - 'A') * 16 + pin; }
 
 char value_of(PinLevel level) { return level == PinLevel::high ? '1' : level == PinLevel::low ? '0' : 'z'; }
 
@@ -21,10 +21,11 @@ Waveform::Waveform(const std::filesystem::path& path, std::vector<PinName> pins,
     throw std::runtime_error(fmt::format(
         "{} cannot be written. For --vcd, use a file in an existing folder that you may write.", path.string()));
   if (pins.empty())
-    for (unsigned place = 0; place < places; ++place) pins.push_back({static_cast<char>('A' + place / 16), place % 16});
+    for (unsigned index = 0; index < pin_count; ++index)
+      pins.push_back({static_cast<char>('A' + index / 16), index % 16});
   file_ << "$comment Inkwell virtual board: simulation $end\n$timescale 1 ps $end\n$scope module chip $end\n";
   for (const PinName& pin : pins) {
-    auto& code = codes_[place_of(pin.port, pin.pin)];
+    auto& code = codes_[index_of(pin.port, pin.pin)];
     code = pin.text();  // a code may be any text without spaces
     file_ << fmt::format("$var wire 1 {} {} $end\n", code, code);
   }
@@ -36,7 +37,7 @@ Waveform::Waveform(const std::filesystem::path& path, std::vector<PinName> pins,
   note_exception(chip.current_exception());
   file_ << "$end\n";
   chip.watch_pins([this](char port, unsigned pin, PinLevel level, Ticks when) {
-    const std::string& code = codes_[place_of(port, pin)];
+    const std::string& code = codes_[index_of(port, pin)];
     if (code.empty()) return;
     set_time(when);
     file_ << value_of(level) << code << '\n';

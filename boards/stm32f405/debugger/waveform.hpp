@@ -23,12 +23,12 @@ class Waveform {
   Waveform& operator=(const Waveform&) = delete;
 
  private:
-  static constexpr unsigned places = 9 * 16;
+  static constexpr unsigned pin_count = 9 * 16;
   void set_time(Ticks when);
   void note_exception(unsigned exception);
   Chip& chip_;
   std::ofstream file_;
-  std::array<std::string, places> codes_{};  ///< codes of the written pins, indexed by port and pin
+  std::array<std::string, pin_count> codes_{};  ///< codes of the written pins, indexed by port and pin
   Ticks written_until_ = 0;
   bool begun_ = false;
 };

@@ -14,24 +14,24 @@ CycleCounter::CycleCounter(Pricing pricing, const CodeMap& map, WordReader word)
 
 const BlockPrice& CycleCounter::block(std::uint32_t address, std::span<const std::uint8_t> code) {
   if (const auto* known = known_block(address, static_cast<std::uint32_t>(code.size()))) return *known;
-  const Place place = place_of(address);
-  if (Known* known = *place.known; known != nullptr && known->price.address == address) {
+  const PriceSlot slot = slot_of(address);
+  if (Known* known = *slot.known; known != nullptr && known->price.address == address) {
     known->is_current = std::ranges::equal(known->code, code);
     if (known->is_current) return known->price;
   }
-  return remember(place, address, code);
+  return remember(slot, address, code);
 }
 
-const BlockPrice& CycleCounter::remember(const Place& place, std::uint32_t address,
+const BlockPrice& CycleCounter::remember(const PriceSlot& slot, std::uint32_t address,
                                          std::span<const std::uint8_t> code) {
-  Known*& known = *place.known;
+  Known*& known = *slot.known;
   if (known == nullptr) known = &known_.emplace_back();
-  *known = {true, price(code, address, place.memory, costs_, word_), {code.begin(), code.end()}};
+  *known = {true, price(code, address, slot.memory, costs_, word_), {code.begin(), code.end()}};
   return known->price;
 }
 
 void CycleCounter::reread(std::uint32_t address) {
-  if (Known* known = *place_of(address).known) known->is_current = false;
+  if (Known* known = *slot_of(address).known) known->is_current = false;
 }
 
 void CycleCounter::forget_prices() {

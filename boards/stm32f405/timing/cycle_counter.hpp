@@ -28,7 +28,7 @@ class CycleCounter {
   /// Price of the block of `bytes` bytes at `address`, or null if the block has no valid price.
   const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
     if (forgets_) forget_prices();
-    const Known* known = *place_of(address).known;
+    const Known* known = *slot_of(address).known;
     const bool fits =
         known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
     return fits ? &known->price : nullptr;
@@ -67,11 +67,11 @@ class CycleCounter {
     BlockPrice price;
     std::vector<std::uint8_t> code;  ///< code of the pricing
   };
-  struct Place {
+  struct PriceSlot {
     Known** known;  ///< null means none
     CodeMemory memory;
   };
-  Place place_of(std::uint32_t address) {
+  PriceSlot slot_of(std::uint32_t address) {
     // The flash is also mapped at 0.
     const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
     if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
@@ -79,7 +79,7 @@ class CycleCounter {
       return {&known_in_sram_[(address - map_.sram_base) / 2], CodeMemory::sram};
     return {&known_elsewhere_[address], CodeMemory::flash};
   }
-  const BlockPrice& remember(const Place& place, std::uint32_t address, std::span<const std::uint8_t> code);
+  const BlockPrice& remember(const PriceSlot& slot, std::uint32_t address, std::span<const std::uint8_t> code);
   void forget_prices();
 
   bool in_flash(std::uint32_t address) const {

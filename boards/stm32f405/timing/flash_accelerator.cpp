@@ -3,37 +3,37 @@
 
 namespace inkwell::virtual_board {
 
-LineCache::LineCache(std::size_t places, std::size_t lines) : places_(places + 1), place_of_(lines, 0) {
-  const std::size_t size = places_.size();
+LineCache::LineCache(std::size_t entries, std::size_t lines) : entries_(entries + 1), entry_of_(lines, 0) {
+  const std::size_t size = entries_.size();
   for (std::size_t i = 0; i < size; ++i) {
-    places_[i].newer = static_cast<std::uint8_t>((i + 1) % size);
-    places_[i].older = static_cast<std::uint8_t>((i + size - 1) % size);
+    entries_[i].newer = static_cast<std::uint8_t>((i + 1) % size);
+    entries_[i].older = static_cast<std::uint8_t>((i + size - 1) % size);
   }
 }
 
-void LineCache::use(std::uint8_t place) {
-  Place& it = places_[place];
-  places_[it.older].newer = it.newer;
-  places_[it.newer].older = it.older;
-  it.newer = places_[0].newer;
+void LineCache::use(std::uint8_t entry) {
+  Entry& it = entries_[entry];
+  entries_[it.older].newer = it.newer;
+  entries_[it.newer].older = it.older;
+  it.newer = entries_[0].newer;
   it.older = 0;
-  places_[it.newer].older = place;
-  places_[0].newer = place;
+  entries_[it.newer].older = entry;
+  entries_[0].newer = entry;
 }
 
 void LineCache::keep(std::uint32_t line) {
-  if (place_of_[line] != 0) return;
-  const std::uint8_t oldest = places_[0].older;
-  if (places_[oldest].line != no_line) place_of_[places_[oldest].line] = 0;
-  places_[oldest].line = line;
-  place_of_[line] = oldest;
+  if (entry_of_[line] != 0) return;
+  const std::uint8_t oldest = entries_[0].older;
+  if (entries_[oldest].line != no_line) entry_of_[entries_[oldest].line] = 0;
+  entries_[oldest].line = line;
+  entry_of_[line] = oldest;
   use(oldest);
 }
 
 void LineCache::forget() {
-  for (Place& place : places_) {
-    if (place.line != no_line) place_of_[place.line] = 0;
-    place.line = no_line;
+  for (Entry& entry : entries_) {
+    if (entry.line != no_line) entry_of_[entry.line] = 0;
+    entry.line = no_line;
   }
 }
 

@@ -13,13 +13,13 @@ namespace inkwell::virtual_board {
 /// model is fully associative.
 class LineCache {
  public:
-  /// Creates a cache with `places` entries (at most 254) for a memory of `lines` lines.
-  LineCache(std::size_t places, std::size_t lines);
+  /// Creates a cache with `entries` entries (at most 254) for a memory of `lines` lines.
+  LineCache(std::size_t entries, std::size_t lines);
   /// Returns true if the line is in the cache, and marks the line as most recently used.
   bool holds(std::uint32_t line) {
-    const std::uint8_t place = place_of_[line];
-    if (place == 0) return false;
-    if (place != places_[0].newer) use(place);
+    const std::uint8_t entry = entry_of_[line];
+    if (entry == 0) return false;
+    if (entry != entries_[0].newer) use(entry);
     return true;
   }
   void keep(std::uint32_t line);
@@ -29,13 +29,13 @@ class LineCache {
   static constexpr std::uint32_t no_line = ~0u;
   /// Entry of a ring that is ordered by last use. Entry 0 is a sentinel without a line. In the sentinel, `newer` is the
   /// most recently used entry, and `older` is the least recently used entry.
-  struct Place {
+  struct Entry {
     std::uint32_t line = no_line;
     std::uint8_t older = 0, newer = 0;
   };
-  void use(std::uint8_t place);
-  std::vector<Place> places_;
-  std::vector<std::uint8_t> place_of_;  ///< index: line; 0 means not in the cache
+  void use(std::uint8_t entry);
+  std::vector<Entry> entries_;
+  std::vector<std::uint8_t> entry_of_;  ///< index: line; 0 means not in the cache
 };
 
 class FlashAccelerator {

@@ -151,10 +151,10 @@ Injection parse_injection(std::string_view text, const board::Facts& board) {
   std::string_view rest = text;
   // Splits the text at the last `mark`, because a plus sign also separates the names of two wires.
   const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {
-    const auto place = rest.rfind(mark);
-    if (place == std::string_view::npos) return std::nullopt;
-    const double value = number(rest.substr(place + 1), what);
-    rest = rest.substr(0, place);
+    const auto position = rest.rfind(mark);
+    if (position == std::string_view::npos) return std::nullopt;
+    const double value = number(rest.substr(position + 1), what);
+    rest = rest.substr(0, position);
     return value;
   };
   const auto at = rest.rfind('@'), plus = rest.rfind('+');

@@ -102,7 +102,7 @@ void Injector::carry_out() {
 }
 
 void Injector::put_in(unsigned number, Injection injection) {
-  choose_place(injection);
+  choose_address(injection);
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
       if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
@@ -133,13 +133,13 @@ void Injector::heal_all() {
   planned_.clear();
 }
 
-void Injector::choose_place(Injection& injection) {
+void Injector::choose_address(Injection& injection) {
   const auto below = [&](std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); };
   if (protocol::info(injection.fault).place != protocol::InjectionPlace::address) return;
   if (!injection.address) {
     if (injection.fault == InjectedFault::ram_bit) {
-      const std::uint32_t place = below(sram_bytes + ccm_bytes);
-      injection.address = place < sram_bytes ? sram_base + place : ccm_base + place - sram_bytes;
+      const std::uint32_t offset = below(sram_bytes + ccm_bytes);
+      injection.address = offset < sram_bytes ? sram_base + offset : ccm_base + offset - sram_bytes;
     } else {
       injection.address = flash_base + below(programmed_bytes(victims_.chip));
     }

@@ -66,7 +66,7 @@ class Injector {
 
  private:
   void put_in(unsigned number, Injection injection);
-  void choose_place(Injection& injection);
+  void choose_address(Injection& injection);
   void put(const Injection& injection, bool in);
   void put_into_wire(const Injection& injection, bool in);
   void put_into_motor(const Injection& injection, bool in);

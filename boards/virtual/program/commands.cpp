@@ -155,16 +155,16 @@ json hand_path(const json& request, Simulation& simulation) {
 }
 
 json pin(const json& request, Simulation& simulation) {
-  const PinName place = pin_of(request);
+  const PinName pin_name = pin_of(request);
   Chip& chip = simulation.board().chip();
-  if (const auto level = pin_drive(request)) chip.input_pins().drive(place.port, place.pin, *level);
-  return {{"level", name_of(chip.pin_level(place.port, place.pin))},
-          {"chip_drives", name_of(chip.pin_output(place.port, place.pin))}};
+  if (const auto level = pin_drive(request)) chip.input_pins().drive(pin_name.port, pin_name.pin, *level);
+  return {{"level", name_of(chip.pin_level(pin_name.port, pin_name.pin))},
+          {"chip_drives", name_of(chip.pin_output(pin_name.port, pin_name.pin))}};
 }
 
 json glitch(const json& request, Simulation& simulation) {
-  const PinName place = pin_of(request);
-  simulation.board().chip().glitch(place.port, place.pin, ticks(glitch_time_s(request)));
+  const PinName pin_name = pin_of(request);
+  simulation.board().chip().glitch(pin_name.port, pin_name.pin, ticks(glitch_time_s(request)));
   return {};
 }
 

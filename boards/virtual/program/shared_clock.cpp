@@ -45,58 +45,58 @@ SharedClock::SharedClock(const std::filesystem::path& file)
   if (file_ < 0) throw failure(file, std::string(std::strerror(errno)) + ". Use a file that you may write.");
   try {
     struct stat about {};
-    if (::fstat(file_, &about) != 0 || (about.st_size != 0 && about.st_size != sizeof(Places)))
+    if (::fstat(file_, &about) != 0 || (about.st_size != 0 && about.st_size != sizeof(Slots)))
       throw failure(file, "the file is not a clock. Use a new file name.");
-    if (::ftruncate(file_, sizeof(Places)) != 0) throw failure(file, std::strerror(errno));
-    void* const memory = ::mmap(nullptr, sizeof(Places), PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+    if (::ftruncate(file_, sizeof(Slots)) != 0) throw failure(file, std::strerror(errno));
+    void* const memory = ::mmap(nullptr, sizeof(Slots), PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
     if (memory == MAP_FAILED) throw failure(file, std::strerror(errno));
-    places_ = static_cast<Places*>(memory);
+    slots_ = static_cast<Slots*>(memory);
     set_lock(file_, joining, F_WRLCK, true);
     join();
     set_lock(file_, joining, F_UNLCK);
     if (mine_ == boards_maximum) throw failure(file, "16 boards use the clock. Exit one board, or use another file.");
   } catch (...) {
-    if (places_ != nullptr) ::munmap(places_, sizeof(Places));
+    if (slots_ != nullptr) ::munmap(slots_, sizeof(Slots));
     ::close(file_);
     throw;
   }
 }
 
 SharedClock::~SharedClock() {
-  (*places_)[mine_] = 0;
-  ::munmap(places_, sizeof(Places));
+  (*slots_)[mine_] = 0;
+  ::munmap(slots_, sizeof(Slots));
   ::close(file_);  // also releases the lock on its slot
 }
 
 void SharedClock::join() {
-  for (std::size_t place = 0; place < boards_maximum; ++place)
-    if (!is_taken(place)) (*places_)[place] = 0;  // slot of a killed board
+  for (std::size_t slot = 0; slot < boards_maximum; ++slot)
+    if (!is_taken(slot)) (*slots_)[slot] = 0;  // slot of a killed board
   joined_at_ = farthest();
   for (mine_ = 0; mine_ < boards_maximum; ++mine_)
     if (set_lock(file_, static_cast<off_t>(mine_), F_WRLCK)) break;
-  if (mine_ < boards_maximum) (*places_)[mine_] = joined_at_;
+  if (mine_ < boards_maximum) (*slots_)[mine_] = joined_at_;
 }
 
-bool SharedClock::is_taken(std::size_t place) const {
-  struct flock lock = lock_of(static_cast<off_t>(place), F_WRLCK);
+bool SharedClock::is_taken(std::size_t slot) const {
+  struct flock lock = lock_of(static_cast<off_t>(slot), F_WRLCK);
   return ::fcntl(file_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 std::uint64_t SharedClock::farthest() const {
   std::uint64_t farthest = 1;
-  for (const Place& place : *places_) farthest = std::max(farthest, place.load());
+  for (const Slot& slot : *slots_) farthest = std::max(farthest, slot.load());
   return farthest;
 }
 
-void SharedClock::note(std::uint64_t milliseconds) { (*places_)[mine_] = joined_at_ + milliseconds; }
+void SharedClock::note(std::uint64_t milliseconds) { (*slots_)[mine_] = joined_at_ + milliseconds; }
 
 bool SharedClock::lets_pass() {
-  const std::uint64_t mine = (*places_)[mine_];
-  for (std::size_t place = 0; place < boards_maximum; ++place) {
-    std::uint64_t other = (*places_)[place];
+  const std::uint64_t mine = (*slots_)[mine_];
+  for (std::size_t slot = 0; slot < boards_maximum; ++slot) {
+    std::uint64_t other = (*slots_)[slot];
     if (other == 0 || other >= mine) continue;
-    if (is_taken(place)) return false;
-    (*places_)[place].compare_exchange_strong(other, 0);  // unless another board has just joined in this slot
+    if (is_taken(slot)) return false;
+    (*slots_)[slot].compare_exchange_strong(other, 0);  // unless another board has just joined in this slot
   }
   return true;
 }

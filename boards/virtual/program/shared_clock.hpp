@@ -30,17 +30,17 @@ class SharedClock {
 
  private:
   /// Content of a slot: 0 if the slot is free, otherwise 1 plus the group time of the board in milliseconds.
-  using Place = std::atomic<std::uint64_t>;
-  static_assert(Place::is_always_lock_free, "processes share it");
-  using Places = std::array<Place, boards_maximum>;
+  using Slot = std::atomic<std::uint64_t>;
+  static_assert(Slot::is_always_lock_free, "processes share it");
+  using Slots = std::array<Slot, boards_maximum>;
 
   void join();
-  bool is_taken(std::size_t place) const;
+  bool is_taken(std::size_t slot) const;
   /// Largest value of all slots; 1 if all slots are free.
   std::uint64_t farthest() const;
 
   int file_ = -1;
-  Places* places_ = nullptr;  ///< mapping of the file
+  Slots* slots_ = nullptr;  ///< mapping of the file
   std::size_t mine_ = 0;
   std::uint64_t joined_at_ = 1;
 };

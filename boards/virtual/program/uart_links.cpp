@@ -32,22 +32,22 @@ UartOption UartOption::of(const std::string& text) {
   };
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size()) throw wrong();
-  const std::string name = text.substr(0, equals), place = text.substr(equals + 1);
+  const std::string name = text.substr(0, equals), target = text.substr(equals + 1);
   constexpr std::string_view names[] = {"usart1", "usart2", "usart3", "uart4", "uart5", "usart6"};
   const auto* found = std::find(std::begin(names), std::end(names), name);
   if (found == std::end(names)) throw wrong();
   UartOption option;
   option.number = static_cast<unsigned>(found - std::begin(names)) + 1;
-  if (place == "stdio") return option;
-  const bool is_number = place.find_first_not_of("0123456789") == std::string::npos;
-  if (!is_number && !place.starts_with(local::unix_scheme)) {
+  if (target == "stdio") return option;
+  const bool is_number = target.find_first_not_of("0123456789") == std::string::npos;
+  if (!is_number && !target.starts_with(local::unix_scheme)) {
     option.kind = Kind::path;
-    option.path = place;
+    option.path = target;
     return option;
   }
   option.kind = Kind::socket;
   try {
-    option.socket = PortOption::of(place);
+    option.socket = PortOption::of(target);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", text, error.what()));
   }

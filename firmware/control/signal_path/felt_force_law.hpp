@@ -24,7 +24,7 @@ class FeltForceLaw {
     periods_ = 0;
   }
 
-  float signal(std::size_t place) const { return memory_.signals[place]; }
+  float signal(std::size_t index) const { return memory_.signals[index]; }
 
  private:
   std::uint32_t periods_ = 0;  ///< number of periods since the law became active

@@ -237,7 +237,7 @@ namespace {
 
 /// The compiler expands this function without a loop and without member pointers.
 template <std::size_t count, class Do>
-void for_each_place(Do&& run) {
+void for_each_index(Do&& run) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (run(std::integral_constant<std::size_t, i>{}), ...); }
   (std::make_index_sequence<count>());
 }
@@ -251,16 +251,16 @@ void reset_force_law(ForceLawMemory& memory) {
   static constexpr State as_new{};
   const auto* from = reinterpret_cast<const std::byte*>(&as_new);
   for (std::size_t i = 0; i < sizeof as_new; ++i) memory.state[i] = from[i];
-  for_each_place<signals.size()>([&](auto i) { memory.signals[i] = 0.0f; });
+  for_each_index<signals.size()>([&](auto i) { memory.signals[i] = 0.0f; });
 }
 
 void step_force_law(const Probe& probe, const ForceLawValues& values, ForceLawMemory& memory, Vector3& force_N) {
   Parameters given{};
   Signals seen{};
   auto& state = *std::launder(reinterpret_cast<State*>(memory.state.data()));
-  for_each_place<parameters.size()>([&](auto i) { given.*parameters[i].value = values[i]; });
+  for_each_index<parameters.size()>([&](auto i) { given.*parameters[i].value = values[i]; });
   force_N = Law::force_N(probe, given, state, seen);
-  for_each_place<signals.size()>([&](auto i) { memory.signals[i] = seen.*signals[i].value; });
+  for_each_index<signals.size()>([&](auto i) { memory.signals[i] = seen.*signals[i].value; });
 }
 
 }  // namespace inkwell::control

@@ -13,10 +13,10 @@ BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
 
 # STM32F405 data sheet, "STM32F40xxx pin definitions", LQFP64.
 LQFP64 = {
-    **{f"PA{n}": place for n, place in enumerate((14, 15, 16, 17, 20, 21, 22, 23, 41, 42, 43, 44, 45, 46, 49, 50))},
-    **{f"PB{n}": place for n, place in
+    **{f"PA{n}": position for n, position in enumerate((14, 15, 16, 17, 20, 21, 22, 23, 41, 42, 43, 44, 45, 46, 49, 50))},
+    **{f"PB{n}": position for n, position in
        enumerate((26, 27, 28, 55, 56, 57, 58, 59, 61, 62, 29, 30, 33, 34, 35, 36))},
-    **{f"PC{n}": place for n, place in enumerate((8, 9, 10, 11, 24, 25, 37, 38, 39, 40, 51, 52, 53, 2, 3, 4))},
+    **{f"PC{n}": position for n, position in enumerate((8, 9, 10, 11, 24, 25, 37, 38, 39, 40, 51, 52, 53, 2, 3, 4))},
 }
 
 # Pins of connectors J2 and J3 in pairs (STM32World/hardware, mcustm32f405).
@@ -26,10 +26,10 @@ HEADERS = {
     "J3": "- - - - - - - - PA9 PA8 PA11 PA10 PA13 PA12 PA15 PA14 - - PC11 PC10 - PC12 PB3 PD2 PB5 PB4 PB7 PB6 PB9 PB8 - - "
           "PC13 PC14 PC15",
 }
-MODULE = {pin: f"{header}.{place}" for header, pins in HEADERS.items() for place, pin in enumerate(pins.split(), 1)}
+MODULE = {pin: f"{header}.{position}" for header, pins in HEADERS.items() for position, pin in enumerate(pins.split(), 1)}
 
 # Position of each pin in a wiring table.
-PLACES = {"omni_driver": LQFP64, "bench_modules": MODULE}
+POSITIONS = {"omni_driver": LQFP64, "bench_modules": MODULE}
 
 
 class WiringTable(unittest.TestCase):
@@ -38,16 +38,16 @@ class WiringTable(unittest.TestCase):
         self.facts = {name: (pin, function, channel) for name, pin, function, channel in map(str.split, lines)}
         rows = re.findall(r"^\| [^|]+ \| `([^`]+)` \| (P[A-Z]\d+) \| ([\w.]+) \| ([^|]+) \| ([^|]+) \|", (BOARDS / board / "README.md").read_text(),
                           re.MULTILINE)
-        self.rows = {name: (pin, function.strip(), place, peripheral.strip())
-                     for name, pin, place, peripheral, function in rows}
+        self.rows = {name: (pin, function.strip(), position, peripheral.strip())
+                     for name, pin, position, peripheral, function in rows}
 
     def test_pins_and_functions_agree(self):
         facts = {name: (pin, function) for name, (pin, function, _) in self.facts.items()}
         self.assertEqual({name: row[:2] for name, row in self.rows.items()}, facts)
 
-    def test_places_of_the_pins_are_right(self):
-        for name, (pin, _, place, _) in self.rows.items():
-            self.assertEqual(place, str(PLACES[board][pin]), name)
+    def test_positions_of_the_pins_are_right(self):
+        for name, (pin, _, position, _) in self.rows.items():
+            self.assertEqual(position, str(POSITIONS[board][pin]), name)
 
     def test_timers_and_channels_agree(self):
         channels = {name: channel for name, (_, _, channel) in self.facts.items() if channel != "-"}

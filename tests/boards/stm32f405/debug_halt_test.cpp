@@ -30,7 +30,7 @@ Moved moved_by_halt(std::uint32_t stops) {
   test.run_for(0.05);
   REQUIRE(test.result(0) == finished);
   test.run_for(100e-6);
-  const auto at = [&](unsigned place) { return test.result(place); };
+  const auto at = [&](unsigned index) { return test.result(index); };
   const std::array before{at(1), at(2), at(3), at(4)};
   test.chip.halt(ticks(halt_s));
   test.run_for(halt_s + 50e-6);

@@ -63,7 +63,7 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(complaint(relocatable), "not a linked executable"));
   }
 
-  TEST_CASE("firmware for another place or another chip is named as that") {
+  TEST_CASE("firmware for another address or another chip is named as that") {
     const std::string good = read_file(firmware_path("watchdog"));
     std::uint32_t headers = 0, vectors = 0;
     std::memcpy(&headers, good.data() + 28, 4);
@@ -81,9 +81,9 @@ TEST_SUITE("virtual chip: ELF") {
 
     // A second segment overlaps the vectors of the first segment. The last segment determines the flash content.
     std::string covered = good;
-    const std::uint32_t segment_bytes = 32, places[] = {vectors, 0x0800'0004, 0x0800'0004, 1, 1};
+    const std::uint32_t segment_bytes = 32, header_words[] = {vectors, 0x0800'0004, 0x0800'0004, 1, 1};
     std::memcpy(covered.data() + headers + segment_bytes, good.data() + headers, segment_bytes);
-    std::memcpy(covered.data() + headers + segment_bytes + 4, places, sizeof places);
+    std::memcpy(covered.data() + headers + segment_bytes + 4, header_words, sizeof header_words);
     covered[vectors] = '\x3A';
     CHECK(contains(complaint(covered), "no vector table"));
 

@@ -115,7 +115,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     }
   }
 
-  TEST_CASE("a violation names the place in the code, its first time and how often it happened") {
+  TEST_CASE("a violation names the code address, its first time and how often it happened") {
     const Planted faulty(11);
     const auto& violations = faulty.test.chip.violations();
     REQUIRE(violations.size() == 2);

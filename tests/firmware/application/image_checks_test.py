@@ -108,8 +108,8 @@ class ImageChecks(unittest.TestCase):
         self.assert_refused(check_image, reads)
         check_image, _ = self.check(
             'extern "C" const int table[16];\nconst int table[16] = {7, 1, 8};\n'
-            'void work() { int place; asm("movw %0, #:lower16:table\\n movt %0, #:upper16:table" : "=r"(place)); '
-            "sink = place; }\n[[gnu::used]] const int* volatile keep = table;")
+            'void work() { int address; asm("movw %0, #:lower16:table\\n movt %0, #:upper16:table" : "=r"(address)); '
+            "sink = address; }\n[[gnu::used]] const int* volatile keep = table;")
         self.assert_refused(check_image, reads)
 
     def test_an_unmarked_handler_is_found(self):
@@ -174,10 +174,10 @@ class ImageChecks(unittest.TestCase):
 
     def test_loops_that_count_are_no_waits(self):
         check_image, _ = self.check("""
-        unsigned words[64], * volatile place = words;
+        unsigned words[64], * volatile begin = words;
         [[gnu::noipa]] INKWELL_INTERRUPT unsigned other(unsigned n) { return n; }
         void work() {
-          for (unsigned* word = place; word != words + 64; ++word) *word = static_cast<unsigned>(sink);
+          for (unsigned* word = begin; word != words + 64; ++word) *word = static_cast<unsigned>(sink);
           for (unsigned left = words[3]; left != 0; --left) words[left % 64] = other(left);
           for (unsigned bits = words[1]; bits != 0; bits >>= 1) sink = 1;
           for (unsigned i = 0; i < words[1]; ++i)

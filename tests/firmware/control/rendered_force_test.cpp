@@ -123,7 +123,7 @@ TEST_CASE("the hand feels no source from the period on in which the force goes o
   CHECK(arm.controller.force_sources() == all);
 }
 
-TEST_CASE("a program that takes the walls' place, and gives it back, is felt without a jump") {
+TEST_CASE("a program that replaces the walls, and returns to them, is felt without a jump") {
   StillArm arm;
   arm.drive({}, ForceMode::instead_of_walls);
   const float limit_N = 0.05f * arm.settings.force_limit_N;
@@ -156,12 +156,12 @@ TEST_CASE("a plane that comes, moves by 5 mm or goes under a pressing hand never
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
 
   const control::Shapes moves[] = {arm.floor(0.003f), arm.floor(-0.002f), arm.floor(0.0025f), arm.floor(0.0f), {}};
-  std::size_t place = 1;
+  std::size_t index = 1;
   for (const control::Shapes& moved : moves) {
     arm.drive({}, ForceMode::instead_of_walls);
-    shapes[place] = moved;
-    arm.controller.replace_shapes(shapes[place]);
-    place ^= 1u;
+    shapes[index] = moved;
+    arm.controller.replace_shapes(shapes[index]);
+    index ^= 1u;
     CHECK(arm.largest_step_N(40) <= limit_N);
     const float depth_m = moved.life_periods[1] == 0 ? 0.0f : moved.planes[0].offset_m - arm.probe_m.z;
     CHECK(arm.force_N().z == doctest::Approx(std::max(0.0f, 1000.0f * depth_m)).epsilon(2e-3));

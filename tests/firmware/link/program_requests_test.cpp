@@ -203,7 +203,7 @@ TEST_CASE("the ticket of shapes is known if they are of this version and long en
   CHECK(link::ticket_of_shapes(bytes(report)) == 0);
 }
 
-TEST_CASE("a place without life may hold anything") {
+TEST_CASE("a slot without life may hold anything") {
   ShapesReport report = one_plane();
   report.planes[0].surface = {};
   report.planes[0].normal[0] = not_a_number;

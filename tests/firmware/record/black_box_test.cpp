@@ -322,8 +322,8 @@ TEST_CASE("memory after power-up is never taken for a black box") {
   std::uint32_t random = 1;
   for (int i = 0; i < 300; ++i) {
     Board board;
-    const auto fill = [&](auto& place) {
-      auto bytes = std::as_writable_bytes(std::span(&place, 1));
+    const auto fill = [&](auto& memory) {
+      auto bytes = std::as_writable_bytes(std::span(&memory, 1));
       for (std::byte& byte : bytes) {
         random = random * 1664525u + 1013904223u;
         byte = i == 0 ? std::byte{0} : i == 1 ? std::byte{0xFF} : static_cast<std::byte>(random >> 24);
@@ -363,10 +363,10 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
     const auto intact = board.memory;
     const Periods expected = is_kept ? around_fault : Periods{920, 940, 960, 980, 1000};
     const Fault fault = is_kept ? Fault::supply_low : Fault::watchdog;
-    for (std::size_t place = 0; place < sizeof intact; place += 3) {
-      CAPTURE(place);
+    for (std::size_t index = 0; index < sizeof intact; index += 3) {
+      CAPTURE(index);
       board.memory = intact;
-      std::as_writable_bytes(std::span(&board.memory, 1))[place] ^= std::byte{0x10};
+      std::as_writable_bytes(std::span(&board.memory, 1))[index] ^= std::byte{0x10};
       board.start(is_kept ? Fault::none : fault);
       if (!board.is_kept()) continue;
       CHECK(board.box->report().fault == fault);

@@ -151,10 +151,10 @@ TEST_CASE("32 signals, and the last ones of the table") {
 }
 
 TEST_CASE("wide and narrow signals in turn, 32 of them, whichever comes first") {
-  for (const std::size_t narrow_places : {0u, 1u}) {
+  for (const std::size_t narrow_remainder : {0u, 1u}) {
     SignalSelection selection = select(32);
     for (std::size_t i = 0; i < 32; ++i)
-      selection.signals[i] = static_cast<std::uint8_t>(i % 2 == narrow_places ? 25 + i / 2 % 6 : i / 2);
+      selection.signals[i] = static_cast<std::uint8_t>(i % 2 == narrow_remainder ? 25 + i / 2 % 6 : i / 2);
     check_round_trip(selection, ScopeEncoding::changes, 200);
   }
 }

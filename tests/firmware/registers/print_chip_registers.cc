@@ -19,10 +19,10 @@ class NoCircuit final : public Circuit {
 /// The name with `number` for its `#`, a letter from 'A' on.
 std::string numbered(const MapEntry& entry, unsigned number) {
   std::string name = entry.name.data();
-  const auto place = name.find('#');
-  if (place == std::string::npos) return name;
+  const auto position = name.find('#');
+  if (position == std::string::npos) return name;
   const std::string text = entry.first >= 'A' ? std::string(1, static_cast<char>(number)) : std::to_string(number);
-  return name.replace(place, 1, text);
+  return name.replace(position, 1, text);
 }
 
 nlohmann::json fields_of(std::span<const MapEntry> fields, unsigned register_number) {

@@ -41,10 +41,10 @@ TEST_CASE("sound memory keeps the pattern, and has its content afterwards") {
 }
 
 TEST_CASE("a bit that stands still is found, whichever, high or low, first word or last") {
-  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}})
+  for (const std::size_t index : {std::size_t{0}, std::size_t{3}, std::size_t{4}, std::size_t{9}})
     for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
-      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_high = bit; }));
-      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[place].stuck_low = bit; }));
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[index].stuck_high = bit; }));
+      CHECK_FALSE(is_intact_with([&](Memory& memory) { memory[index].stuck_low = bit; }));
     }
 }
 

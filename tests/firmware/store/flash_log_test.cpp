@@ -27,15 +27,15 @@ class FakeFlash final : public FlashMemory {
   }
   std::span<const std::uint32_t> sector(std::size_t number) const override { return sectors[number]; }
   bool program(std::size_t sector, std::size_t word, std::uint32_t value) override {
-    std::uint32_t& place = sectors.at(sector).at(word);
-    if (place != erased) ++overwritten;
-    const std::uint32_t before = place;
-    place &= value;
+    std::uint32_t& cell = sectors.at(sector).at(word);
+    if (cell != erased) ++overwritten;
+    const std::uint32_t before = cell;
+    cell &= value;
     if (cuts()) {
-      place = tear == 0 ? before : tear == 1 ? place : before & (place | random());
+      cell = tear == 0 ? before : tear == 1 ? cell : before & (cell | random());
       throw PowerCut{};
     }
-    return place == value && !broken;
+    return cell == value && !broken;
   }
   void erase(std::size_t sector) override {
     const std::vector<std::uint32_t> before = sectors.at(sector);

@@ -30,7 +30,7 @@ using Words = std::array<std::uint32_t, sizeof(MotorHeatKeeper) / sizeof(std::ui
 
 /// Memory layout of the keeper, with named members.
 struct Memory {
-  struct Place {
+  struct Slot {
     struct Left {
       Warmth warmth;
       std::uint32_t number;
@@ -38,7 +38,7 @@ struct Memory {
     std::uint32_t check;
     void seal() { check = ~link::sum_of(left); }
   };
-  std::array<Place, 2> places;
+  std::array<Slot, 2> slots;
   std::uint32_t next_number;
 };
 
@@ -121,8 +121,8 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
   for (std::size_t end = 1; end < check; ++end) {
     Memory cut = other;
     constexpr Warmth cold{};
-    std::memcpy(&cut.places[0].left, &cold, std::min(4 * end, sizeof cold));
-    cut.places[0].left.number += 2;
+    std::memcpy(&cut.slots[0].left, &cold, std::min(4 * end, sizeof cold));
+    cut.slots[0].left.number += 2;
     check_is(found_in(cut), warmer);
   }
 }
@@ -135,9 +135,9 @@ TEST_CASE("motor heat: the first copy after a start leaves what the start found 
   keeper.store(warm);
   check_is(keeper.start(false), warm);
   memory = std::bit_cast<Memory>(keeper);
-  CHECK(memory.places[0].left.number == 2);
-  CHECK(memory.places[1].left.number == 1);
-  memory.places[0].check ^= 1;
+  CHECK(memory.slots[0].left.number == 2);
+  CHECK(memory.slots[1].left.number == 1);
+  memory.slots[0].check ^= 1;
   check_is(found_in(memory), warmer);
 }
 
@@ -152,9 +152,9 @@ TEST_CASE("motor heat: a bit that has changed in the newest copy leaves the one 
 
 TEST_CASE("motor heat: the newest is known when numbers wrap") {
   Memory memory = memory_with(warm, warmer);
-  memory.places[0].left.number = 0;
-  memory.places[1].left.number = 0xFFFF'FFFF;
-  for (auto& place : memory.places) place.seal();
+  memory.slots[0].left.number = 0;
+  memory.slots[1].left.number = 0xFFFF'FFFF;
+  for (auto& slot : memory.slots) slot.seal();
   check_is(found_in(memory), warm);
 }
 
@@ -168,16 +168,16 @@ TEST_CASE("motor heat: what is kept lies in its range") {
 
 TEST_CASE("motor heat: what lies out of its range, or is no number, is not believed, however sound it looks") {
   Memory memory = memory_with(warm, warm);
-  memory.places[1].left.warmth = warmer;
-  memory.places[1].seal();
+  memory.slots[1].left.warmth = warmer;
+  memory.slots[1].seal();
   check_is(found_in(memory), warmer);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (const float wrong : {-0.01f, 4.01f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
     for (std::size_t motor = 0; motor < 3; ++motor) {
       for (const auto part : {&Warmth::heat, &Warmth::housing}) {
         Memory damaged = memory;
-        (damaged.places[1].left.warmth.*part)[motor] = wrong;
-        damaged.places[1].seal();
+        (damaged.slots[1].left.warmth.*part)[motor] = wrong;
+        damaged.slots[1].seal();
         check_is(found_in(damaged), warm);
       }
     }

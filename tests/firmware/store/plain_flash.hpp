@@ -21,9 +21,9 @@ class PlainFlash final : public link::FlashMemory {
   std::span<const std::uint32_t> sector(std::size_t number) const override { return sectors[number]; }
   bool program(std::size_t sector, std::size_t word, std::uint32_t value) override {
     ++words_programmed;
-    std::uint32_t& place = sectors.at(sector).at(word);
-    place &= value;
-    return place == value && !is_worn;
+    std::uint32_t& cell = sectors.at(sector).at(word);
+    cell &= value;
+    return cell == value && !is_worn;
   }
   void erase(std::size_t sector) override { std::ranges::fill(sectors.at(sector), 0xFFFF'FFFF); }
 

@@ -497,18 +497,18 @@ TEST_CASE("stored parameters: a bit that changes in any word of what is written,
   CHECK(board.stored.is_intact());
   // The members are private. The value of the force limit is unique, so the test finds the members by this value.
   auto* const bytes = reinterpret_cast<std::byte*>(&board.stored);
-  unsigned places = 0;
+  unsigned copies = 0;
   for (std::size_t at = 0; at < sizeof board.stored; at += sizeof(float)) {
     float value;
     std::memcpy(&value, bytes + at, sizeof value);
     if (value != 1.2345f) continue;
-    ++places;
+    ++copies;
     bytes[at] ^= std::byte{0x10};
     CHECK_FALSE(board.stored.is_intact());
     CHECK(board.store() == StoreResult::flash_failed);
     bytes[at] ^= std::byte{0x10};
   }
-  CHECK(places == 3);  // the set for the next start, the written set, and the words in the flash
+  CHECK(copies == 3);  // the set for the next start, the written set, and the words in the flash
   CHECK(board.stored.is_intact());
 }
 

@@ -70,7 +70,7 @@ class Refusals(unittest.TestCase):
         self.assert_refused(result, "the force law may take ")
         self.assertRegex(result.stderr, r"may take \d+ cycles in a control period, but only 1500 are left for it\.")
 
-    def test_a_loop_without_a_known_count_is_refused_with_its_place(self):
+    def test_a_loop_without_a_known_count_is_refused_with_its_location(self):
         result = self.price('extern "C" float step_force_law(float x, int n) {\n'
                             "  for (int i = 0; i < n; ++i)\n    x = 1.0f / x;\n  return x;\n}")
         self.assert_refused(result, "of which the compiler does not know how often it runs")

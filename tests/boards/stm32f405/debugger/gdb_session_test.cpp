@@ -39,7 +39,7 @@ std::string digits(std::uint32_t value) {
 }
 
 /// Returns the address of the first instruction of read_too_far, which reads an unmapped address.
-std::uint32_t place_of_fault() {
+std::uint32_t address_of_cpu_fault() {
   ChipUnderTest test("lock_up");
   test.run_for(0.01);
   return test.chip.first_fault().value().registers.general[CoreRegisters::pc];
@@ -50,18 +50,18 @@ std::uint32_t place_of_fault() {
 TEST_SUITE("virtual board: debugger") {
   TEST_CASE("a breakpoint stops before its instruction, a step behind it, and a fault's handler is stepped into") {
     Debugger gdb("lock_up");
-    const std::uint32_t place = place_of_fault();
+    const std::uint32_t address = address_of_cpu_fault();
     char packet[32];
-    std::snprintf(packet, sizeof packet, "Z1,%x,2", static_cast<unsigned>(place));
+    std::snprintf(packet, sizeof packet, "Z1,%x,2", static_cast<unsigned>(address));
     CHECK(gdb.ask(packet) == "OK");
     CHECK(gdb.session.halted());
     CHECK(gdb.ask("c").empty());
     CHECK_FALSE(gdb.session.halted());
     CHECK(gdb.run() == "T05thread:1;");
     CHECK(gdb.session.halted());
-    CHECK(gdb.pc() == place);
+    CHECK(gdb.pc() == address);
     CHECK(gdb.ask("p0") == digits(0x6000'0000));
-    CHECK(gdb.ask("pf") == digits(place));
+    CHECK(gdb.ask("pf") == digits(address));
     CHECK(gdb.ask("vCont;s:1").empty());
     CHECK(gdb.run() == "T05thread:1;");
     CHECK((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
@@ -76,7 +76,7 @@ TEST_SUITE("virtual board: debugger") {
   TEST_CASE("GDB mends what would have failed: registers and memory can be written") {
     Debugger gdb("lock_up");
     char packet[32];
-    std::snprintf(packet, sizeof packet, "Z0,%x,2", static_cast<unsigned>(place_of_fault()));
+    std::snprintf(packet, sizeof packet, "Z0,%x,2", static_cast<unsigned>(address_of_cpu_fault()));
     gdb.ask(packet);
     gdb.ask("c");
     gdb.run();

@@ -45,8 +45,8 @@ def explain(arguments, first, count, index):
     image = build(arguments.work, first, count, arguments.seed, dump=True)
     lines, _ = results(arguments.run_image, image)
     for i, name in enumerate(STATE):
-        place = index * len(STATE) + i
-        values = {machine: text[place] if place < len(text) else "-" for machine, text in lines.items()}
+        position = index * len(STATE) + i
+        values = {machine: text[position] if position < len(text) else "-" for machine, text in lines.items()}
         if len(set(values.values())) > 1:
             print(f"  {name:5}", *(f"{machine} {value}" for machine, value in values.items()))
 

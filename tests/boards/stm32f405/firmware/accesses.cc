@@ -11,11 +11,11 @@ std::uint32_t records = 0, resume_at = 0, expected = 0;
 volatile std::uint32_t words[8] = {0x33221100, 0x77665544, 0xBBAA9988, 0xFFEEDDCC};
 
 extern "C" void note_access(std::uint32_t* frame) {
-  const std::uint32_t bits = word(cfsr), place = 4 + 4 * records++;
-  results[place] = bits;
-  results[place + 1] = (bits & 0x80) != 0 ? word(mmfar) : (bits & 0x8000) != 0 ? word(bfar) : 0;
-  results[place + 2] = frame[6] - expected;
-  results[place + 3] = frame[7] & 0x0600FC00;
+  const std::uint32_t bits = word(cfsr), index = 4 + 4 * records++;
+  results[index] = bits;
+  results[index + 1] = (bits & 0x80) != 0 ? word(mmfar) : (bits & 0x8000) != 0 ? word(bfar) : 0;
+  results[index + 2] = frame[6] - expected;
+  results[index + 3] = frame[7] & 0x0600FC00;
   word(cfsr) = bits;
   if (resume_at != 0) frame[6] = resume_at, frame[7] &= ~0x0600FC00u;
 }

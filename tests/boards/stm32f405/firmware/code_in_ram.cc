@@ -12,19 +12,19 @@ std::uint32_t call(const std::uint16_t* function) {
 }
 
 /// Writes a function that returns `value`, and calls it.
-std::uint32_t write_and_call(volatile std::uint16_t* place, std::uint32_t value) {
-  place[0] = static_cast<std::uint16_t>(0x2000 | value);  // movs r0, #value
-  place[1] = 0x4770;                                      // bx lr
-  return call(const_cast<const std::uint16_t*>(place));
+std::uint32_t write_and_call(volatile std::uint16_t* target, std::uint32_t value) {
+  target[0] = static_cast<std::uint16_t>(0x2000 | value);  // movs r0, #value
+  target[1] = 0x4770;                                      // bx lr
+  return call(const_cast<const std::uint16_t*>(target));
 }
 
 /// Writes a 32-bit and a 16-bit instruction, and returns the cycles of their second execution.
 std::uint32_t write_and_time(std::uint32_t wide, std::uint16_t narrow) {
-  volatile std::uint16_t* const place = code + 64;
-  place[0] = static_cast<std::uint16_t>(wide >> 16);
-  place[1] = static_cast<std::uint16_t>(wide);
-  place[2] = narrow;
-  place[3] = 0x4770;
+  volatile std::uint16_t* const target = code + 64;
+  target[0] = static_cast<std::uint16_t>(wide >> 16);
+  target[1] = static_cast<std::uint16_t>(wide);
+  target[2] = narrow;
+  target[3] = 0x4770;
   call(code + 64);
   const std::uint32_t before = cycles();
   call(code + 64);

@@ -8,11 +8,11 @@ std::uint32_t record = 0;
 std::uint32_t resume_at = 0, expected = 0;
 
 extern "C" void note_cpu_fault(std::uint32_t* frame) {
-  const std::uint32_t place = 4 + 4 * record++;
-  results[place] = word(0xE000ED28);
-  results[place + 1] = word(0xE000ED2C);
-  results[place + 2] = word(0xE000ED38);
-  results[place + 3] = frame[6] - expected;
+  const std::uint32_t index = 4 + 4 * record++;
+  results[index] = word(0xE000ED28);
+  results[index + 1] = word(0xE000ED2C);
+  results[index + 2] = word(0xE000ED38);
+  results[index + 3] = frame[6] - expected;
   word(0xE000ED28) = 0xFFFFFFFF;
   word(0xE000ED2C) = 0xFFFFFFFF;
   frame[6] = resume_at;

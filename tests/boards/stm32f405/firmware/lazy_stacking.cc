@@ -4,14 +4,14 @@
 
 namespace {
 
-constexpr std::uint32_t control = 0xE000'EF34, place = 0xE000'EF38, monitor_control = 0xE000'EDFC;
+constexpr std::uint32_t control = 0xE000'EF34, context_address = 0xE000'EF38, monitor_control = 0xE000'EDFC;
 constexpr std::uint32_t call_priority = 0xE000'ED1F, memory_priority = 0xE000'ED18, bus_priority = 0xE000'ED19,
                         monitor_priority = 0xE000'ED20;
 volatile std::uint32_t* next = results + 1;
 
 extern "C" void note(std::uint32_t stack) {
   *next++ = word(control);
-  *next++ = word(place) - stack;
+  *next++ = word(context_address) - stack;
 }
 /// Records the registers and makes the thread privileged.
 [[gnu::naked]] void handler() {

@@ -6,15 +6,15 @@ namespace {
 
 constexpr std::uint32_t came_as_hard_fault = 1u << 30, other_address = 1u << 31;
 
-volatile std::uint32_t status = 0, place = 0, program_counter = 0;
+volatile std::uint32_t status = 0, probed_address = 0, program_counter = 0;
 /// Action of a CPU fault handler before it returns.
 Handler volatile mend = nullptr;
 
 /// A probe that faults returns to its caller.
 extern "C" void note_refusal(std::uint32_t* frame, std::uint32_t exception) {
   status = word(cfsr) | (exception == 3 ? came_as_hard_fault : 0);
-  const std::uint32_t fault_place = word(mmfar);
-  if ((status & 0x80) != 0 && fault_place - place >= 4) status |= other_address;
+  const std::uint32_t fault_address = word(mmfar);
+  if ((status & 0x80) != 0 && fault_address - probed_address >= 4) status |= other_address;
   program_counter = frame[6];
   word(cfsr) = 0xFFFFFFFF;
   word(hfsr) = 0xFFFFFFFF;
@@ -36,7 +36,7 @@ extern "C" void note_refusal(std::uint32_t* frame, std::uint32_t exception) {
 using Probe = void (*)(std::uint32_t);
 std::uint32_t verdict(Probe probe, std::uint32_t address) {
   status = 0;
-  place = address;
+  probed_address = address;
   probe(address);
   return status;
 }

@@ -6,16 +6,16 @@ namespace {
 struct Region {
   std::uint32_t base, attributes;
 };
-constexpr std::uint32_t place = 0x2001'0000, one_eighth = 1 << 8, written_back = 0x0B << 16;
+constexpr std::uint32_t region_base = 0x2001'0000, one_eighth = 1 << 8, written_back = 0x0B << 16;
 constexpr Region regions[] = {
-    {place + 256, size(8) | one_eighth | all << 24 | written_back},  // valid settings
-    {place + 32, size(6) | all << 24 | normal},
-    {place, size(4) | all << 24 | normal},
-    {place, size(7) | one_eighth | all << 24 | normal},
-    {place, size(8) | 4 << 24 | normal},
-    {place, size(8) | all << 24 | 3 << 19},
-    {place, size(8) | all << 24 | 1 << 19 | 1 << 16},
-    {place, size(8) | all << 24 | 2 << 19 | 1 << 16},
+    {region_base + 256, size(8) | one_eighth | all << 24 | written_back},  // valid settings
+    {region_base + 32, size(6) | all << 24 | normal},
+    {region_base, size(4) | all << 24 | normal},
+    {region_base, size(7) | one_eighth | all << 24 | normal},
+    {region_base, size(8) | 4 << 24 | normal},
+    {region_base, size(8) | all << 24 | 3 << 19},
+    {region_base, size(8) | all << 24 | 1 << 19 | 1 << 16},
+    {region_base, size(8) | all << 24 | 2 << 19 | 1 << 16},
 };
 
 }  // namespace
@@ -25,7 +25,7 @@ void run() {
   [[maybe_unused]] const std::uint32_t ready = word(rcc::ahb1enr);
   const Region& region = regions[word(0x40020C00 + gpio::idr) & 7];
   set_region(0, region.base, region.attributes);
-  set_region(0, place, size(8));
+  set_region(0, region_base, size(8));
   word(mpu_attributes) = 0;
   results[0] = finished;
 }

@@ -17,7 +17,7 @@ def main():
     # Other tables may precede the cost table.
     if printed[0] in written and written[written.index(printed[0]):] == printed:
         return 0
-    print(f"The table of {sys.argv[2]} is not what the code charges. Put this in its place:\n")
+    print(f"The table of {sys.argv[2]} is not what the code charges. Replace it by this table:\n")
     print("\n".join(printed))
     return 1
 

@@ -31,7 +31,7 @@ bool refuses(const std::string& text, const std::string& because) {
 
 }  // namespace
 
-TEST_CASE("a fault is written with its place, amount, time and duration") {
+TEST_CASE("a fault is written with its position, amount, time and duration") {
   const auto lost = parse_injection("encoder_lost_counts:2=0.05@1.5+0.2", board::omni_driver);
   CHECK(lost.fault == InjectedFault::encoder_lost_counts);
   CHECK(lost.number == 1);

@@ -76,7 +76,7 @@ std::string example(const protocol::InjectionInfo& row) {
 
 }  // namespace
 
-TEST_CASE("every fault of the table goes in, is told with its place, and is no longer told once it is healed") {
+TEST_CASE("every fault of the table goes in, is told with its position, and is no longer told once it is healed") {
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
     Rig rig;
@@ -127,7 +127,7 @@ TEST_CASE("a fault comes at its time, to the tick, and goes after its duration")
   CHECK_FALSE(rig.plant.truth(rig.chip.now()).bridge_fault);
 }
 
-TEST_CASE("faults of one kind at one place follow each other, at other places they stand beside") {
+TEST_CASE("faults of one kind at one position follow each other, at other positions they stand beside") {
   Rig rig;
   rig.inject("wire_low:PB15");
   rig.inject("wire_high:PB15");

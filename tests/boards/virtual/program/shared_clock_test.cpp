@@ -41,7 +41,7 @@ TEST_CASE("a board waits for those that are behind, however long, and for none t
   CHECK(first.lets_pass());
 }
 
-TEST_CASE("a board whose process was killed holds up no other, and its place is free again") {
+TEST_CASE("a board whose process was killed holds up no other, and its slot is free again") {
   const TemporaryDirectory directory;
   const auto file = directory / "clock";
   SharedClock first(file);

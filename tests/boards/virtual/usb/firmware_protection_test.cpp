@@ -30,7 +30,7 @@ std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
 }
 
 /// Returns the address of any half word in flash that equals this instruction.
-std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
+std::uint32_t address_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
   for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
     if (half_word(bus, address) == instruction) return address;
   return 0;
@@ -91,8 +91,8 @@ protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
 }
 
 /// Returns the first address at or after `begin` whose two preceding half words satisfy `are_such`.
-std::uint32_t place_behind(const FirmwareOnBus& bus, std::uint32_t begin,
-                           const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
+std::uint32_t address_after(const FirmwareOnBus& bus, std::uint32_t begin,
+                            const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
   std::uint32_t address = begin + 4;
   while (!are_such(half_word(bus, address - 2), half_word(bus, address - 4))) {
     address += 2;
@@ -121,7 +121,7 @@ protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<con
   registers.general[0] = 0;
   registers.general[CoreRegisters::sp] = stack_top - static_cast<std::uint32_t>(words.size_bytes());
   registers.general[CoreRegisters::lr] = link_register;
-  registers.general[CoreRegisters::pc] = place_of(bus, load_by_r0);
+  registers.general[CoreRegisters::pc] = address_of(bus, load_by_r0);
   constexpr std::uint32_t negative_and_carry = 0xA000'0000, is_thumb = 1u << 24, all_flags = 0xF800'0000;
   registers.xpsr = (registers.xpsr & ~(if_then_bits | all_flags)) | negative_and_carry;
   std::vector<std::uint8_t> bytes(words.size_bytes());
@@ -144,7 +144,7 @@ protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<con
 
 TEST_CASE("what only an error does with the memory is a fault, and the board says where") {
   const FirmwareOnBus bus(flashed_image());
-  const std::uint32_t load = place_of(bus, load_by_r0), store = place_of(bus, store_by_r0);
+  const std::uint32_t load = address_of(bus, load_by_r0), store = address_of(bus, store_by_r0);
   REQUIRE(load != 0);
   REQUIRE(store != 0);
   constexpr std::uint32_t no_instruction = 1, no_data = 2, valid_address = 0x80;
@@ -179,21 +179,21 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
 TEST_CASE("without a stack the bridges go off at once, although nothing can be stacked any more") {
   constexpr std::uint32_t memory_bottom = virtual_board::ccm_base, behind_ram = 0x2002'1000;
   constexpr std::uint16_t push = 0xB510, undefined = 0xDEFF;
-  enum class Place { main_loop, control_interrupt, sleep };
+  enum class Context { main_loop, control_interrupt, sleep };
   struct Loss {
     std::string name;
     std::uint32_t stack_pointer;
-    Place place;
+    Context context;
     std::uint16_t instruction;  ///< instruction that the core executes; 0: its next instruction
     std::uint32_t status, exception;
   };
   const Loss losses[] = {
-      {"it overflows by a push", memory_bottom, Place::main_loop, push, 1u << 4, 3},
-      {"the same in the control interrupt", memory_bottom, Place::control_interrupt, push, 1u << 4, 3},
-      {"it overflows by an interrupt", memory_bottom, Place::sleep, 0, 1u << 4, 4},
-      {"it lies where nothing is", behind_ram, Place::main_loop, push, 1u << 12, 3},
-      {"the same, and an interrupt comes", behind_ram, Place::sleep, 0, 1u << 12, 5},
-      {"the same, and then no instruction", behind_ram, Place::main_loop, undefined, 1u << 12 | 1u << 16,
+      {"it overflows by a push", memory_bottom, Context::main_loop, push, 1u << 4, 3},
+      {"the same in the control interrupt", memory_bottom, Context::control_interrupt, push, 1u << 4, 3},
+      {"it overflows by an interrupt", memory_bottom, Context::sleep, 0, 1u << 4, 4},
+      {"it lies where nothing is", behind_ram, Context::main_loop, push, 1u << 12, 3},
+      {"the same, and an interrupt comes", behind_ram, Context::sleep, 0, 1u << 12, 5},
+      {"the same, and then no instruction", behind_ram, Context::main_loop, undefined, 1u << 12 | 1u << 16,
        5},  // a BusFault of the stack
   };
   for (const Loss& loss : losses) {
@@ -201,15 +201,15 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
     FirmwareOnBus bus(flashed_image());
     bus.run_for(before_self_test_s);
     bus.chip.clear_counters();
-    switch (loss.place) {
-      case Place::main_loop: run_into_main_loop(bus); break;
-      case Place::control_interrupt: run_into_control_interrupt(bus); break;
-      case Place::sleep: run_into_sleep(bus); break;
+    switch (loss.context) {
+      case Context::main_loop: run_into_main_loop(bus); break;
+      case Context::control_interrupt: run_into_control_interrupt(bus); break;
+      case Context::sleep: run_into_sleep(bus); break;
     }
     CoreRegisters registers = bus.chip.debug_port().core_registers();
     registers.general[CoreRegisters::sp] = loss.stack_pointer;
     if (loss.instruction != 0) {
-      registers.general[CoreRegisters::pc] = place_of(bus, loss.instruction);
+      registers.general[CoreRegisters::pc] = address_of(bus, loss.instruction);
       registers.xpsr &= ~if_then_bits;
       REQUIRE(registers.general[CoreRegisters::pc] != 0);
     }
@@ -231,18 +231,18 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
 TEST_CASE("of link register and stack the first eight words that lie behind a call are noted, and no others") {
   FirmwareOnBus bus(flashed_image());
   bus.run_for(before_self_test_s);  // by this time, the startup code has copied the interrupt code
-  const auto behind_bl = [&](std::uint32_t begin) { return place_behind(bus, begin, is_bl); };
+  const auto behind_bl = [&](std::uint32_t begin) { return address_after(bus, begin, is_bl); };
   const std::uint32_t by_address = behind_bl(code), later = behind_bl(by_address),
                       in_interrupt = behind_bl(interrupt_code);
-  const std::uint32_t by_register = place_behind(
+  const std::uint32_t by_register = address_after(
       bus, code, [](std::uint16_t last, std::uint16_t before) { return is_blx(last) && !is_bl(last, before); });
   REQUIRE(later != by_address);
 
   SUBCASE("what looks like one") {
-    const std::uint32_t only_first_half = place_behind(bus, code, [](std::uint16_t last, std::uint16_t before) {
+    const std::uint32_t only_first_half = address_after(bus, code, [](std::uint16_t last, std::uint16_t before) {
       return is_first_half_of_bl(before) && !is_call(last, before);
     });
-    const std::uint32_t only_second_half = place_behind(bus, code, [](std::uint16_t last, std::uint16_t before) {
+    const std::uint32_t only_second_half = address_after(bus, code, [](std::uint16_t last, std::uint16_t before) {
       return is_second_half_of_bl(last) && !is_call(last, before);
     });
     const std::uint32_t words[] = {

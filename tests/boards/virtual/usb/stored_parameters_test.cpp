@@ -278,13 +278,13 @@ struct ObservedStarts {
     board.switch_off_and_on();
     REQUIRE(board.stiffness() == contents.stiffness);
     old_set = board.values();
-    const auto places = places_of(old_set);
+    const auto addresses = addresses_of(old_set);
     board.transact(protocol::ParameterOperation::set,
                    {{Parameter::wall_stiffness_N_per_m, 600.0f}, {Parameter::force_limit_N, 1.5f}});
     new_set = board.values();
     REQUIRE(new_set != old_set);
-    for (const std::uint32_t place : places)
-      if (values_at(place) == new_set) held_at = place;
+    for (const std::uint32_t address : addresses)
+      if (values_at(address) == new_set) held_at = address;
     REQUIRE(held_at != 0);
   }
 
@@ -309,24 +309,24 @@ struct ObservedStarts {
   std::vector<float> old_set, new_set;
 
  private:
-  std::vector<float> values_at(std::uint32_t place) {
+  std::vector<float> values_at(std::uint32_t address) {
     std::vector<float> values(protocol::parameter_count);
     const auto bytes = std::as_writable_bytes(std::span(values));
-    REQUIRE(board.bus.chip.debug_port().read(place, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
+    REQUIRE(board.bus.chip.debug_port().read(address, {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
     return values;
   }
   /// Returns all addresses of these values in the core-coupled memory.
-  std::vector<std::uint32_t> places_of(const std::vector<float>& values) {
+  std::vector<std::uint32_t> addresses_of(const std::vector<float>& values) {
     std::vector<float> memory(virtual_board::ccm_bytes / sizeof(float));
     const auto bytes = std::as_writable_bytes(std::span(memory));
     REQUIRE(board.bus.chip.debug_port().read(virtual_board::ccm_base,
                                              {reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}));
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> addresses;
     for (auto found = memory.begin();
          (found = std::search(found, memory.end(), values.begin(), values.end())) != memory.end(); ++found)
-      places.push_back(virtual_board::ccm_base +
-                       static_cast<std::uint32_t>(sizeof(float) * static_cast<std::size_t>(found - memory.begin())));
-    return places;
+      addresses.push_back(virtual_board::ccm_base +
+                          static_cast<std::uint32_t>(sizeof(float) * static_cast<std::size_t>(found - memory.begin())));
+    return addresses;
   }
 
   std::uint32_t held_at = 0;
@@ -334,7 +334,7 @@ struct ObservedStarts {
 
 /// A programmed word and its position in the store.
 struct Word {
-  std::size_t place;
+  std::size_t index;
   std::uint32_t value;
 };
 
@@ -354,7 +354,7 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
     const auto changed = std::ranges::mismatch(seen, now).in2;
     REQUIRE(changed != now.end());
     words.push_back({static_cast<std::size_t>(changed - now.begin()), *changed});
-    seen[words.back().place] = *changed;
+    seen[words.back().index] = *changed;
     REQUIRE(seen == now);
   }
   REQUIRE(board.report().result == StoreResult::done);
@@ -371,19 +371,19 @@ TEST_CASE("a power cut at any word of a store leaves all of the old parameters o
     ObservedStarts starts(contents);
     const std::vector<Word> words = words_of_a_store(starts.board);
     REQUIRE(words.size() > 2 * protocol::parameter_count);
-    CHECK(words.front().place / (sector_bytes / sizeof(std::uint32_t)) == contents.sector);
+    CHECK(words.front().index / (sector_bytes / sizeof(std::uint32_t)) == contents.sector);
     StoreImage flash = starts.at_first;
     std::mt19937 random(1);
     for (std::size_t cut = 0; cut < words.size(); ++cut) {
       CAPTURE(cut);
-      const auto [place, value] = words[cut];
-      const std::uint32_t erased = flash[place];
+      const auto [index, value] = words[cut];
+      const std::uint32_t erased = flash[index];
       enum Extent : unsigned { nothing, all, some, some_too };
       const auto extent = static_cast<Extent>(random() % 4);
-      flash[place] = extent == nothing ? erased : extent == all ? value : erased & (value | random());
-      const bool is_whole = cut + 1 == words.size() && flash[place] == value;
+      flash[index] = extent == nothing ? erased : extent == all ? value : erased & (value | random());
+      const bool is_whole = cut + 1 == words.size() && flash[index] == value;
       CHECK(starts.after_power_on(flash) == (is_whole ? starts.new_set : starts.old_set));
-      flash[place] = value;
+      flash[index] = value;
     }
     CHECK(starts.after_power_on(flash) == starts.new_set);
   }

@@ -30,12 +30,12 @@ Surface rough(float static_friction, float dynamic_friction) {
 
 constexpr std::uint32_t for_long = 1'000'000;
 
-/// Sets plane `place` at height `z_m`, with free space above it.
-void put_floor(Shapes& shapes, std::size_t place, float z_m, const Surface& surface,
+/// Sets plane `index` at height `z_m`, with free space above it.
+void put_floor(Shapes& shapes, std::size_t index, float z_m, const Surface& surface,
                std::uint32_t life_periods = for_long) {
-  shapes.planes[place] = {{0.0f, 0.0f, 1.0f}, z_m};
-  shapes.surfaces[1 + place] = surface;
-  shapes.life_periods[1 + place] = life_periods;
+  shapes.planes[index] = {{0.0f, 0.0f, 1.0f}, z_m};
+  shapes.surfaces[1 + index] = surface;
+  shapes.life_periods[1 + index] = life_periods;
 }
 
 void put_ball(Shapes& shapes, const Vector3& centre_m, float radius_m, const Surface& surface) {
@@ -71,15 +71,15 @@ TEST_CASE("a plane pushes along its normal with spring and damper, and never pul
 }
 
 TEST_CASE("every one of eight planes and the sphere is felt") {
-  for (std::size_t place = 0; place < protocol::shape_planes_maximum; ++place) {
+  for (std::size_t index = 0; index < protocol::shape_planes_maximum; ++index) {
     Shapes shapes;
-    put_floor(shapes, place, 0.0f, smooth);
+    put_floor(shapes, index, 0.0f, smooth);
     TouchedShapes touched;
     touched.replace(shapes);
     CHECK(touched.force_N({0.0f, 0.0f, -0.001f}, {}).z == doctest::Approx(1.0f));
   }
   Shapes shapes;
-  for (std::size_t place = 0; place < protocol::shape_planes_maximum; ++place) put_floor(shapes, place, 0.0f, smooth);
+  for (std::size_t index = 0; index < protocol::shape_planes_maximum; ++index) put_floor(shapes, index, 0.0f, smooth);
   put_ball(shapes, {0.0f, 0.0f, -0.01f}, 0.01f, smooth);
   TouchedShapes touched;
   touched.replace(shapes);

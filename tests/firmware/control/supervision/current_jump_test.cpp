@@ -87,7 +87,7 @@ TEST_CASE("each motor's change is looked at") {
   }
 }
 
-TEST_CASE("a motor that comes open takes the force away in the period in which it is read, and not the place") {
+TEST_CASE("a motor that comes open takes the force away in the period in which it is read, and not the reference") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
     HeldArm arm;

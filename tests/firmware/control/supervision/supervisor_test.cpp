@@ -37,7 +37,7 @@ Supervisor in(State state) { return {state, Fault::none}; }
 State next(State state, Events now) { return advance(in(state), {now, {}}).state; }
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
-TEST_CASE("what has no row in the table of what is monitored has a place behind it") {
+TEST_CASE("a fault without a row in the condition table has the index after the last row") {
   CHECK(protocol::place_of(Fault::none) == protocol::condition_table.size());
   CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::condition_table.size());
 }
@@ -202,7 +202,7 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
   }
 }
 
-TEST_CASE("the place of the arm is void after faults that an encoder may have brought about, and after no other") {
+TEST_CASE("the reference of the arm is void after faults that an encoder may have brought about, and after no other") {
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
     CHECK((protocol::voiding_conditions & condition(row.fault)).any() ==
