@@ -220,12 +220,12 @@ protocol::InformationReport Device::information() const {
 
 protocol::FrameReport Device::frame_report() {
   protocol::FrameReport report{};
-  const std::optional<BusFrame> frame = port_.frame();
-  const auto time = frame ? link_.poses.time_of(frame->begin_cycles) : std::nullopt;
+  const std::optional<BusFrame> bus_frame = port_.bus_frame();
+  const auto time = bus_frame ? link_.poses.time_of(bus_frame->begin_cycles) : std::nullopt;
   if (!time) return report;
   report.is_known = 1;
-  report.frame_number = frame->number;
-  report.sequence = frame->count;
+  report.frame_number = bus_frame->number;
+  report.sequence = bus_frame->count;
   report.time_periods = time->periods;
   report.time_cycles = time->cycles;
   return report;

@@ -194,17 +194,17 @@ void Device::restart(Endpoint& endpoint) {
 // of the frame. The loaded pose is the first pose whose successor would be too late. A spare pose is loaded earlier, in
 // case the main loop is delayed.
 void Device::send_pose() {
-  const std::optional<BusFrame> frame = port_.frame();
+  const std::optional<BusFrame> bus_frame = port_.bus_frame();
   Endpoint& endpoint = endpoints_[hid_in];
-  if (!frame || endpoint.halted) return;
-  const std::uint32_t sequence = frame->count + 1;
+  if (!bus_frame || endpoint.halted) return;
+  const std::uint32_t sequence = bus_frame->count + 1;
   const bool replaces_spare = pose_sequence_ == sequence;
   if (replaces_spare && !spare_waits_) return;
   const std::optional<std::uint32_t> sampled_cycles = link_.poses.newest_cycles();
   if (!sampled_cycles) return;
-  const auto age_cycles = static_cast<std::int32_t>(frame->now_cycles - *sampled_cycles);
+  const auto age_cycles = static_cast<std::int32_t>(bus_frame->now_cycles - *sampled_cycles);
   const auto to_frame_cycles =
-      static_cast<std::int32_t>(frame->begin_cycles + frame->length_cycles - frame->now_cycles);
+      static_cast<std::int32_t>(bus_frame->begin_cycles + bus_frame->length_cycles - bus_frame->now_cycles);
   const std::int32_t beyond_lead_cycles =
       age_cycles + to_frame_cycles -
       (period_cycles_ + static_cast<std::int32_t>(link_.poses.longest_cycles()) + pose_loading_cycles_);
@@ -266,12 +266,12 @@ void Device::send_scope() {
     link_.scope.release();
     scope_frame_open_ = false;
   }
-  const std::span<const std::byte> frame = link_.scope.oldest_frame();
-  if (frame.empty()) return;
+  const std::span<const std::byte> scope_frame = link_.scope.oldest_frame();
+  if (scope_frame.empty()) return;
   scope_frame_open_ = true;
-  scope_wants_end_ = frame.size() % packet_size_maximum == 0;
+  scope_wants_end_ = scope_frame.size() % packet_size_maximum == 0;
   endpoint.busy = true;
-  port_.send(endpoint.address, frame);
+  port_.send(endpoint.address, scope_frame);
 }
 
 void Device::take_report(std::span<const std::byte> report) {

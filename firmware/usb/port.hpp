@@ -78,7 +78,7 @@ class Port {
   virtual void receive(std::uint8_t endpoint_address) = 0;
 
   /// Returns the current bus frame, or nothing while the bus is silent.
-  virtual std::optional<BusFrame> frame() = 0;
+  virtual std::optional<BusFrame> bus_frame() = 0;
 
  protected:
   ~Port() = default;

@@ -57,7 +57,7 @@ struct CommandInfo {
   std::string_view name;
   std::vector<std::string_view> keys;  ///< accepted keys except "command"
   std::string_view help;
-  bool is_for_any_time = false;  ///< allowed in the middle of a frame
+  bool is_for_any_time = false;  ///< allowed in the middle of a bus frame
 };
 std::span<const CommandInfo> command_table();
 /// Help text with one line per command and its keys.

@@ -44,7 +44,7 @@ class OtgFs final : public usb::Port {
   void send(std::uint8_t endpoint_address, std::span<const std::byte> data) override;
   bool cancel(std::uint8_t endpoint_address) override;
   void receive(std::uint8_t endpoint_address) override;
-  std::optional<usb::BusFrame> frame() override { return frame_clock_.newest(); }
+  std::optional<usb::BusFrame> bus_frame() override { return frame_clock_.newest(); }
 
  private:
   static constexpr unsigned in_endpoints = 4;   ///< 0 control, 1 HID, 2 scope, 3 controller

@@ -18,7 +18,7 @@ constexpr double halt_s = 0.02;
 
 /// Progress of the peripherals during the halt.
 struct Moved {
-  std::uint32_t systick_counts, rtc_cycles, wake_ups, frames;
+  std::uint32_t systick_counts, rtc_cycles, wake_ups, can_frames;
 };
 
 Moved moved_by_halt(std::uint32_t stops) {
@@ -46,19 +46,19 @@ TEST_SUITE("virtual chip: debugger halt") {
     CHECK(moved.systick_counts < 2'000);  // at 16 MHz: counts outside the halt
     CHECK(moved.rtc_cycles >= 640);
     CHECK(moved.wake_ups == 1);
-    CHECK(moved.frames == 1);
+    CHECK(moved.can_frames == 1);
   }
 
   TEST_CASE("DBG_RTC_STOP stops calendar and wake-up timer where they are") {
     const Moved moved = moved_by_halt(stop_rtc);
     CHECK(moved.rtc_cycles <= 3);
     CHECK(moved.wake_ups == 0);
-    CHECK(moved.frames == 1);
+    CHECK(moved.can_frames == 1);
   }
 
   TEST_CASE("DBG_CAN1_STOP with CAN_MCR.DBF lets no frame pass") {
     const Moved moved = moved_by_halt(stop_can_1);
-    CHECK(moved.frames == 0);
+    CHECK(moved.can_frames == 0);
     CHECK(moved.rtc_cycles >= 640);
   }
 }

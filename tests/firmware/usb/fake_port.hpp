@@ -100,7 +100,7 @@ class FakePort final : public usb::Port {
     at(endpoint_address).armed = true;
   }
 
-  std::optional<usb::BusFrame> frame() override {
+  std::optional<usb::BusFrame> bus_frame() override {
     if (!frames_run) return std::nullopt;
     usb::BusFrame frame = frame_;
     frame.now_cycles = frame.begin_cycles + age_cycles_;

@@ -214,11 +214,11 @@ TEST_CASE("the frame report says when the frame began") {
   for (int i = 0; i < 7; ++i) bench.run(1);
   bench.device.poll();
   const auto report = bench.get_feature<protocol::FrameReport>(protocol::ReportId::frame);
-  const auto frame = bench.port.frame();
+  const auto bus_frame = bench.port.bus_frame();
   CHECK(report.is_known == 1);
-  CHECK(report.frame_number == frame->number);
-  CHECK(report.sequence == frame->count);
-  CHECK(report.time_periods * 8400 + report.time_cycles == frame->begin_cycles);
+  CHECK(report.frame_number == bus_frame->number);
+  CHECK(report.sequence == bus_frame->count);
+  CHECK(report.time_periods * 8400 + report.time_cycles == bus_frame->begin_cycles);
 }
 
 }  // namespace inkwell

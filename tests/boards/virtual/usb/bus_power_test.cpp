@@ -39,18 +39,18 @@ TEST_CASE("D+ is pulled up only while the cable brings VBUS") {
 TEST_CASE("a bus that falls asleep with the cable in stops the scope, and poses come again when it wakes") {
   FirmwareOnBus bus(flashed_image());
   bus.connect();
-  int frames = 0, poses = 0;
-  bus.on_scope_frame = [&](std::span<const std::byte>) { ++frames; };
+  int scope_frames = 0, poses = 0;
+  bus.on_scope_frame = [&](std::span<const std::byte>) { ++scope_frames; };
   bus.on_pose = [&](const protocol::PoseReport&) { ++poses; };
   bus.keep_asking_for_poses();
   bus.stream_scope(std::array{protocol::Signal::position_x_m});
   bus.run_for(0.05);
-  CHECK(frames > 5);
+  CHECK(scope_frames > 5);
   bus.core.suspend();  // the next start of frame resumes the bus
   bus.run_for(0.02);   // packets in progress may still arrive
-  frames = poses = 0;
+  scope_frames = poses = 0;
   bus.run_for(0.05);
-  CHECK(frames == 0);
+  CHECK(scope_frames == 0);
   CHECK(poses >= 48);
   CHECK(bus.violations().empty());
 }

@@ -39,8 +39,8 @@ TEST_CASE("the controller reports every 8 ms what the poses say, and costs neith
       CHECK(report.angle[i] == std::lround(std::clamp(pose->gimbal_rad[i] * 1e4f, -32767.0f, 32767.0f)));
     }
   };
-  std::uint32_t frames = 0;
-  bus.on_scope_frame = [&](std::span<const std::byte>) { ++frames; };
+  std::uint32_t scope_frames = 0;
+  bus.on_scope_frame = [&](std::span<const std::byte>) { ++scope_frames; };
   bus.keep_asking_for_poses();
   bus.keep_asking_the_controller();
   bus.stream_scope(std::array{Signal::position_x_m, Signal::force_N});
@@ -59,7 +59,7 @@ TEST_CASE("the controller reports every 8 ms what the poses say, and costs neith
   CHECK(poses_lost == 0);
   CHECK(reports >= 99);
   CHECK(reports <= 101);
-  CHECK(frames > 20);
+  CHECK(scope_frames > 20);
   CHECK(bus.violations().empty());
 }
 

@@ -35,7 +35,7 @@ void claim_arm(FirmwareOnBus& bus) {
 struct Program {
   Program(FirmwareOnBus& the_bus, double host_clock_ppm, double time_s)
       : bus(the_bus),
-        frame(ticks(1e-3 / (1.0 + 1e-6 * host_clock_ppm))),
+        bus_frame_ticks(ticks(1e-3 / (1.0 + 1e-6 * host_clock_ppm))),
         N_per_period((last_N - first_N) / (time_s * protocol::servo_rate_Hz)) {}
 
   void answer(const protocol::PoseReport& pose) {
@@ -53,7 +53,7 @@ struct Program {
   void sent() {
     const Ticks now = bus.chip.now();
     if (sent_at)
-      count_deviation(1e6 * (static_cast<double>(now - *sent_at) - static_cast<double>(frame)) /
+      count_deviation(1e6 * (static_cast<double>(now - *sent_at) - static_cast<double>(bus_frame_ticks)) /
                       static_cast<double>(ticks(1.0)));
     sent_at = now;
   }
@@ -65,7 +65,7 @@ struct Program {
     ++timing.deviations[static_cast<std::size_t>(deviation_us < 0 ? middle - beyond : middle + beyond)];
   }
 
-  void read_frame(std::span<const std::byte> frame_bytes) {
+  void read_scope_frame(std::span<const std::byte> frame_bytes) {
     protocol::ScopeFrameHeader header;
     if (frame_bytes.size() < sizeof header) throw std::runtime_error("a scope frame is too short");
     std::memcpy(&header, frame_bytes.data(), sizeof header);
@@ -82,7 +82,7 @@ struct Program {
   }
 
   FirmwareOnBus& bus;
-  Ticks frame;
+  Ticks bus_frame_ticks;
   double N_per_period;
   ForceTiming timing;
   std::optional<std::uint32_t> begin_periods;
@@ -99,7 +99,7 @@ ForceTiming measure_forces(const std::filesystem::path& image, double host_clock
   bus.keep_asking_for_poses();
   claim_arm(bus);
   bus.run_for(0.1);
-  bus.on_scope_frame = [&](std::span<const std::byte> frame) { program.read_frame(frame); };
+  bus.on_scope_frame = [&](std::span<const std::byte> scope_frame) { program.read_scope_frame(scope_frame); };
   bus.on_report_sent = [&] { program.sent(); };
   bus.on_pose = [&](const protocol::PoseReport& pose) { program.answer(pose); };
   bus.run_for(time_s);

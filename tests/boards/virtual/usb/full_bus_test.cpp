@@ -15,7 +15,7 @@ TEST_CASE("the longest full selection loses no sample to a slow host that asks f
   constexpr double host_clock_ppm = -500.0;
   FirmwareOnBus bus(flashed_image(), host_clock_ppm);
   bus.connect();
-  std::uint32_t frames = 0, lost = 0, dropped = 0;
+  std::uint32_t scope_frames = 0, lost = 0, dropped = 0;
   std::optional<std::uint32_t> sequence;
   bus.on_scope_frame = [&](std::span<const std::byte> bytes) {
     protocol::ScopeFrameHeader header;
@@ -24,7 +24,7 @@ TEST_CASE("the longest full selection loses no sample to a slow host that asks f
     if (sequence) lost += header.sequence - *sequence - 1;
     sequence = header.sequence;
     dropped = header.samples_dropped;
-    ++frames;
+    ++scope_frames;
   };
   bus.keep_asking_for_poses();
   bus.keep_asking_the_controller();
@@ -33,7 +33,7 @@ TEST_CASE("the longest full selection loses no sample to a slow host that asks f
     signals.push_back(static_cast<protocol::Signal>(i));
   bus.stream_scope(signals);
   bus.run_for(1.0);
-  CHECK(frames > 180);
+  CHECK(scope_frames > 180);
   CHECK(lost == 0);
   CHECK(dropped == 0);
   for (const auto& sentence : bus.violations()) FAIL_CHECK(sentence);

@@ -45,21 +45,21 @@ struct OtherBoard {
 
 }  // namespace
 
-TEST_CASE("a crystal that is off by what USB bears gives a pose in each frame of the host") {
+TEST_CASE("a crystal that is off by what USB bears gives a pose in each bus frame of the host") {
   for (const int ppm : {-2'400, 50, 2'400}) {
     CAPTURE(ppm);
     OtherBoard other({.crystal_ppm = ppm});
     FirmwareOnBus& bus = other.bus;
     bus.connect();
     CHECK(bus.chip.clocks().hclk_Hz == board::processor_Hz + board::processor_Hz / 1'000'000 * ppm);
-    int frames = 0, poses = 0;
+    int bus_frames = 0, poses = 0;
     bus.keep_asking_for_poses();
     bus.run_for(0.05);
-    bus.cable.on_start_of_frame = [&](std::uint16_t) { ++frames; };
+    bus.cable.on_start_of_frame = [&](std::uint16_t) { ++bus_frames; };
     bus.cable.on_finished_in = [&](unsigned endpoint, bool done) { poses += endpoint == 1 && done ? 1 : 0; };
     bus.run_for(0.2);
-    CHECK(frames >= 199);
-    CHECK(poses >= frames - 1);
+    CHECK(bus_frames >= 199);
+    CHECK(poses >= bus_frames - 1);
     for (const auto& sentence : bus.violations()) FAIL_CHECK(sentence);
   }
 }
