@@ -26,8 +26,8 @@ TEST_CASE("the document's table of parameters is that of the library") {
         row.last == 0 ? fmt::format("{:04x}", row.value) : fmt::format("{:04x}, {:04x}", row.value, row.last);
     const auto line = fmt::format("| {} | {} | {}{}{} | {} |\n", values, row.name, row.count,
                                   *row.unit != '\0' ? " " : "", row.unit, row.meaning);
-    const auto place = document.find(line);
-    if (place == std::string::npos || (place > writable) != (row.write != nullptr)) missing += line;
+    const auto position = document.find(line);
+    if (position == std::string::npos || (position > writable) != (row.write != nullptr)) missing += line;
   }
   CHECK_MESSAGE(missing.empty(), missing);
 }
@@ -37,9 +37,9 @@ TEST_CASE("the document names every function") {
   for (const auto header : {"/host/bindings/dropins/hd_interface.hpp", "/host/bindings/dropins/hd_phantom.cpp"}) {
     const auto text = read(header);
     REQUIRE(text.size() > 1000);
-    for (auto place = text.find("\nINKWELL_HD "); place != std::string::npos;
-         place = text.find("\nINKWELL_HD ", place + 1)) {
-      const auto end = text.find('(', place);
+    for (auto position = text.find("\nINKWELL_HD "); position != std::string::npos;
+         position = text.find("\nINKWELL_HD ", position + 1)) {
+      const auto end = text.find('(', position);
       const auto name = text.substr(text.rfind(' ', end) + 1, end - text.rfind(' ', end) - 1);
       CHECK_MESSAGE(document.find(name) != std::string::npos, name);
     }

@@ -27,10 +27,10 @@ std::string value_of(const std::string& text, const std::string& word) {
              : text.substr(begin + word.size() + 1, text.find('\n', begin) - begin - word.size() - 1);
 }
 
-struct Place {
+struct ReportedVector {
   int result = -7;
   double x = 0, y = 0, z = 0;
-  explicit Place(const std::string& line) { std::istringstream(line) >> result >> x >> y >> z; }
+  explicit ReportedVector(const std::string& line) { std::istringstream(line) >> result >> x >> y >> z; }
 };
 
 TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and with force") {
@@ -49,17 +49,17 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   CHECK(value_of(held.out, "error") == "0x104 77");  // libhdPhantom must not consume this error
   CHECK(value_of(held.out, "close") == "0");
   CHECK(value_of(held.out, "late") == "-1");
-  const Place place(value_of(held.out, "position")), turn(value_of(held.out, "rotation"));
-  CHECK(place.result == 0);
-  CHECK(std::abs(place.x - held_point_m[2]) < 0.005);
-  CHECK(std::abs(place.y - held_point_m[0]) < 0.005);
-  CHECK(std::abs(place.z - held_point_m[1]) < 0.005);
+  const ReportedVector position(value_of(held.out, "position")), turn(value_of(held.out, "rotation"));
+  CHECK(position.result == 0);
+  CHECK(std::abs(position.x - held_point_m[2]) < 0.005);
+  CHECK(std::abs(position.y - held_point_m[0]) < 0.005);
+  CHECK(std::abs(position.z - held_point_m[1]) < 0.005);
   CHECK(turn.result == 0);
   CHECK(turn.x > 0.5);  // the back of the stylus points toward the user, along CHAI3D's x
   const auto pulled =
       run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d"), "1.0"});
   INFO(pulled.out, pulled.err);
-  CHECK(Place(value_of(pulled.out, "position")).y - place.y ==
+  CHECK(ReportedVector(value_of(pulled.out, "position")).y - position.y ==
         doctest::Approx(1.0 / hand_N_per_m).scale(0).epsilon(0.2));
 }
 

@@ -155,7 +155,7 @@ TEST_CASE(
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {
     return std::ranges::count_if(executed, [&](std::uint32_t address) {
-      const std::string place = image.place(address);
+      const std::string place = image.source_location(address);
       return place.find("condition_samples") != place.npos && place.find(fmt::format("({}:", header)) != place.npos;
     });
   };

@@ -79,8 +79,8 @@ Handle Devices::open(const char* given) {
           return invalid_handle;
         }
       address = address_for(name);
-      const auto place = std::find(devices_.begin(), devices_.end(), nullptr);
-      handle = static_cast<Handle>(place - devices_.begin());
+      const auto free_slot = std::find(devices_.begin(), devices_.end(), nullptr);
+      handle = static_cast<Handle>(free_slot - devices_.begin());
     }
     auto device = std::make_shared<Device>(handle, name, address);
     const std::lock_guard lock(mutex_);

@@ -102,7 +102,7 @@ bool Scheduler::tick() {
     if (!origin_.is_here()) return false;
     lock.lock();
     called_ = no_task;
-    if (const auto place = find(task->handle); !goes_on && place != tasks_.end()) tasks_.erase(place);
+    if (const auto found = find(task->handle); !goes_on && found != tasks_.end()) tasks_.erase(found);
     changed_.notify_all();
   }
   lock.unlock();
@@ -169,7 +169,7 @@ class Scheduler::OffTheList {
   OffTheList(Scheduler& scheduler, std::unique_lock<std::mutex>& lock, TaskHandle handle)
       : scheduler_(scheduler), lock_(lock), handle_(handle) {}
   ~OffTheList() {
-    if (const auto place = scheduler_.find(handle_); place != scheduler_.tasks_.end()) scheduler_.tasks_.erase(place);
+    if (const auto found = scheduler_.find(handle_); found != scheduler_.tasks_.end()) scheduler_.tasks_.erase(found);
     scheduler_.changed_.wait(lock_, [this] { return scheduler_.called_ != handle_; });
   }
   OffTheList(const OffTheList&) = delete;
@@ -199,9 +199,9 @@ bool Scheduler::run_until_done(Callback callback, void* user, unsigned short pri
 
 bool Scheduler::remove(TaskHandle handle) {
   std::unique_lock lock(mutex_);
-  const auto place = find(handle);
-  if (place == tasks_.end()) return false;
-  tasks_.erase(place);
+  const auto found = find(handle);
+  if (found == tasks_.end()) return false;
+  tasks_.erase(found);
   changed_.notify_all();
   if (is_servo_thread()) return true;
   const process::CancellationPoint point;

@@ -62,10 +62,10 @@ std::string cause(const protocol::CrashFacts& crash) {
 
 std::vector<std::uint32_t> chain(const protocol::CrashFacts& crash) {
   if (crash.stack_pointer == 0) return {};
-  std::vector<std::uint32_t> places{crash.program_counter};
+  std::vector<std::uint32_t> addresses{crash.program_counter};
   for (const std::uint32_t caller : crash.callers)
-    if (caller != 0 && caller != places.back()) places.push_back(caller);
-  return places;
+    if (caller != 0 && caller != addresses.back()) addresses.push_back(caller);
+  return addresses;
 }
 
 void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& image) {
@@ -83,24 +83,24 @@ void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& im
 
 std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) {
   std::string lines = cause(crash) + "\n";
-  const auto places = chain(crash);
-  if (places.empty()) lines += "  at an unknown address, because the stack could not be read\n";
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  const auto addresses = chain(crash);
+  if (addresses.empty()) lines += "  at an unknown address, because the stack could not be read\n";
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
     // The call instruction is directly before its return address.
-    const std::string name = image == nullptr ? "" : image->place(i == 0 ? places[i] : places[i] - 2);
+    const std::string name = image == nullptr ? "" : image->source_location(i == 0 ? addresses[i] : addresses[i] - 2);
     lines += fmt::format("  {} 0x{:08x}{}{}\n",
                          i == 0   ? "at  "
                          : i == 1 ? "from"
                                   : "    ",
-                         places[i], name.empty() ? "" : " ", name);
+                         addresses[i], name.empty() ? "" : " ", name);
   }
-  for (std::size_t i = 0; !places.empty() && i < std::size(crash.registers); ++i)
+  for (std::size_t i = 0; !addresses.empty() && i < std::size(crash.registers); ++i)
     lines += fmt::format("  r{:<2} {:08x}{}", i, crash.registers[i],
                          i % 5 == 4 || i + 1 == std::size(crash.registers) ? "\n" : "");
   lines +=
       fmt::format("  sp {:08x}  lr {:08x}  xPSR {:08x}  CFSR {:08x}  HFSR {:08x}", crash.stack_pointer,
                   crash.link_register, crash.program_status, crash.configurable_fault_status, crash.hard_fault_status);
-  if (image == nullptr && !places.empty())
+  if (image == nullptr && !addresses.empty())
     lines += "\nRun `inkwell fault --elf FILE` with the ELF file of the flashed firmware to see the function names.";
   return lines;
 }

@@ -81,7 +81,7 @@ std::optional<std::uint32_t> FirmwareImage::check() const {
   return std::nullopt;
 }
 
-std::string FirmwareImage::place(std::uint32_t address) const {
+std::string FirmwareImage::source_location(std::uint32_t address) const {
   GElf_Off offset = 0;
   GElf_Sym symbol;
   const char* name = dwfl_module_addrinfo(reader_->module, address, &offset, &symbol, nullptr, nullptr, nullptr);

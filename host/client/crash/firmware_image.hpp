@@ -20,7 +20,7 @@ class FirmwareImage {
   std::optional<std::uint32_t> check() const;
 
   /// Function, file and line of an instruction, as far as the ELF file contains them; empty if there is no function.
-  std::string place(std::uint32_t address) const;
+  std::string source_location(std::uint32_t address) const;
 
  private:
   struct Reader;

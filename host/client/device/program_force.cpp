@@ -18,7 +18,7 @@ void require_in_range(const std::string& what, float value, float minimum, float
   throw Error(fmt::format("{} is {}{}. Give a number from {} to {}{}.", what, value, unit, minimum, maximum, unit));
 }
 
-void require_place(const std::string& what, const std::array<float, 3>& coordinates_m) {
+void require_coordinates(const std::string& what, const std::array<float, 3>& coordinates_m) {
   for (const float coordinate_m : coordinates_m)
     require_in_range(what, coordinate_m, -protocol::shape_distance_maximum_m, protocol::shape_distance_maximum_m, " m");
 }
@@ -65,8 +65,8 @@ protocol::ShapesReport shapes_report(const Shapes& shapes) {
     if (!shapes.planes[i]) continue;
     const Plane& plane = *shapes.planes[i];
     const std::string name = fmt::format("plane {}", i);
-    require_place("A coordinate of " + name, plane.point_m);
-    require_place("A coordinate of the normal of " + name, plane.normal);
+    require_coordinates("A coordinate of " + name, plane.point_m);
+    require_coordinates("A coordinate of the normal of " + name, plane.normal);
     if (std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]) < 1e-5f)
       throw Error(fmt::format("The normal of {} has length 0. Give a normal that points into the free space.", name));
     copy(plane.point_m, report.planes[i].point_m);
@@ -76,7 +76,7 @@ protocol::ShapesReport shapes_report(const Shapes& shapes) {
   }
   if (shapes.sphere) {
     const Sphere& sphere = *shapes.sphere;
-    require_place("A coordinate of the sphere", sphere.centre_m);
+    require_coordinates("A coordinate of the sphere", sphere.centre_m);
     if (!(sphere.radius_m > 0.0f)) throw Error("The sphere's radius is not above 0 m. Give a radius above 0 m.");
     require_in_range("The sphere's radius", sphere.radius_m, 0.0f, protocol::shape_distance_maximum_m, " m");
     copy(sphere.centre_m, report.sphere.centre_m);

@@ -223,20 +223,20 @@ class UsbipTransport : public Transport {
 
   /// Requires bulk_mutex_.
   void request_bulk() {
-    const auto place = bulk_under_way_.insert(bulk_under_way_.end(), 0);
+    const auto slot = bulk_under_way_.insert(bulk_under_way_.end(), 0);
     try {
-      *place =
+      *slot =
           connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
-                                [this, place](UsbipConnection::Completion done) { take_bulk(std::move(done), place); });
+                                [this, slot](UsbipConnection::Completion done) { take_bulk(std::move(done), slot); });
     } catch (...) {
-      bulk_under_way_.erase(place);
+      bulk_under_way_.erase(slot);
       throw;
     }
   }
 
-  void take_bulk(UsbipConnection::Completion done, std::list<std::uint32_t>::iterator place) {
+  void take_bulk(UsbipConnection::Completion done, std::list<std::uint32_t>::iterator slot) {
     const std::lock_guard lock(bulk_mutex_);
-    bulk_under_way_.erase(place);
+    bulk_under_way_.erase(slot);
     bulk_taken_back_ = bulk_taken_back_ || done.status == -ECONNRESET;
     bulk_changed_.notify_one();
     if (done.status == -EBUSY) {

@@ -351,8 +351,8 @@ class TryGains final : public Step {
     return {{Parameter::current_proportional_gain_V_per_A, static_cast<float>(gains.proportional_V_per_A)},
             {Parameter::current_integral_gain_V_per_As, static_cast<float>(gains.integral_V_per_As)}};
   }
-  Parameter resistance_of(std::size_t place) const {
-    return of_number(Parameter::motor_resistance_1_ohm, tuning_->options.motors[place]);
+  Parameter resistance_of(std::size_t index) const {
+    return of_number(Parameter::motor_resistance_1_ohm, tuning_->options.motors[index]);
   }
   bool holds_suggested(const ParameterSet& set) const {
     return std::ranges::all_of(gains_of(*tuning_->gains),

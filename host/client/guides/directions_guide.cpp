@@ -123,8 +123,8 @@ class PulseMotor final : public Step {
                       "its capstan, and that energy_reserve_J ({:.3f} J), which limits a pulse, is not far below its "
                       "default. Then start the guide again.",
                       motor_, (*now.parameters)[Parameter::energy_reserve_J]));
-    const auto place = static_cast<std::size_t>(motor_ - 1);
-    const bool encoder_wrong = (*reversed_)[place].value_or(false);
+    const auto index = static_cast<std::size_t>(motor_ - 1);
+    const bool encoder_wrong = (*reversed_)[index].value_or(false);
     const bool forward = (difference_rad > 0) != encoder_wrong;
     const auto parameter = of_number(Parameter::motor_1_reversed, motor_);
     const bool held_reversed = (*now.parameters)[parameter] == 1.0f;

@@ -14,9 +14,9 @@ float allowed_pulse_A(const protocol::ParameterSet& set, int motor) {
   constexpr float least_A = 0.2f;
   const control::Settings settings = control::prepare(set);
   const control::Jacobian jacobian = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).jacobian;
-  const auto place = static_cast<std::size_t>(motor - 1);
+  const auto index = static_cast<std::size_t>(motor - 1);
   const auto allowed_A = [&](float force_limit_N) {
-    return part * control::test_limit_A(jacobian, place, force_limit_N, settings.motors.ampere_per_Nm[place]);
+    return part * control::test_limit_A(jacobian, index, force_limit_N, settings.motors.ampere_per_Nm[index]);
   };
   const float allowed = allowed_A(settings.force_limit_N);
   if (allowed < least_A)

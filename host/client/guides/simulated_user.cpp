@@ -114,13 +114,13 @@ void SimulatedUser::press_button(int button, double at_s) {
 
 void SimulatedUser::begin(const UserTask& task, double now_s) {
   using Kind = UserTask::Kind;
-  const auto place = static_cast<std::size_t>(std::max(task.number, 1) - 1);
+  const auto index = static_cast<std::size_t>(std::max(task.number, 1) - 1);
   const auto turn_gimbal = [&](double ratio, double at_s) {
     const auto of = [&](Rows rows) { return static_cast<double>(arm_[of_number(rows, task.number)]); };
     const double angle_rad = (of(Parameter::gimbal_1_square_rad) * ratio + of(Parameter::gimbal_1_slope_rad)) * ratio +
                              of(Parameter::gimbal_1_offset_rad);
-    planned_.push_back({at_s, [this, place, angle_rad] {
-                          gimbal_rad_[place] = angle_rad;
+    planned_.push_back({at_s, [this, index, angle_rad] {
+                          gimbal_rad_[index] = angle_rad;
                           control_.gimbal(gimbal_rad_);
                         }});
   };
@@ -139,7 +139,7 @@ void SimulatedUser::begin(const UserTask& task, double now_s) {
     }
     case Kind::turn_joint_forward: {
       Joints turned = inkwell();
-      turned[place] += turn_rad;
+      turned[index] += turn_rad;
       move({turned}, firm_N_per_m);
       break;
     }

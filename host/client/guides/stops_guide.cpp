@@ -59,14 +59,14 @@ class MoveJointToStops final : public UserMoves {
       anchored_at_s_ = time_s;
     }
     if (time_s - anchored_at_s_ < rest_s) return;
-    const auto place = static_cast<std::size_t>(joint_ - 1);
+    const auto index = static_cast<std::size_t>(joint_ - 1);
     if (now_rad_ < least_rad_) {
       least_rad_ = now_rad_;
-      found_->low[place] = joints;
+      found_->low[index] = joints;
     }
     if (now_rad_ > most_rad_) {
       most_rad_ = now_rad_;
-      found_->high[place] = joints;
+      found_->high[index] = joints;
     }
   }
   /// A tenth of the expected travel is enough, because a wrong counts-per-turn value reduces the measured travel.
@@ -95,9 +95,9 @@ class CompareStops final : public Step {
     const ParameterSet& set = *now.parameters;
     // Joint 3 of a parallelogram is absolute. The stops of joint 3 move with joint 2, which is corrected first.
     for (int joint = 1; joint <= 3; ++joint) {
-      const auto place = static_cast<std::size_t>(joint - 1);
+      const auto index = static_cast<std::size_t>(joint - 1);
       const bool relative = joint == 3 && set[Parameter::transmission] == 1.0f;
-      const JointStops found{found_->low[place][place], found_->high[place][place]};
+      const JointStops found{found_->low[index][index], found_->high[index][index]};
       JointStops expected{value(set, protocol::lower_stops, joint), value(set, protocol::upper_stops, joint)};
       if (relative) {
         expected.low_rad += corrected_shoulder_rad(set, found_->low[2][1]);
@@ -120,23 +120,23 @@ class CompareStops final : public Step {
     const double inkwell_rad = value(set, Parameter::inkwell_joint_1_rad, joint);
     StopsFit fit = fit_stops(found, expected, inkwell_rad, false);
     const bool width_agrees = std::abs(found.width_rad() - expected.width_rad()) <= stops_tolerance_rad;
-    const bool place_agrees = std::abs(fit.inkwell_rad - inkwell_rad) <= stops_tolerance_rad;
+    const bool position_agrees = std::abs(fit.inkwell_rad - inkwell_rad) <= stops_tolerance_rad;
     const bool trusts_limits = trust_ == StopsTrust::limits;
     if (!width_agrees && trusts_limits) fit = fit_stops(found, expected, inkwell_rad, true);
-    if (joint == 2) shoulder_ = width_agrees && place_agrees ? StopsFit{1, inkwell_rad, 0, 0} : fit;
+    if (joint == 2) shoulder_ = width_agrees && position_agrees ? StopsFit{1, inkwell_rad, 0, 0} : fit;
     if (joint == 2 && !trusts_limits) shoulder_ = {1, inkwell_rad, 0, 0};
 
     findings_->sentences.push_back(
         fmt::format("Joint {}: stops at {:.3f} and {:.3f} rad, expected {:.3f} and {:.3f}: {}", joint, found.low_rad,
                     found.high_rad, expected.low_rad, expected.high_rad,
-                    width_agrees && place_agrees ? "they agree."
-                    : width_agrees               ? "the travel agrees, but its position differs."
-                                                 : "the travel differs."));
+                    width_agrees && position_agrees ? "they agree."
+                    : width_agrees                  ? "the travel agrees, but its position differs."
+                                                    : "the travel differs."));
     findings_->details["joints"].push_back({{"joint", joint},
                                             {"found_rad", {found.low_rad, found.high_rad}},
                                             {"expected_rad", {expected.low_rad, expected.high_rad}},
-                                            {"agrees", width_agrees && place_agrees}});
-    if (width_agrees && place_agrees) return;
+                                            {"agrees", width_agrees && position_agrees}});
+    if (width_agrees && position_agrees) return;
     if (!trusts_limits) {
       findings_->propose(set, of_number(protocol::lower_stops, joint), found.low_rad - base.low_rad,
                          "the lower stop was found here");

@@ -261,10 +261,10 @@ std::vector<std::string> Hdf5Input::texts(const std::string& path, std::uint64_t
     fail(fmt::format("is damaged: {} must be texts of at most {} bytes", path, mark_bytes_maximum));
   check_content(column, count);
   const std::size_t bytes = H5Tget_size(column.type.id());
-  std::vector<char> places(count * bytes);
-  read_column(column, column.type.id(), count, places.data());
+  std::vector<char> buffer(count * bytes);
+  read_column(column, column.type.id(), count, buffer.data());
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < count; ++i) texts.push_back(text_before_zero({places.data() + i * bytes, bytes}));
+  for (std::size_t i = 0; i < count; ++i) texts.push_back(text_before_zero({buffer.data() + i * bytes, bytes}));
   return texts;
 }
 

@@ -28,9 +28,9 @@ class Hdf5Reader {
     for (std::size_t i = 1; i < whole; ++i)
       recording_.periods[i] = period_after(recording_.periods[i - 1], recording_.periods[i]);
     for (const auto& path : columns_) {
-      auto& place = recording_.columns.size() < recording_.information.signals.size() ? recording_.columns
-                                                                                      : recording_.simulated_columns;
-      place.push_back(input_.real_numbers(path, whole));
+      auto& columns = recording_.columns.size() < recording_.information.signals.size() ? recording_.columns
+                                                                                        : recording_.simulated_columns;
+      columns.push_back(input_.real_numbers(path, whole));
     }
     const bool is_complete = input_.whole_number("/complete") == 1;
     try {

@@ -112,7 +112,7 @@ class Hdf5Writer final : public Writer {
     return made;
   }
   enum class Packing { none, compressed };
-  Handle growing(hid_t place, const std::string& name, hid_t type, hsize_t chunk, Packing packing) {
+  Handle growing(hid_t parent, const std::string& name, hid_t type, hsize_t chunk, Packing packing) {
     const hsize_t none = 0, unlimited = H5S_UNLIMITED;
     const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -121,13 +121,14 @@ class Hdf5Writer final : public Writer {
       H5Pset_shuffle(properties.id());  // groups bytes of equal significance, which compress better
       H5Pset_deflate(properties.id(), compression_level);
     }
-    Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
+    Handle made(H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+                H5Dclose);
     if (!made) fail();
     return made;
   }
-  Handle scalar(hid_t place, const std::string& name, hid_t type, const void* value) {
+  Handle scalar(hid_t parent, const std::string& name, hid_t type, const void* value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    Handle made(H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     if (!made || H5Dwrite(made.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) < 0) fail();
     return made;
   }
@@ -175,9 +176,9 @@ class Hdf5Writer final : public Writer {
     scalar(file.id(), "samples", H5T_NATIVE_HSIZE, &none);
   }
   template <class Row>
-  void lay_out_column(const Handle& place, const Row& row) {
+  void lay_out_column(const Handle& parent, const Row& row) {
     const Handle column =
-        growing(place.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples_, Packing::compressed);
+        growing(parent.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples_, Packing::compressed);
     write_attribute(column.id(), "unit", std::string(row.unit));
     write_attribute(column.id(), "help", std::string(row.help));
   }
@@ -235,9 +236,9 @@ class Hdf5Writer final : public Writer {
   }
   /// Writes a text, truncated to its length in the file.
   void write_mark_text(const Handle& column, std::string_view text, std::size_t bytes) {
-    std::string place(text.substr(0, bytes));
-    place.resize(bytes);
-    extend(column, mark_count_, 1, byte_text_type(bytes).id(), place.data());
+    std::string padded(text.substr(0, bytes));
+    padded.resize(bytes);
+    extend(column, mark_count_, 1, byte_text_type(bytes).id(), padded.data());
   }
   void extend(const Handle& dataset, hsize_t at, hsize_t count, hid_t type, const void* values) {
     const hsize_t size = at + count;

@@ -56,9 +56,9 @@ std::vector<Quantity> Recording::quantities() const {
 
 const std::vector<float>& Recording::column(Quantity quantity) const {
   const auto recorded = quantities();
-  const auto place = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), quantity) - recorded.begin());
-  if (place < columns.size()) return columns[place];
-  if (place < recorded.size()) return simulated_columns[place - columns.size()];
+  const auto index = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), quantity) - recorded.begin());
+  if (index < columns.size()) return columns[index];
+  if (index < recorded.size()) return simulated_columns[index - columns.size()];
   std::vector<std::string_view> names;
   for (const auto each : recorded) names.push_back(name_of(each));
   throw device::Error(

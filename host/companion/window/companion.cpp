@@ -156,9 +156,9 @@ float Companion::banner_room(float banner_height) {
 
 StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {
   StatusBarOutcome outcome =
-      status_bar_.draw(layout.status.place, layout.status.size, style_, desk_,
+      status_bar_.draw(layout.status.origin, layout.status.size, style_, desk_,
                        {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
-  if (!banner || !draw_banner(layout.banner.place, layout.banner.size, style_, *banner)) return outcome;
+  if (!banner || !draw_banner(layout.banner.origin, layout.banner.size, style_, *banner)) return outcome;
   outcome.clear_fault = banner->action == BannerAction::clear_fault;
   if (banner->action == BannerAction::update_firmware) update_firmware();
   if (banner->action == BannerAction::take_over) desk_.session().take_over();
@@ -178,11 +178,11 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
   const bool replays = replay_bar_.is_open();
   scene_ = layout.scene;
   const bool asks_for_force =
-      scene_pane_.draw(scene_.place, scene_.size,
+      scene_pane_.draw(scene_.origin, scene_.size,
                        {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays,
                         !returned_.waits_for_user()});
   if (replays) {
-    replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
+    replay_bar_.draw(layout.replay.origin, layout.replay.size, style_, scope_pane_);
   } else {
     draw_card(layout);
     if (!has_card() && returned_.is_shown()) draw_returned_values(layout, now_s);
@@ -191,7 +191,7 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
 }
 
 void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
-  const ReturnChoice choice = draw_return_card(layout.scene.place, layout.scene.size, style_, returned_,
+  const ReturnChoice choice = draw_return_card(layout.scene.origin, layout.scene.size, style_, returned_,
                                                protocol::force_is_on(desk_.view().state()));
   if (choice == ReturnChoice::send) editor_.apply("old values", returned_.changes_back(), now_s);
   if (choice == ReturnChoice::keep) returned_.dismiss();
@@ -222,14 +222,14 @@ void Companion::update_firmware() {
 }
 
 void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {
-  column_.draw(layout.column.place, layout.column.size,
+  column_.draw(layout.column.origin, layout.column.size,
                {.style = style_,
                 .editor = shown_parameters(),
                 .is_replay = replay_bar_.is_open(),
                 .scope_signals = scope_pane_.signals(),
                 .now_s = now_s});
-  const auto [place, size] = layout.column_splitter;
-  drag_column_splitter(splitter("tuning splitter", place, size, true, style_), window, style_.scale, settings_);
+  const auto [origin, size] = layout.column_splitter;
+  drag_column_splitter(splitter("tuning splitter", origin, size, true, style_), window, style_.scale, settings_);
 }
 
 void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
@@ -242,9 +242,9 @@ void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
 
 void Companion::draw_scope(const WindowLayout& layout) {
   if (!settings_.scope_is_shown) return;
-  const auto [place, size] = layout.scope_splitter;
-  drag_scope_splitter(splitter("scope splitter", place, size, false, style_), layout, style_.scale, settings_);
-  scope_pane_.draw(layout.scope.place, layout.scope.size, style_);
+  const auto [origin, size] = layout.scope_splitter;
+  drag_scope_splitter(splitter("scope splitter", origin, size, false, style_), layout, style_.scale, settings_);
+  scope_pane_.draw(layout.scope.origin, layout.scope.size, style_);
 }
 
 void Companion::judge_motion() {
@@ -278,14 +278,14 @@ std::uint64_t Companion::canvas_digest() const {
 }
 
 Box Companion::canvas() const {
-  return {scene_.place.x, scene_.place.y, scene_.place.x + scene_.size.x, scene_.place.y + scene_.size.y};
+  return {scene_.origin.x, scene_.origin.y, scene_.origin.x + scene_.size.x, scene_.origin.y + scene_.size.y};
 }
 
 void Companion::paint(const Canvas& canvas) {
   const auto pixels = [&canvas](float units) { return static_cast<int>(std::lround(units * canvas.pixels_per_unit)); };
   const int height = pixels(scene_.size.y);
   scene_pane_.draw_scene(
-      {pixels(scene_.place.x), canvas.height_pixels - pixels(scene_.place.y) - height, pixels(scene_.size.x), height},
+      {pixels(scene_.origin.x), canvas.height_pixels - pixels(scene_.origin.y) - height, pixels(scene_.size.x), height},
       {*style_.palette, flat_colours_, canvas.smooth && !flat_colours_, canvas.is_as_before, std::nullopt});
 }
 

@@ -21,7 +21,7 @@ float scope_height_of(float room, const WindowSettings& settings, float scale) {
 }  // namespace
 
 ImVec2 WindowLayout::middle_of_scene() const {
-  return {scene.place.x + 0.5f * scene.size.x, scene.place.y + 0.45f * scene.size.y};
+  return {scene.origin.x + 0.5f * scene.size.x, scene.origin.y + 0.45f * scene.size.y};
 }
 
 WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSettings& settings, float scale) {

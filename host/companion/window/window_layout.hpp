@@ -8,7 +8,7 @@
 namespace inkwell::window {
 
 struct Rectangle {
-  ImVec2 place{0, 0};  ///< top left corner
+  ImVec2 origin{0, 0};  ///< top left corner
   ImVec2 size{1, 1};
 };
 

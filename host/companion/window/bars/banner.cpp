@@ -67,16 +67,16 @@ float banner_height(float width, const Style& style, const Banner& banner) {
   return taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy) + style.points(26);
 }
 
-bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
+bool draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
   const Colour colour = banner.is_fault() ? palette.danger : palette.caution;
-  begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may cover the scene
+  begin_top_pane("banner", origin, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may cover the scene
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
-  list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
-  list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(colour));
+  list.AddRectFilled(origin, {origin.x + size.x, origin.y + size.y}, packed(palette.raised));
+  list.AddRectFilled(origin, {origin.x + style.points(5), origin.y + size.y}, packed(colour));
   list.PopClipRect();
-  warning_sign({place.x + style.points(18), place.y + style.points(10)}, colour, style);
+  warning_sign({origin.x + style.points(18), origin.y + style.points(10)}, colour, style);
   ImGui::SetCursorPos({style.points(44), style.points(9)});
   ImGui::BeginGroup();
   ImGui::PushTextWrapPos(style.points(44) + banner_text_width(size.x, style, banner));

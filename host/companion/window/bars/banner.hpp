@@ -25,6 +25,6 @@ struct Banner {
 std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
 float banner_height(float width, const Style& style, const Banner& banner);
 /// Returns true if the button was pressed.
-bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
+bool draw_banner(ImVec2 origin, ImVec2 size, const Style& style, const Banner& banner);
 
 }  // namespace inkwell::window

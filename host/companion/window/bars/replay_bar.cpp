@@ -70,9 +70,9 @@ void ReplayBar::follow(double now_s, ScopePane& scope) {
   }
 }
 
-void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope) {
+void ReplayBar::draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(9)});
-  begin_pane("replay", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("replay", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   draw_controls(style);
   ImGui::SameLine(0, style.points(14));
@@ -81,7 +81,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
 
   const float close_width = style.points(64), time_width = style.points(126), gap = style.points(12);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const float right = place.x + size.x - style.points(12) - close_width - gap - time_width - gap;
+  const float right = origin.x + size.x - style.points(12) - close_width - gap - time_width - gap;
   if (right - corner.x > style.points(40)) draw_track(corner, {right - corner.x, ImGui::GetFrameHeight()}, style);
   ImGui::SetCursorScreenPos({right + gap, corner.y});
   ImGui::AlignTextToFramePadding();

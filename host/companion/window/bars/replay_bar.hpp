@@ -39,7 +39,7 @@ class ReplayBar {
   const ParameterEditor& editor() const { return editor_; }
 
   /// Draws the bar and handles the buttons. The button Close closes the recording.
-  void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope);
+  void draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:
   void draw_controls(const Style& style);

@@ -81,10 +81,10 @@ ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_i
 
 }  // namespace
 
-ReturnChoice draw_return_card(ImVec2 place, ImVec2 size, const Style& style, const ReturnedValues& values,
+ReturnChoice draw_return_card(ImVec2 origin, ImVec2 size, const Style& style, const ReturnedValues& values,
                               bool force_is_on) {
   const float margin = style.points(card_margin_points);
-  ImGui::SetNextWindowPos({place.x + size.x - margin, place.y + style.points(top_points)}, ImGuiCond_Always,
+  ImGui::SetNextWindowPos({origin.x + size.x - margin, origin.y + style.points(top_points)}, ImGuiCond_Always,
                           {1.0f, 0.0f});
   ImGui::SetNextWindowSize({std::min(style.points(card_points), size.x - 2 * margin), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, style.points(8));

@@ -14,8 +14,8 @@ enum class ReturnChoice : std::uint8_t {
   keep,  ///< keep the device's current values
 };
 
-/// Draws the card in the upper right corner of the scene. `place`, `size`: rectangle of the scene.
-ReturnChoice draw_return_card(ImVec2 place, ImVec2 size, const Style& style, const ReturnedValues& values,
+/// Draws the card in the upper right corner of the scene. `origin`, `size`: rectangle of the scene.
+ReturnChoice draw_return_card(ImVec2 origin, ImVec2 size, const Style& style, const ReturnedValues& values,
                               bool force_is_on);
 
 }  // namespace inkwell::window

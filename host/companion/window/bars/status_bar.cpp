@@ -47,7 +47,7 @@ enum Item : std::size_t {
 };
 constexpr std::array<float, 8> item_widths_points{214, 92, 72, 54, 78, 62, 44, 122};
 
-std::vector<FlowPlace> places_of(float width, const Style& style) {
+std::vector<FlowPosition> positions_of(float width, const Style& style) {
   std::vector<float> widths;
   for (float points : item_widths_points) widths.push_back(style.points(points));
   const float row = width - style.points(2 * margin_points);
@@ -84,10 +84,10 @@ void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   for (const device::Endpoint& endpoint : view.listed) {
     const bool present =
         view.connected() && view.status.information && view.status.information->serial_number == endpoint.serial_number;
-    const std::string place = endpoint.kind == device::Endpoint::Kind::usb
-                                  ? std::string("USB")
-                                  : fmt::format("virtual, {}", endpoint.server.text());
-    if (ImGui::Selectable(fmt::format("{}   {}   {}", endpoint.product, endpoint.serial_number, place).c_str(),
+    const std::string location = endpoint.kind == device::Endpoint::Kind::usb
+                                     ? std::string("USB")
+                                     : fmt::format("virtual, {}", endpoint.server.text());
+    if (ImGui::Selectable(fmt::format("{}   {}   {}", endpoint.product, endpoint.serial_number, location).c_str(),
                           present))
       if (!present) desk.choose(endpoint.serial_number);
   }
@@ -148,7 +148,7 @@ void StatusBar::draw_switches(ImVec2 corner, const Style& style, std::uint8_t sw
 }
 
 float StatusBar::height(float width, const Style& style) const {
-  const int rows = places_of(width, style).back().row + 1;
+  const int rows = positions_of(width, style).back().row + 1;
   return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
@@ -190,26 +190,26 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   help_on_hover("Keys and mouse", "Lists all keys and mouse actions. F1 also opens this list.", style);
 }
 
-StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk,
+StatusBarOutcome StatusBar::draw(ImVec2 origin, ImVec2 size, const Style& style, DeviceDesk& desk,
                                  const StatusBarInput& input) {
   const Palette& palette = *style.palette;
   const DeviceView& view = desk.view();
   StatusBarOutcome outcome;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
-  begin_pane("status", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("status", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   ImDrawList& ground = *ImGui::GetWindowDrawList();
   ground.PushClipRectFullScreen();
-  ground.AddLine({place.x, place.y + size.y - 1}, {place.x + size.x, place.y + size.y - 1}, packed(palette.line));
+  ground.AddLine({origin.x, origin.y + size.y - 1}, {origin.x + size.x, origin.y + size.y - 1}, packed(palette.line));
   ground.PopClipRect();
 
   const float height = style.points(item_points);
-  const float y = place.y + style.points(gap_points);
+  const float y = origin.y + style.points(gap_points);
   const bool alive = view.pose.has_value();
-  const std::vector<FlowPlace> places = places_of(size.x, style);
+  const std::vector<FlowPosition> positions = positions_of(size.x, style);
   const auto corner = [&](Item item) {
-    return ImVec2{place.x + style.points(margin_points) + places[item].x,
-                  y + style.points(row_points) * static_cast<float>(places[item].row)};
+    return ImVec2{origin.x + style.points(margin_points) + positions[item].x,
+                  y + style.points(row_points) * static_cast<float>(positions[item].row)};
   };
   draw_device(corner(device_item), style, desk);
   const std::vector<Gauge> gauges = gauges_of(view, palette);
@@ -219,7 +219,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   }
   if (alive) draw_switches(corner(switches_item), style, view.pose->switches);
 
-  draw_buttons({place.x + size.x - style.points(margin_points), y}, style, view, input, outcome);
+  draw_buttons({origin.x + size.x - style.points(margin_points), y}, style, view, input, outcome);
   end_pane();
   return outcome;
 }

@@ -26,7 +26,7 @@ class StatusBar {
  public:
   /// Returns the height of the bar. The gauges wrap in a narrow window or with large text.
   float height(float width, const Style& style) const;
-  StatusBarOutcome draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, const StatusBarInput& input);
+  StatusBarOutcome draw(ImVec2 origin, ImVec2 size, const Style& style, DeviceDesk& desk, const StatusBarInput& input);
 
  private:
   void draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk);

@@ -41,17 +41,17 @@ void FileChooser::enter(const fs::path& folder) {
 }
 
 /// Draws a button for each parent folder.
-void FileChooser::draw_places(const Style& style) {
+void FileChooser::draw_folders(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(4)});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(4), style.points(2)});
-  fs::path place;
+  fs::path folder;
   std::optional<fs::path> wanted;
   for (const fs::path& part : folder_) {
     if (part.empty()) continue;
-    place /= part;
+    folder /= part;
     const std::string label = part == folder_.root_path() ? "/" : part.string();
-    if (place != place.root_path()) same_line_if_room(ImGui::CalcTextSize(label.c_str()).x + style.points(8));
-    if (quiet_button((label + "##" + place.string()).c_str(), style)) wanted = place;
+    if (folder != folder.root_path()) same_line_if_room(ImGui::CalcTextSize(label.c_str()).x + style.points(8));
+    if (quiet_button((label + "##" + folder.string()).c_str(), style)) wanted = folder;
   }
   ImGui::PopStyleVar(2);
   if (wanted) enter(*wanted);
@@ -159,7 +159,7 @@ std::optional<fs::path> FileChooser::draw(const Style& style) {
     return std::nullopt;
   text(style.fonts.strong, style.palette->text, question_.title);
   wrapped_text(style.palette->text_quiet, question_.help);
-  draw_places(style);
+  draw_folders(style);
   draw_entries(style);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(question_.endings.empty() ? -1.0f : -style.points(158));

@@ -28,7 +28,7 @@ class FileChooser {
 
  private:
   void enter(const std::filesystem::path& folder);
-  void draw_places(const Style& style);
+  void draw_folders(const Style& style);
   void draw_entries(const Style& style);
   bool draw_filter(const Style& style);
   void accept();

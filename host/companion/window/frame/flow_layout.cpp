@@ -4,9 +4,9 @@
 
 namespace inkwell::window {
 
-std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width, float row_width, float gap) {
-  std::vector<FlowPlace> places;
-  if (widths.empty()) return places;
+std::vector<FlowPosition> flow(std::span<const float> widths, float first_row_width, float row_width, float gap) {
+  std::vector<FlowPosition> positions;
+  if (widths.empty()) return positions;
   const float all = std::accumulate(widths.begin(), widths.end(), 0.0f) + gap * static_cast<float>(widths.size() - 1);
   const bool one_row = all <= first_row_width;
   int row = widths.front() <= first_row_width ? 0 : 1;
@@ -18,10 +18,10 @@ std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width
       ++row;
       x = 0.0f;
     }
-    places.push_back({row, x});
+    positions.push_back({row, x});
     x += widths[i] + gap;
   }
-  return places;
+  return positions;
 }
 
 }  // namespace inkwell::window

@@ -6,13 +6,13 @@
 
 namespace inkwell::window {
 
-struct FlowPlace {
+struct FlowPosition {
   int row;
   float x;  ///< from the left end of the row
 };
 
 /// Puts all items in the first row if `first_row_width` is sufficient. Otherwise the first row contains only the first
 /// item, and the next rows have the width `row_width`.
-std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width, float row_width, float gap);
+std::vector<FlowPosition> flow(std::span<const float> widths, float first_row_width, float row_width, float gap);
 
 }  // namespace inkwell::window

@@ -35,13 +35,13 @@ std::string_view name_in(std::string_view label) {
   return label.starts_with("##") ? label.substr(2) : label.substr(0, label.find("##"));
 }
 
-void note(std::string_view name, const ImRect& place, bool active, bool has_keyboard) {
+void note(std::string_view name, const ImRect& area, bool active, bool has_keyboard) {
   const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
   const bool enabled = (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0;
-  notes->items[fmt::format("{}/{}", pane.Name, name_in(name))] = {{"x", place.Min.x + notes->origin.x},
-                                                                  {"y", place.Min.y + notes->origin.y},
-                                                                  {"width", place.GetWidth()},
-                                                                  {"height", place.GetHeight()},
+  notes->items[fmt::format("{}/{}", pane.Name, name_in(name))] = {{"x", area.Min.x + notes->origin.x},
+                                                                  {"y", area.Min.y + notes->origin.y},
+                                                                  {"width", area.GetWidth()},
+                                                                  {"height", area.GetHeight()},
                                                                   {"enabled", enabled},
                                                                   {"active", active},
                                                                   {"keyboard", has_keyboard}};
@@ -58,7 +58,7 @@ void note_item(std::string_view name) {
   note(name, seen, ImGui::IsItemActive(), has_keyboard);
 }
 
-void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum) {
+void note_area(std::string_view name, ImVec2 minimum, ImVec2 maximum) {
   if (notes != nullptr) note(name, {minimum, maximum}, false, false);
 }
 

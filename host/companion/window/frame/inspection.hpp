@@ -17,7 +17,7 @@ namespace inkwell::window {
 // The functions record the last drawn item under a name that includes the pane, such as "status/STOP". Without an
 // inspection, the functions do nothing.
 void note_item(std::string_view name);
-void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum);
+void note_area(std::string_view name, ImVec2 minimum, ImVec2 maximum);
 void note_text(std::string_view text);
 
 class Inspection {

@@ -66,9 +66,9 @@ void KeyboardTour::go_on_now(bool backwards) {
   if (all.empty()) return;
   if (backwards) std::ranges::reverse(all);
   ImGuiWindow* now = GImGui->NavWindow != nullptr ? GImGui->NavWindow->RootWindow : nullptr;
-  const auto place = std::ranges::find(all, now);
-  const bool is_last = place == all.end() || place + 1 == all.end();
-  focus_window(is_last ? *all.front() : **(place + 1));
+  const auto found = std::ranges::find(all, now);
+  const bool is_last = found == all.end() || found + 1 == all.end();
+  focus_window(is_last ? *all.front() : **(found + 1));
 }
 
 void KeyboardTour::end_frame(const Style& style) {

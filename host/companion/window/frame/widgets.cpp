@@ -118,12 +118,12 @@ bool begin_combo(const char* label, std::string_view shown, float width, ImGuiCo
   return is_open;
 }
 
-bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
-  return begin_top_pane(name, place, size, ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+bool begin_pane(const char* name, ImVec2 origin, ImVec2 size, ImGuiWindowFlags flags) {
+  return begin_top_pane(name, origin, size, ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
 }
 
-bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
-  ImGui::SetNextWindowPos(place);
+bool begin_top_pane(const char* name, ImVec2 origin, ImVec2 size, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos(origin);
   ImGui::SetNextWindowSize(size);
   return ImGui::Begin(name, nullptr,
                       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -132,15 +132,15 @@ bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlag
 
 void end_pane() { ImGui::End(); }
 
-float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical, const Style& style) {
+float splitter(const char* name, ImVec2 origin, ImVec2 size, bool vertical, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2{1, 1});
-  begin_pane(name, place, size, ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
+  begin_pane(name, origin, size, ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::InvisibleButton("handle", size);
   note_item("handle");
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();
   if (lively) ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-  ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + size.x, place.y + size.y},
+  ImGui::GetWindowDrawList()->AddRectFilled(origin, {origin.x + size.x, origin.y + size.y},
                                             packed(lively ? style.palette->accent : style.palette->ground));
   const ImVec2 moved = ImGui::IsItemActive() ? ImGui::GetIO().MouseDelta : ImVec2{0, 0};
   end_pane();

@@ -46,12 +46,12 @@ bool begin_combo(const char* label, std::string_view shown, float width, ImGuiCo
 
 /// Begins a window that fills a rectangle and cannot be moved or closed. The window has no background, because the
 /// cleared framebuffer already has the pane color.
-bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+bool begin_pane(const char* name, ImVec2 origin, ImVec2 size, ImGuiWindowFlags flags = 0);
 /// Begins a pane in front of the other panes.
-bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+bool begin_top_pane(const char* name, ImVec2 origin, ImVec2 size, ImGuiWindowFlags flags = 0);
 void end_pane();
 
 /// Draws a handle between two panes. Returns the drag distance to the right or down, in points.
-float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical, const Style& style);
+float splitter(const char* name, ImVec2 origin, ImVec2 size, bool vertical, const Style& style);
 
 }  // namespace inkwell::window

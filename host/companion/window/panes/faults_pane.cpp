@@ -246,8 +246,8 @@ void FaultsPane::choose_neighbour(int rows) {
   const auto all = found();
   if (all.empty()) return;
   const auto now = chosen_ ? std::ranges::find(all, chosen_->typed().fault) : all.end();
-  const std::ptrdiff_t place = now == all.end() ? (rows > 0 ? 0 : std::ssize(all) - 1) : now - all.begin() + rows;
-  choose(all[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, std::ssize(all) - 1))]);
+  const std::ptrdiff_t index = now == all.end() ? (rows > 0 ? 0 : std::ssize(all) - 1) : now - all.begin() + rows;
+  choose(all[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(index, 0, std::ssize(all) - 1))]);
   chosen_is_to_be_seen_ = true;
 }
 

@@ -102,10 +102,10 @@ bool PaneColumn::is_moving() const {
   return std::ranges::any_of(panes_, [](const auto& pane) { return pane->is_moving(); });
 }
 
-float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
+float PaneColumn::draw_tabs(ImVec2 origin, float width, const Style& style) {
   const float height = style.points(tabs_points);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
-  begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("tabs", origin, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   // The width of a tab is the width of its title plus an equal share of the spare width.
   const auto count = static_cast<float>(panes_.size());
@@ -120,11 +120,11 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   return height;
 }
 
-void PaneColumn::draw(ImVec2 place, ImVec2 size, PaneFrame frame) {
+void PaneColumn::draw(ImVec2 origin, ImVec2 size, PaneFrame frame) {
   frame.scope_is_free = stream(frame.scope_signals).feeds_scope;
-  const float tabs = draw_tabs(place, size.x, frame.style);
+  const float tabs = draw_tabs(origin, size.x, frame.style);
   Pane& pane = *panes_[shown_];
-  begin_pane(name_of(pane).c_str(), {place.x, place.y + tabs}, {size.x, size.y - tabs});
+  begin_pane(name_of(pane).c_str(), {origin.x, origin.y + tabs}, {size.x, size.y - tabs});
   pane.draw(frame);
   end_pane();
 }

@@ -13,7 +13,7 @@ class PaneColumn {
   explicit PaneColumn(const PaneSurroundings& around);
 
   void follow(const PaneNews& news);
-  void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
+  void draw(ImVec2 origin, ImVec2 size, PaneFrame frame);
   void cancel();
   /// Shows the pane of this tab if the tab exists. Tabs are counted from 0. Returns the name of the pane that should
   /// receive the keyboard focus; empty if the pane has set the focus.
@@ -26,7 +26,7 @@ class PaneColumn {
 
  private:
   /// Returns the height of the tabs.
-  float draw_tabs(ImVec2 place, float width, const Style& style);
+  float draw_tabs(ImVec2 origin, float width, const Style& style);
 
   std::vector<std::unique_ptr<Pane>> panes_;
   std::size_t shown_ = 0;

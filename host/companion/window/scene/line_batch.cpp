@@ -22,7 +22,7 @@ LineBatch::LineBatch() : program_(shaders::line_vertex, shaders::line_fragment) 
     glEnableVertexAttribArray(location);
     glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Corner), reinterpret_cast<void*>(offset));
   };
-  attribute(0, 4, offsetof(Corner, place));
+  attribute(0, 4, offsetof(Corner, position));
   attribute(1, 4, offsetof(Corner, colour));
   attribute(2, 2, offsetof(Corner, across));
   glBindVertexArray(0);

@@ -30,7 +30,7 @@ class LineBatch {
     float width_pixels;
   };
   struct Corner {
-    glm::vec4 place;  // in clip space
+    glm::vec4 position;  // in clip space
     glm::vec4 colour;
     glm::vec2 across;  // distance from the center line and half of the width, in pixels
   };

@@ -99,7 +99,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
   const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
   const glm::vec4 colour = to_vector(look.palette.floor_line);
   const int count = static_cast<int>(floor_radius_m / floor_grid_m);
-  const auto place = [&](int i, int j) {
+  const auto grid_point = [&](int i, int j) {
     return glm::vec3{middle.x + static_cast<float>(i) * floor_grid_m, scene.floor_height_m,
                      middle.z + static_cast<float>(j) * floor_grid_m};
   };
@@ -112,8 +112,8 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
     for (int j = -count; j < count; j += step) {
       if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count))
         continue;
-      lines_.add(place(i, j), place(i, j + step), faded(i, j), faded(i, j + step), 1.0f);
-      lines_.add(place(j, i), place(j + step, i), faded(j, i), faded(j + step, i), 1.0f);
+      lines_.add(grid_point(i, j), grid_point(i, j + step), faded(i, j), faded(i, j + step), 1.0f);
+      lines_.add(grid_point(j, i), grid_point(j + step, i), faded(j, i), faded(j + step, i), 1.0f);
     }
   }
   lines_.draw(to_clip_, size_pixels_);

@@ -30,18 +30,18 @@ constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colour
 glm::vec2 to_glm(ImVec2 vector) { return {vector.x, vector.y}; }
 
 // Returns the rectangle around a text.
-Box plate_of(const Style& style, ImVec2 place, const std::string& content) {
+Box plate_of(const Style& style, ImVec2 position, const std::string& content) {
   const ImVec2 taken = ImGui::CalcTextSize(content.c_str());
   const float pad = style.points(5);
-  return {place.x - pad, place.y - pad * 0.5f, place.x + taken.x + pad, place.y + taken.y + pad * 0.5f};
+  return {position.x - pad, position.y - pad * 0.5f, position.x + taken.x + pad, position.y + taken.y + pad * 0.5f};
 }
 
 // Draws a label on a background, so that the label is legible in front of any picture.
-void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, const std::string& content) {
-  const Box box = plate_of(style, place, content);
+void plate(ImDrawList& list, const Style& style, ImVec2 position, Colour colour, const std::string& content) {
+  const Box box = plate_of(style, position, content);
   list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, packed(style.palette->pane.with_alpha(205)),
                      style.points(4));
-  list.AddText(place, packed(colour), content.c_str());
+  list.AddText(position, packed(colour), content.c_str());
 }
 
 }  // namespace
@@ -107,8 +107,8 @@ void ScenePane::continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm:
       glm::vec3 axis{0.0f};
       axis[wall.axis] = 1.0f;
       const float along_m = nearest_on_line(ray, to_view * handle, to_view * axis) - wall_grab_offset_m_;
-      const float place_m = dragged_wall_m(input.editor.shown(), wall.axis, wall.upper, handle[wall.axis] + along_m);
-      const device::ParameterChange change{wall_parameter(wall.axis, wall.upper), place_m};
+      const float wall_m = dragged_wall_m(input.editor.shown(), wall.axis, wall.upper, handle[wall.axis] + along_m);
+      const device::ParameterChange change{wall_parameter(wall.axis, wall.upper), wall_m};
       input.editor.edit({&change, 1}, input.now_s);
       break;
     }
@@ -194,8 +194,8 @@ void ScenePane::draw_axes(ImDrawList& list, const Style& style) const {
 
 // Records the positions of the sphere and of the wall handles for inspections.
 void ScenePane::note_handles() const {
-  const auto note_point = [](std::string_view name, ImVec2 point) { note_place(name, point, point); };
-  note_place("view", {origin_.x, origin_.y}, {origin_.x + size_.x, origin_.y + size_.y});
+  const auto note_point = [](std::string_view name, ImVec2 point) { note_area(name, point, point); };
+  note_area("view", {origin_.x, origin_.y}, {origin_.x + size_.x, origin_.y + size_.y});
   note_point("sphere", on_screen(scene_.probe_m));
   for (const WallView& wall : scene_.walls)
     note_point(protocol::info(wall_parameter(wall.axis, wall.upper)).name,
@@ -212,7 +212,7 @@ void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
   const ImVec2 corner{proxy.x - 0.5f * taken.x, proxy.y + radius + style.points(7)};
   const ImVec2 end{corner.x + taken.x, corner.y + taken.y};
   plate(list, style, corner, style.palette->text_quiet, std::string(name));
-  note_place(name, corner, end);
+  note_area(name, corner, end);
   const float around = style.points(6);
   if (drag_ == Drag::none &&
       ImGui::IsMouseHoveringRect({corner.x - around, corner.y - around}, {end.x + around, end.y + around}, false))
@@ -224,13 +224,13 @@ void ScenePane::draw_wall_handles(ImDrawList& list, const Style& style) const {
   const Palette& palette = *style.palette;
   for (int wall = 0; wall < 6; ++wall) {
     const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
-    const ImVec2 place = on_screen(wall_handle(wall));
-    list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.pane));
-    list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
+    const ImVec2 handle = on_screen(wall_handle(wall));
+    list.AddCircleFilled(handle, style.points(marked ? 5.5f : 3.5f), packed(palette.pane));
+    list.AddCircle(handle, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
                    style.points(1.5f));
     if (!marked) continue;
     const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
-    plate(list, style, {place.x + style.points(12), place.y - style.points(8)}, palette.text,
+    plate(list, style, {handle.x + style.points(12), handle.y - style.points(8)}, palette.text,
           fmt::format("{} {} {:.0f} mm", axis_names[static_cast<std::size_t>(view.axis)],
                       view.upper ? "maximum" : "minimum", 1000.0f * wall_handle(wall)[view.axis]));
   }
@@ -257,12 +257,12 @@ void ScenePane::draw_hand_label(ImDrawList& list, const Style& style, const Box&
   const float pull_N = static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
   if (pull_N <= 0.25f) return;
   // The label is on the side opposite to the sphere.
-  const ImVec2 place = on_screen(hand_view_->target_m);
+  const ImVec2 target = on_screen(hand_view_->target_m);
   const std::string label = fmt::format("hand {:.1f} N", pull_N);
-  const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
+  const bool to_the_left = target.x < on_screen(scene_.probe_m).x;
   const float left =
-      to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
-  ImVec2 corner{left, place.y - style.points(22)};
+      to_the_left ? target.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : target.x + style.points(16);
+  ImVec2 corner{left, target.y - style.points(22)};
   if (const Box box = plate_of(style, corner, label); !common(box, force_plate).is_empty())
     corner.y -= box.bottom - force_plate.top + style.points(2);
   plate(list, style, corner, style.palette->text_quiet, label);
@@ -371,8 +371,8 @@ void ScenePane::draw_replay_frame(const Style& style) const {
   ImGui::PopFont();
 }
 
-bool ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
-  origin_ = to_glm(place);
+bool ScenePane::draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input) {
+  origin_ = to_glm(origin);
   size_ = glm::max(to_glm(size), glm::vec2{1.0f});
   scene_ = build_scene(input.pose, input.editor.shown());
   const auto target_m = input.hand == nullptr ? std::nullopt : input.hand->target_m();
@@ -384,7 +384,7 @@ bool ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
     camera_ = look_at_box(glm::min(a, b), glm::max(a, b));
     view_is_to_be_reset_ = false;
   }
-  begin_pane("scene", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("scene", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   handle_mouse(input);
   handle_keys(input);
   note_handles();

@@ -36,7 +36,7 @@ class ScenePane {
 
   /// Handles the mouse and draws the labels in front of the picture of draw_scene(). Returns true if the user switches
   /// the force on.
-  bool draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
+  bool draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(const Viewport& viewport, SceneLook look) const;
   /// Adds the state of mouse and simulated hand to the digest.
   void add_to(PictureDigest& digest) const;

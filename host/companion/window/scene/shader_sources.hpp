@@ -71,28 +71,28 @@ uniform vec4 base_colour;
 out vec4 colour;
 void main() { colour = base_colour; })";
 
-/// Draws a rectangle from a corner and two edges. `place` is the position along the edges, in meters.
+/// Draws a rectangle from a corner and two edges. `position_m` is the position along the edges, in meters.
 inline constexpr char wall_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
 uniform vec3 edge_v;
 uniform mat4 to_clip;
-out vec2 place;
+out vec2 position_m;
 void main() {
   vec2 part = vec2(gl_VertexID & 1, gl_VertexID >> 1);
-  place = part * vec2(length(edge_u), length(edge_v));
+  position_m = part * vec2(length(edge_u), length(edge_v));
   gl_Position = to_clip * vec4(corner + part.x * edge_u + part.y * edge_v, 1.0);
 })";
 
 /// Draws the surface of a wall, including a glow around the contact point.
 inline constexpr char wall_fragment[] = R"(#version 330 core
-in vec2 place;
+in vec2 position_m;
 uniform vec4 base_colour;
 uniform vec2 contact;
 uniform float glow;
 out vec4 colour;
 void main() {
-  vec2 offset = place - contact;
+  vec2 offset = position_m - contact;
   float near = 1.0 / (1.0 + dot(offset, offset) * 2600.0);
   colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
@@ -100,7 +100,7 @@ void main() {
 /// Draws lines as bands. The vertices are in clip space. The distance across a band is in pixels and is therefore
 /// interpolated without perspective correction.
 inline constexpr char line_vertex[] = R"(#version 330 core
-layout(location = 0) in vec4 place;
+layout(location = 0) in vec4 position;
 layout(location = 1) in vec4 end_colour;
 layout(location = 2) in vec2 across;
 noperspective out vec2 from_middle;
@@ -108,7 +108,7 @@ out vec4 line_colour;
 void main() {
   from_middle = across;
   line_colour = end_colour;
-  gl_Position = place;
+  gl_Position = position;
 })";
 
 inline constexpr char line_fragment[] = R"(#version 330 core

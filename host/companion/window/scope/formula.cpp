@@ -147,9 +147,9 @@ std::string refusal_of(const Formula& formula) {
     const std::vector<float> ones(values.inputs().size(), 1.0f);
     values.next(ones);
     mu::Parser counted;
-    std::vector<double> places(ones.size(), 1.0);
-    for (std::size_t i = 0; i < places.size(); ++i)
-      counted.DefineVar(std::string(info(values.inputs()[i]).name), &places[i]);
+    std::vector<double> variables(ones.size(), 1.0);
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      counted.DefineVar(std::string(info(values.inputs()[i]).name), &variables[i]);
     counted.SetExpr(formula.text);
     counted.Eval();
     if (counted.GetNumResults() > 1) return "Use a decimal point instead of a comma.";

@@ -133,22 +133,22 @@ Colour laid_over_colour(const Style& style, std::size_t index) {
   return line_colour(style, index).with_alpha(paler);
 }
 
-void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFrame& frame) {
+void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const ScopeFrame& frame) {
   const Style& style = frame.style;
   ImFont* font = style.fonts.caption;
   const ImU32 quiet = packed(style.palette->text_quiet);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string unit = common_unit(plot);
-  list.AddText(font, font->FontSize, {place.x + style.points(2), place.y}, quiet, unit.c_str());
+  list.AddText(font, font->FontSize, {origin.x + style.points(2), origin.y}, quiet, unit.c_str());
   const float room = width - width_of(unit, style) - style.points(8);
   const std::vector<std::string> labels = LegendLabels(plot, frame, room).labels();
 
-  const float middle = place.y + 0.5f * font->FontSize + style.points(1);
-  float right = place.x + width;
+  const float middle = origin.y + 0.5f * font->FontSize + style.points(1);
+  float right = origin.x + width;
   for (std::size_t i = labels.size(); i-- > 0;) {
     right -= width_of(labels[i], style);
-    if (right < place.x + style.points(label_margin_points)) break;
-    list.AddText(font, font->FontSize, {right, place.y}, quiet, labels[i].c_str());
+    if (right < origin.x + style.points(label_margin_points)) break;
+    list.AddText(font, font->FontSize, {right, origin.y}, quiet, labels[i].c_str());
     note_text(labels[i]);
     right -= style.points(14);
     list.AddRectFilled({right, middle - style.points(1.5f)}, {right + style.points(9), middle + style.points(1.5f)},

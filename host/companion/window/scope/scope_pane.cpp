@@ -53,9 +53,9 @@ std::vector<protocol::Signal> ScopePane::signals() const {
   return result;
 }
 
-void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
+void ScopePane::draw(ImVec2 origin, ImVec2 size, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
-  begin_pane("scope", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("scope", origin, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   take_keys();
   draw_controls(style);
@@ -96,7 +96,7 @@ void ScopePane::follow_layout() {
 void ScopePane::draw_plots(ScopeFrame& frame) {
   // A small pane shows only as many rows as are legible, and the user can scroll.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
-  const ImVec2 place = ImGui::GetCursorScreenPos();
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 gap{frame.style.points(12), frame.style.points(6)};
   const auto count = static_cast<int>(views_.size());
@@ -112,20 +112,20 @@ void ScopePane::draw_plots(ScopeFrame& frame) {
   const float height = (room.y - gap.y * (rows_in_sight - 1.0f)) / rows_in_sight;
   std::optional<int> removed;
   for (int i = 0; i < count; ++i) {
-    const ImVec2 corner{place.x + static_cast<float>(i % columns) * (width + gap.x),
-                        place.y + static_cast<float>(i / columns) * (height + gap.y)};
+    const ImVec2 corner{origin.x + static_cast<float>(i % columns) * (width + gap.x),
+                        origin.y + static_cast<float>(i / columns) * (height + gap.y)};
     if (draw_plot(static_cast<std::size_t>(i), corner, {width, height}, frame)) removed = i;
   }
   if (removed) layout_.plots.erase(layout_.plots.begin() + *removed);
   ImGui::EndChild();
 }
 
-bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame) {
+bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, ScopeFrame& frame) {
   const Style& style = frame.style;
   PlotView& view = *views_[index];
   ScopePlot& plot = layout_.plots[index];
   ImGui::PushID(static_cast<int>(index));
-  ImGui::SetCursorScreenPos({place.x, place.y - style.points(1)});
+  ImGui::SetCursorScreenPos({origin.x, origin.y - style.points(1)});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
@@ -138,12 +138,12 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   const float title_width = ImGui::GetItemRectSize().x;
   help_on_hover("", "Click to choose the signals and the plot type.", style);
   const bool is_to_be_removed = draw_plot_menu(plot, layout_.formulas, layout_.plots.size() > 1, style);
-  draw_legend(view.plot(), {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
+  draw_legend(view.plot(), {origin.x + title_width, origin.y + style.points(4)}, size.x - title_width - style.points(6),
               frame);
 
   const float header = style.points(header_points) + view.numbers_height(frame);
-  const PlotArea area{{place.x + style.points(y_axis_points), place.y + header},
-                      {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)},
+  const PlotArea area{{origin.x + style.points(y_axis_points), origin.y + header},
+                      {origin.x + size.x - style.points(6), origin.y + size.y - style.points(x_axis_points)},
                       {0, 1},
                       {0, 1}};
   if (area.width() > style.points(40) && area.height() > style.points(24)) {

@@ -23,7 +23,7 @@ class ScopePane {
   explicit ScopePane(const ScopeSettings& settings);
   ~ScopePane();
 
-  void draw(ImVec2 place, ImVec2 size, const Style& style);
+  void draw(ImVec2 origin, ImVec2 size, const Style& style);
   /// Adds samples from the device or a recording. A paused scope discards received samples. `over`: samples of an
   /// overlaid recording for the same periods; null: no overlay.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
@@ -51,7 +51,7 @@ class ScopePane {
   void take_dropped_signal(ScopePlot& plot);
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
   /// Returns true if the user removes the plot.
-  bool draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame);
+  bool draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, ScopeFrame& frame);
 
   Timeline timeline_;
   ScopeLayout layout_;

@@ -36,9 +36,9 @@ void Timeline::pause(bool paused) {
 }
 
 void Timeline::set_trigger(const TriggerSettings& settings) {
-  TriggerSettings same_place = settings;
-  same_place.pre_trigger = trigger_settings_.pre_trigger;  // a change of pre_trigger does not need a new event
-  if (same_place != trigger_settings_) trigger_.arm();
+  TriggerSettings same_position = settings;
+  same_position.pre_trigger = trigger_settings_.pre_trigger;  // a change of pre_trigger does not need a new event
+  if (same_position != trigger_settings_) trigger_.arm();
   trigger_settings_ = settings;
 }
 

@@ -47,8 +47,8 @@ TEST_CASE("shapes keep their places, those that are not there have no life, and 
   control::Shapes shapes;
   REQUIRE(link::decode_shapes(
       std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count)), shapes));
-  for (std::size_t place = 0; place < protocol::shape_planes_maximum; ++place)
-    CHECK((shapes.life_periods[1 + place] != 0) == (place == 0 || place == 5));
+  for (std::size_t index = 0; index < protocol::shape_planes_maximum; ++index)
+    CHECK((shapes.life_periods[1 + index] != 0) == (index == 0 || index == 5));
   CHECK(shapes.planes[5].normal == control::Vector3{0, -1, 0});
   CHECK(shapes.planes[5].offset_m == doctest::Approx(-0.02f));
   CHECK(shapes.life_periods[0] != 0);

@@ -114,14 +114,14 @@ TEST_CASE("the pose at a position is what the device reported then") {
   const auto pose = replay.pose();
   REQUIRE(pose);
   CHECK(pose->time_periods == 2400);
-  const auto place = [](Signal signal) {
+  const auto fraction_of = [](Signal signal) {
     const auto signals = standard_signals();
     return 0.001f * static_cast<float>(std::find(signals.begin(), signals.end(), signal) - signals.begin());
   };
-  CHECK(pose->joint_rad[1] == 2400.0f + place(Signal::joint_2_rad));
-  CHECK(pose->position_m[2] == 2400.0f + place(Signal::position_z_m));
-  CHECK(pose->force_N[0] == 2400.0f + place(Signal::force_x_N));
-  CHECK(pose->gimbal_rad[2] == 2400.0f + place(Signal::gimbal_3_rad));
+  CHECK(pose->joint_rad[1] == 2400.0f + fraction_of(Signal::joint_2_rad));
+  CHECK(pose->position_m[2] == 2400.0f + fraction_of(Signal::position_z_m));
+  CHECK(pose->force_N[0] == 2400.0f + fraction_of(Signal::force_x_N));
+  CHECK(pose->gimbal_rad[2] == 2400.0f + fraction_of(Signal::gimbal_3_rad));
   CHECK(pose->state == protocol::State::active);
   CHECK(int{pose->is_referenced} == 1);
 

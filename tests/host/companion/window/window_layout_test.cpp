@@ -13,7 +13,7 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
   const auto apart = [](float a_begin, float a_size, float b_begin, float b_size) {
     return a_begin + a_size <= b_begin + 0.01f || b_begin + b_size <= a_begin + 0.01f;
   };
-  return !apart(a.place.x, a.size.x, b.place.x, b.size.x) && !apart(a.place.y, a.size.y, b.place.y, b.size.y);
+  return !apart(a.origin.x, a.size.x, b.origin.x, b.size.x) && !apart(a.origin.y, a.size.y, b.origin.y, b.size.y);
 }
 
 }  // namespace
@@ -33,8 +33,8 @@ TEST_CASE("no part of the window overlaps another one or leaves the window") {
           const std::array parts{layout.status, layout.banner, layout.scene,
                                  layout.replay, layout.scope,  layout.column};
           for (std::size_t i = 0; i < parts.size(); ++i) {
-            CHECK(parts[i].place.x + parts[i].size.x <= window.x + 0.5f);
-            CHECK(parts[i].place.y + parts[i].size.y <= window.y + 0.5f);
+            CHECK(parts[i].origin.x + parts[i].size.x <= window.x + 0.5f);
+            CHECK(parts[i].origin.y + parts[i].size.y <= window.y + 0.5f);
             for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(parts[i], parts[j]));
           }
           CHECK(layout.scope.size.y >= 0.99f * WindowSettings::scope_height_minimum * scale - 6 * scale);
@@ -46,11 +46,11 @@ TEST_CASE("a banner for which there is no room yet lies over the scene, which st
   const WindowSettings settings;
   const auto before = layout_of({1280, 800}, {46, 0, 0, 0}, settings, 1.0f);
   const auto with_banner = layout_of({1280, 800}, {46, 60, 0, 0}, settings, 1.0f);
-  CHECK(with_banner.scene.place.y == before.scene.place.y);
+  CHECK(with_banner.scene.origin.y == before.scene.origin.y);
   CHECK(with_banner.scene.size.y == before.scene.size.y);
-  CHECK(with_banner.banner.place.y == 46);
+  CHECK(with_banner.banner.origin.y == 46);
   CHECK(with_banner.banner.size.y == 60);
-  CHECK(layout_of({1280, 800}, {46, 0, 60, 0}, settings, 1.0f).scene.place.y == before.scene.place.y + 60);
+  CHECK(layout_of({1280, 800}, {46, 0, 60, 0}, settings, 1.0f).scene.origin.y == before.scene.origin.y + 60);
 }
 
 TEST_CASE("a higher window gives scene and scope more in proportion") {
@@ -72,7 +72,7 @@ TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
   const auto before = layout_of(window, needs, settings, 1.0f);
   drag_scope_splitter(20, before, 1.0f, settings);
   const auto after = layout_of(window, needs, settings, 1.0f);
-  CHECK(after.scope.place.y - before.scope.place.y == doctest::Approx(20).epsilon(0.06));
+  CHECK(after.scope.origin.y - before.scope.origin.y == doctest::Approx(20).epsilon(0.06));
 }
 
 TEST_CASE("a window that is small for a while leaves the parts as they were") {

@@ -8,7 +8,7 @@ using namespace inkwell::window;
 
 TEST_CASE("items stand in one row where they fit, and wrap into whole rows where they do not") {
   const std::vector<float> widths{200, 100, 100, 100};
-  for (const FlowPlace& place : flow(widths, 530, 900, 10)) CHECK(place.row == 0);
+  for (const FlowPosition& position : flow(widths, 530, 900, 10)) CHECK(position.row == 0);
   CHECK(flow(widths, 530, 900, 10).back().x == 430);
 
   const auto two_rows = flow(widths, 529, 900, 10);

@@ -47,14 +47,14 @@ TEST_CASE("until the arm has been in the inkwell it is drawn there") {
 
 TEST_CASE("in a fault the arm is drawn where it is as long as that is known, whatever the fault") {
   const auto parameters = protocol::default_parameters();
-  const glm::vec3 place_m = window::build_scene(middle_pose(protocol::State::ready), parameters).probe_m;
+  const glm::vec3 expected_m = window::build_scene(middle_pose(protocol::State::ready), parameters).probe_m;
   auto pose = middle_pose(protocol::State::fault);
   pose.fault = protocol::Fault::supply_low;
   SceneModel scene = window::build_scene(pose, parameters);
   CHECK(glm::length(scene.probe_m - scene.inkwell_m) < 1e-6f);
   pose.is_referenced = true;
   scene = window::build_scene(pose, parameters);
-  CHECK(glm::length(scene.probe_m - place_m) < 1e-6f);
+  CHECK(glm::length(scene.probe_m - expected_m) < 1e-6f);
   CHECK(glm::length(scene.probe_m - scene.inkwell_m) > 0.02f);
 }
 

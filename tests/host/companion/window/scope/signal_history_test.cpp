@@ -42,10 +42,10 @@ TEST_CASE("the extremes of random stretches are those of their samples") {
   // The samples exceed twice the capacity, so that every level is overwritten.
   for (int i = 0; i < 10'000; ++i) series.append(i % 997 == 0 ? std::nanf("") : noise(random));
   CHECK(series.begin() == 10'000 - 4096);
-  std::uniform_int_distribution<std::uint64_t> place(5000, 10'100);
+  std::uniform_int_distribution<std::uint64_t> index(5000, 10'100);
   for (int i = 0; i < 500; ++i) {
-    const std::uint64_t a = place(random);
-    const std::uint64_t b = place(random);
+    const std::uint64_t a = index(random);
+    const std::uint64_t b = index(random);
     CAPTURE(a);
     CAPTURE(b);
     CHECK(equal(series.extremes(std::min(a, b), std::max(a, b)),
