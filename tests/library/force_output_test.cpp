@@ -43,7 +43,7 @@ TEST_CASE("who reads the poses asks for the driver without waiting for the reque
     may_answer.acquire();
   };
   device::Device device(std::make_unique<QueuedTransport>(reports));
-  std::thread asks([&] { CHECK_THROWS_AS(device.frame(), device::Error); });
+  std::thread asks([&] { CHECK_THROWS_AS(device.bus_frame(), device::Error); });
   is_asked.acquire();
   std::optional<device::Driver> driver;
   CHECK_FALSE(device.try_driver(driver));

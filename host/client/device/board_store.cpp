@@ -18,9 +18,9 @@ constexpr std::string_view was_not_forgotten = "The stored parameters were not e
 bool is_carried_out(StoreResult result) { return result == StoreResult::done || result == StoreResult::nothing_stored; }
 
 std::int64_t board_periods(Device& device) {
-  const auto frame = device.frame();
-  if (!frame) throw Error("The board receives no bus frames, so its time is unknown. Reconnect the board.");
-  return frame->time_periods;
+  const auto bus_frame = device.bus_frame();
+  if (!bus_frame) throw Error("The board receives no bus frames, so its time is unknown. Reconnect the board.");
+  return bus_frame->time_periods;
 }
 
 /// The command counter distinguishes the result of this command from the previous result.

@@ -13,7 +13,7 @@ class BusClock {
   explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
 
   /// Call this regularly with the newest bus frame, for instance once per second.
-  void note(const BusFrame& frame);
+  void note(const BusFrame& bus_frame);
 
   /// Time of a control period, measured with the bus frames, in seconds since the start of the bus. None before the
   /// first frame. Before the second frame the nominal rate is used.
@@ -29,7 +29,7 @@ class BusClock {
 
   double cycles_per_period_;
   std::optional<Moment> oldest_, newest_;
-  double periods_per_frame_ = static_cast<double>(protocol::servo_rate_Hz) / protocol::pose_rate_Hz;
+  double periods_per_bus_frame_ = static_cast<double>(protocol::servo_rate_Hz) / protocol::pose_rate_Hz;
 };
 
 }  // namespace inkwell::device

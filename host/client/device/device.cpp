@@ -498,8 +498,8 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
   // If the board reports no bus frame, no program has read samples since the start of the board.
-  if (const auto frame = device->frame())
-    device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(frame->time_periods));
+  if (const auto bus_frame = device->bus_frame())
+    device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(bus_frame->time_periods));
   return device;
 }
 
@@ -602,7 +602,7 @@ void Device::take_link_of(Device& opened) {
   before = std::exchange(self.link, std::move(other.link));
 }
 
-std::optional<BusFrame> Device::frame() {
+std::optional<BusFrame> Device::bus_frame() {
   const std::lock_guard lock(implementation_->feature_mutex);
   protocol::FrameReport report{};
   report.report_id = ReportId::frame;
@@ -800,14 +800,14 @@ protocol::SelfTestReport Device::self_test() {
 }
 
 std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout) {
-  std::array<std::byte, protocol::scope_frame_maximum> frame;
+  std::array<std::byte, protocol::scope_frame_maximum> scope_frame;
   const auto deadline = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-    const std::size_t length = implementation_->transport()->read_bulk(frame, std::max(left, 0ms));
+    const std::size_t length = implementation_->transport()->read_bulk(scope_frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);
-    auto samples = implementation_->decoder.decode(std::span(frame).first(length));
+    auto samples = implementation_->decoder.decode(std::span(scope_frame).first(length));
     if (!samples) continue;
     samples->first_period = implementation_->time_periods.nearest(static_cast<std::uint32_t>(samples->first_period));
     return samples;

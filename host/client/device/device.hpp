@@ -86,7 +86,7 @@ class Device {
   /// For a device of another protocol version, only the members before the table hashes are valid; the rest is 0.
   Information information();
   /// The start of the newest bus frame; none while no bus frames arrive.
-  std::optional<BusFrame> frame();
+  std::optional<BusFrame> bus_frame();
 
   /// Continues the board time of an earlier connection whose newest pose was at `before_periods`, unless the board has
   /// restarted since then.

@@ -93,13 +93,13 @@ std::uint64_t ScopeDecoder::lost_before(const protocol::ScopeFrameHeader& header
   return header.first_period - *next_period_;  // unsigned: valid across the wrap of the period counter
 }
 
-std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> frame) {
+std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> scope_frame) {
   protocol::ScopeFrameHeader header;
-  if (frame.size() > protocol::scope_frame_maximum) return refuse();
-  if (frame.size() < sizeof header) return refuse_all_but_a_rest();
-  std::memcpy(&header, frame.data(), sizeof header);
+  if (scope_frame.size() > protocol::scope_frame_maximum) return refuse();
+  if (scope_frame.size() < sizeof header) return refuse_all_but_a_rest();
+  std::memcpy(&header, scope_frame.data(), sizeof header);
   if (header.magic != protocol::scope_magic) return refuse_all_but_a_rest();
-  if (header.length != frame.size()) return refuse();
+  if (header.length != scope_frame.size()) return refuse();
   if (token_ != header.selection_token) return std::nullopt;
   if (first_wanted_period_ && is_before(header.first_period, *first_wanted_period_)) return std::nullopt;
   may_begin_with_rest_ = false;
@@ -117,7 +117,7 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
 
   ScopeSamples samples{signals_, header.first_period, header.sample_count, {}, lost_before(header)};
   samples.values.reserve(samples.count * signals_.size());
-  Reader reader(frame.subspan(sizeof header));
+  Reader reader(scope_frame.subspan(sizeof header));
   if (header.encoding == protocol::ScopeEncoding::full)
     read_full(reader, samples);
   else if (!read_changes(reader, samples))

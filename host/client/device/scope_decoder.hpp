@@ -46,7 +46,7 @@ class ScopeDecoder {
   /// A program that releases the scope cancels its transfers, possibly in the middle of a frame. The device sends the
   /// rest of the frame to the next reader. Therefore, the first transfer after a stop of the scope may lack a header
   /// and is not counted as malformed.
-  std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
+  std::optional<ScopeSamples> decode(std::span<const std::byte> scope_frame);
 
   std::uint64_t malformed_frames() const { return malformed_frames_; }
 

@@ -104,7 +104,7 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
     const std::int64_t passed = pose.time_periods - *first_period;
     if (watch_options.seconds > 0 && device::board_time_s(passed) >= watch_options.seconds) return 0;
     if (!clock_read_at || pose.time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
-      if (const auto frame = connection.device->frame()) {
+      if (const auto frame = connection.device->bus_frame()) {
         clock.note(*frame);
         clock_read_at = pose.time_periods;
       }

@@ -296,7 +296,7 @@ void Bench::fidget() {
   if (random.chance(0.03)) board.control().buttons(random.chance(0.5), random.chance(0.5));
   if (random.chance(0.03)) board.control().gimbal({random.from(-2, 2), random.from(-0.4, 1.5), random.from(-2, 2)});
   if (random.chance(0.01)) board.device().information();
-  if (random.chance(0.01)) board.device().frame();
+  if (random.chance(0.01)) board.device().bus_frame();
   if (random.chance(0.01)) check_parameters();
 }
 

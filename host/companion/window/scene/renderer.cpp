@@ -20,7 +20,7 @@ struct WallPicture {
   int u, v;            // axes along the wall
   glm::vec3 corner_m;  // in workspace axes
   glm::vec4 colour;    // without alpha
-  float frame_alpha, grid_alpha, face_alpha;
+  float border_alpha, grid_alpha, face_alpha;
 };
 
 /// Returns the pictures of the walls in the order in which they are drawn.
@@ -36,7 +36,7 @@ std::vector<WallPicture> wall_pictures(const SceneModel& scene, const Camera& ca
     const bool is_marked = look.marked_wall == static_cast<int>(i);
     const bool touched = wall.pushes_back;
     picture.colour = to_vector(touched ? scene_colours::wall_touched : scene_colours::wall_idle);
-    picture.frame_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
+    picture.border_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
     picture.grid_alpha = touched ? (is_near ? 0.25f : 0.45f) : is_near ? 0.0f : 0.20f;
     picture.face_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
     pictures.push_back(picture);
@@ -142,7 +142,7 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
   glBindVertexArray(no_vertices_);
   for (const WallPicture& picture : wall_pictures(scene, camera, look)) {
     // Clang 14 cannot capture structured bindings in lambdas.
-    const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, face_alpha] = picture;
+    const auto [wall, u, v, corner_m, colour, border_alpha, grid_alpha, face_alpha] = picture;
     glm::vec3 edge_u{0.0f};
     glm::vec3 edge_v{0.0f};
     edge_u[u] = extent[u];
@@ -173,10 +173,10 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
       grid(v, edge_u);
     }
     const float width = wall->pushes_back ? 2.2f : 1.4f;
-    add(corner_m, corner_m + edge_u, frame_alpha, width);
-    add(corner_m + edge_u, corner_m + edge_u + edge_v, frame_alpha, width);
-    add(corner_m + edge_u + edge_v, corner_m + edge_v, frame_alpha, width);
-    add(corner_m + edge_v, corner_m, frame_alpha, width);
+    add(corner_m, corner_m + edge_u, border_alpha, width);
+    add(corner_m + edge_u, corner_m + edge_u + edge_v, border_alpha, width);
+    add(corner_m + edge_u + edge_v, corner_m + edge_v, border_alpha, width);
+    add(corner_m + edge_v, corner_m, border_alpha, width);
   }
   lines_.draw(to_clip_, size_pixels_);
 }

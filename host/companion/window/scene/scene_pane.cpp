@@ -351,7 +351,7 @@ bool ScenePane::draw_force_offer(const ScenePaneInput& input) const {
   return coloured_button("Switch force on", palette.accent, palette.pane, {button_width, 0});
 }
 
-void ScenePane::draw_replay_frame(const Style& style) const {
+void ScenePane::draw_replay_border(const Style& style) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 colour = packed(style.palette->caution);
   const float line = style.points(3);
@@ -391,7 +391,7 @@ bool ScenePane::draw(ImVec2 origin, ImVec2 size, const ScenePaneInput& input) {
   draw_labels(input);
   draw_tools(input);
   const bool asks_for_force = draw_force_offer(input);
-  if (input.is_replay) draw_replay_frame(input.style);
+  if (input.is_replay) draw_replay_border(input.style);
   end_pane();
   return asks_for_force;
 }

@@ -65,7 +65,7 @@ class ScenePane {
   void draw_tools(const ScenePaneInput& input);
   /// Draws the button that switches the force on. Returns true if the button was pressed.
   bool draw_force_offer(const ScenePaneInput& input) const;
-  void draw_replay_frame(const Style& style) const;
+  void draw_replay_border(const Style& style) const;
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
 
   std::unique_ptr<Renderer> renderer_;

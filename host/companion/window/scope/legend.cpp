@@ -52,7 +52,7 @@ bool are_different(std::vector<std::string> words) {
 /// Labels of a legend, shortened to the available width.
 class LegendLabels {
  public:
-  LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room)
+  LegendLabels(const ScopePlot& plot, const PlotFrame& frame, float room)
       : plot_(plot), frame_(frame), room_(room), names_(names_on_y_axis(plot)) {
     if (fits(names_)) return;
     // In a narrow plot, each label is only the last word of the name.
@@ -93,7 +93,7 @@ class LegendLabels {
   }
 
   const ScopePlot& plot_;
-  const ScopeFrame& frame_;
+  const PlotFrame& frame_;
   float room_;
   std::vector<std::string> names_;
 };
@@ -133,7 +133,7 @@ Colour laid_over_colour(const Style& style, std::size_t index) {
   return line_colour(style, index).with_alpha(paler);
 }
 
-void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const ScopeFrame& frame) {
+void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const PlotFrame& frame) {
   const Style& style = frame.style;
   ImFont* font = style.fonts.caption;
   const ImU32 quiet = packed(style.palette->text_quiet);

@@ -27,6 +27,6 @@ Colour laid_over_colour(const Style& style, std::size_t index);
 float legend_width(const ScopePlot& plot, const Style& style);
 
 /// Draws the legend above a plot, shortened to `width`.
-void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const ScopeFrame& frame);
+void draw_legend(const ScopePlot& plot, ImVec2 origin, float width, const PlotFrame& frame);
 
 }  // namespace inkwell::window

@@ -14,7 +14,7 @@
 namespace inkwell::window {
 
 /// Data of a frame for all plots of the scope.
-struct ScopeFrame {
+struct PlotFrame {
   const Style& style;
   Timeline& timeline;  ///< the mouse moves its displayed section
   Stretch stretch;     ///< displayed section
@@ -35,9 +35,9 @@ class PlotView {
   const ScopePlot& plot() const { return plot_; }
 
   /// Returns the height of the statistics above the plot.
-  virtual float numbers_height(const ScopeFrame&) const { return 0.0f; }
+  virtual float numbers_height(const PlotFrame&) const { return 0.0f; }
   /// Draws the plot into the area and determines the axis ranges. The last ImGui item must cover the area.
-  virtual void draw(PlotArea area, ScopeFrame& frame) = 0;
+  virtual void draw(PlotArea area, PlotFrame& frame) = 0;
 
  protected:
   const ScopePlot plot_;

@@ -62,7 +62,7 @@ void ScopePane::draw(ImVec2 origin, ImVec2 size, const Style& style) {
   signal_list_->draw(layout_, style);
   follow_layout();
   timeline_.derive(shown_formulas(layout_));
-  ScopeFrame frame{style, timeline_, timeline_.stretch(), *cursors_, with_statistics_, judged_end_, has_motion_};
+  PlotFrame frame{style, timeline_, timeline_.stretch(), *cursors_, with_statistics_, judged_end_, has_motion_};
   draw_plots(frame);
   judged_end_ = timeline_.history().end();
   end_pane();
@@ -93,7 +93,7 @@ void ScopePane::follow_layout() {
   }
 }
 
-void ScopePane::draw_plots(ScopeFrame& frame) {
+void ScopePane::draw_plots(PlotFrame& frame) {
   // A small pane shows only as many rows as are legible, and the user can scroll.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
   const ImVec2 origin = ImGui::GetCursorScreenPos();
@@ -120,7 +120,7 @@ void ScopePane::draw_plots(ScopeFrame& frame) {
   ImGui::EndChild();
 }
 
-bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, ScopeFrame& frame) {
+bool ScopePane::draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFrame& frame) {
   const Style& style = frame.style;
   PlotView& view = *views_[index];
   ScopePlot& plot = layout_.plots[index];

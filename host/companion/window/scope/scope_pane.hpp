@@ -16,7 +16,7 @@ class LayoutMenu;
 class SignalList;
 class PlotView;
 struct PlotArea;
-struct ScopeFrame;
+struct PlotFrame;
 
 class ScopePane {
  public:
@@ -46,12 +46,12 @@ class ScopePane {
   /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
   void take_keys();
   void draw_controls(const Style& style);
-  void draw_plots(ScopeFrame& frame);
+  void draw_plots(PlotFrame& frame);
   /// Adds a signal that the user drops onto the plot.
   void take_dropped_signal(ScopePlot& plot);
   void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
   /// Returns true if the user removes the plot.
-  bool draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, ScopeFrame& frame);
+  bool draw_plot(std::size_t index, ImVec2 origin, ImVec2 size, PlotFrame& frame);
 
   Timeline timeline_;
   ScopeLayout layout_;

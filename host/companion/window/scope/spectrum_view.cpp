@@ -24,7 +24,7 @@ class SpectrumView final : public PlotView {
  public:
   using PlotView::PlotView;
 
-  void draw(PlotArea area, ScopeFrame& frame) override {
+  void draw(PlotArea area, PlotFrame& frame) override {
     compute(frame);
     const double top_dB = decibels(largest_amplitude());
     area.x = {lowest_decade_of_frequency, std::log10(0.5 * sampled_at_Hz)};
@@ -36,7 +36,7 @@ class SpectrumView final : public PlotView {
   }
 
  private:
-  void compute(const ScopeFrame& frame) {
+  void compute(const PlotFrame& frame) {
     const double now_s = ImGui::GetTime();
     if (now_s - computed_at_s_ <= computed_every_s || frame.stretch.last <= 0.0) return;
     computed_at_s_ = now_s;

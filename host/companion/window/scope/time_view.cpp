@@ -25,12 +25,12 @@ class TimeView final : public PlotView {
  public:
   explicit TimeView(const ScopePlot& plot) : PlotView(plot), y_(extent_around_zero(common_unit(plot))) {}
 
-  float numbers_height(const ScopeFrame& frame) const override {
+  float numbers_height(const PlotFrame& frame) const override {
     if (!frame.with_statistics) return 0.0f;
     return frame.style.points(statistics_line_points) * static_cast<float>(plot_.signals.size());
   }
 
-  void draw(PlotArea area, ScopeFrame& frame) override {
+  void draw(PlotArea area, PlotFrame& frame) override {
     const auto& [first, last, zero] = frame.stretch;
     const Extremes all = extremes(frame);
     area.x = {(first - zero) / rate_Hz, (last - zero) / rate_Hz};
@@ -52,7 +52,7 @@ class TimeView final : public PlotView {
   }
 
  private:
-  Extremes extremes(const ScopeFrame& frame) const {
+  Extremes extremes(const PlotFrame& frame) const {
     Extremes all{std::nanf(""), std::nanf("")};
     if (frame.stretch.last <= 0.0) return all;
     const SignalHistory& history = frame.timeline.history();
@@ -65,7 +65,7 @@ class TimeView final : public PlotView {
     return all;
   }
 
-  void judge_motion(const PlotArea& area, ScopeFrame& frame) const {
+  void judge_motion(const PlotArea& area, PlotFrame& frame) const {
     const std::uint64_t end = frame.judged_end;
     if (frame.timeline.is_paused() || end == 0) return;
     const auto remembered = static_cast<std::uint64_t>(std::max(frame.timeline.span_s(), range_remembered_s) * rate_Hz);
@@ -78,7 +78,7 @@ class TimeView final : public PlotView {
     }
   }
 
-  void draw_trigger_level(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame) const {
+  void draw_trigger_level(ImDrawList& list, const PlotArea& area, const PlotFrame& frame) const {
     const TriggerSettings& trigger = frame.timeline.trigger();
     if (!frame.timeline.is_triggered() ||
         std::ranges::find(plot_.signals, ScopeSignal(trigger.signal)) == plot_.signals.end())
@@ -90,7 +90,7 @@ class TimeView final : public PlotView {
   }
 
   // The wheel zooms, a drag moves into the past, and a double click returns to the newest samples.
-  static void take_mouse(const PlotArea& area, ScopeFrame& frame) {
+  static void take_mouse(const PlotArea& area, PlotFrame& frame) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
       frame.timeline.zoom(static_cast<double>(io.MouseWheel),
@@ -101,7 +101,7 @@ class TimeView final : public PlotView {
   }
 
   // Draws the statistics above the plot.
-  void draw_statistics(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame) {
+  void draw_statistics(ImDrawList& list, const PlotArea& area, const PlotFrame& frame) {
     if (const double now_s = ImGui::GetTime(); now_s - computed_at_s_ > computed_every_s) {
       computed_at_s_ = now_s;
       statistics_.clear();

@@ -23,7 +23,7 @@ class XyView final : public PlotView {
         x_(extent_around_zero(plot.signals.front().unit())),
         y_(extent_around_zero(common_unit(plot))) {}
 
-  void draw(PlotArea area, ScopeFrame& frame) override {
+  void draw(PlotArea area, PlotFrame& frame) override {
     const SignalHistory& history = frame.timeline.history();
     const std::uint64_t first = std::max(frame.stretch.first_index(), history.begin());
     const std::uint64_t last = std::min(frame.stretch.last_index(), history.end());
@@ -36,7 +36,7 @@ class XyView final : public PlotView {
 
  private:
   /// Draws the signals of a source. `over`: the overlaid recording, in paler colors.
-  void draw_lane(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame, bool over, std::uint64_t first,
+  void draw_lane(ImDrawList& list, const PlotArea& area, const PlotFrame& frame, bool over, std::uint64_t first,
                  std::uint64_t last) const {
     const SignalHistory& history = frame.timeline.history();
     const SignalSeries* x_series = series_of(history, 0, over);

@@ -6,7 +6,7 @@ using namespace inkwell;
 
 namespace {
 
-device::BusFrame frame(std::int64_t sequence, std::int64_t periods, std::uint32_t cycles) {
+device::BusFrame bus_frame(std::int64_t sequence, std::int64_t periods, std::uint32_t cycles) {
   return {.sequence = sequence, .time_periods = periods, .time_cycles = cycles};
 }
 
@@ -15,7 +15,7 @@ device::BusFrame frame(std::int64_t sequence, std::int64_t periods, std::uint32_
 TEST_CASE("a control period has a time on the host's clock") {
   device::BusClock clock(8400);
   CHECK_FALSE(clock.host_time_s(5).has_value());
-  clock.note(frame(1000, 20'000, 4200));
+  clock.note(bus_frame(1000, 20'000, 4200));
   CHECK(*clock.host_time_s(20'000) == doctest::Approx(1.0 - 0.000025).epsilon(1e-9));
   CHECK(*clock.host_time_s(20'020) == doctest::Approx(1.001 - 0.000025).epsilon(1e-9));
 }
@@ -23,8 +23,8 @@ TEST_CASE("a control period has a time on the host's clock") {
 TEST_CASE("the rate is measured, over days too") {
   device::BusClock clock(8400);
   constexpr std::int64_t begin = 1'000, days = 10'000'000'000;
-  clock.note(frame(begin, 20 * begin, 0));
-  clock.note(frame(begin + days, 20 * begin + 20 * days + days / 100, 0));  // the host is 500 ppm slow
+  clock.note(bus_frame(begin, 20 * begin, 0));
+  clock.note(bus_frame(begin + days, 20 * begin + 20 * days + days / 100, 0));  // the host is 500 ppm slow
   CHECK(*clock.host_time_s(20 * begin + 20 * days + days / 100) == doctest::Approx(1e-3 * (begin + days)));
   CHECK(*clock.host_time_s(20 * begin + 20 * days + days / 100 + 20'010) ==
         doctest::Approx(1e-3 * (begin + days + 1000)).epsilon(1e-12));
@@ -32,9 +32,9 @@ TEST_CASE("the rate is measured, over days too") {
 
 TEST_CASE("a board that started again is measured anew") {
   device::BusClock clock(8400);
-  clock.note(frame(10'000, 200'000, 0));
-  clock.note(frame(11'000, 220'020, 0));
-  clock.note(frame(5, 3000, 0));
-  clock.note(frame(1005, 23'000, 0));
+  clock.note(bus_frame(10'000, 200'000, 0));
+  clock.note(bus_frame(11'000, 220'020, 0));
+  clock.note(bus_frame(5, 3000, 0));
+  clock.note(bus_frame(1005, 23'000, 0));
   CHECK(*clock.host_time_s(43'000) == doctest::Approx(2.005).epsilon(1e-9));
 }

@@ -487,9 +487,9 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::driver)] = bytes_of(protocol::DriverReport{});
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::request_results)] =
       bytes_of(protocol::RequestResultsReport{});
-  protocol::FrameReport frame{};
-  frame.report_id = protocol::ReportId::frame;
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::frame)] = bytes_of(frame);
+  protocol::FrameReport bus_frame{};
+  bus_frame.report_id = protocol::ReportId::frame;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::frame)] = bytes_of(bus_frame);
   const protocol::StoreReport store{};
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }

@@ -90,7 +90,7 @@ FakeUsbipServer::FakeUsbipServer(const device::SocketAddress& where)
   information.servo_rate_Hz = protocol::servo_rate_Hz;
   transaction_.report_id = protocol::ReportId::transaction;
   store.report_id = protocol::ReportId::store;
-  frame.is_known = 1;
+  bus_frame.is_known = 1;
 }
 
 device::Endpoint FakeUsbipServer::endpoint() const {
@@ -293,7 +293,7 @@ std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (
     return Bytes{};
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x1B) {
-    driver.accept(data, frame.time_periods);
+    driver.accept(data, bus_frame.time_periods);
     return Bytes{};
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x11) {
@@ -322,13 +322,13 @@ std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
   switch (id) {
     case protocol::ReportId::information: return bytes_of(information);
     case protocol::ReportId::transaction: return bytes_of(transaction_);
-    case protocol::ReportId::frame: return bytes_of(frame);
+    case protocol::ReportId::frame: return bytes_of(bus_frame);
     case protocol::ReportId::black_box: return black_box ? std::optional(bytes_of(*black_box)) : std::nullopt;
     case protocol::ReportId::force_law:
       return Bytes(control::installed_force_law.report,
                    control::installed_force_law.report + control::installed_force_law.report_size);
     case protocol::ReportId::store: return bytes_of(store);
-    case protocol::ReportId::driver: return bytes_of(driver.report(frame.time_periods));
+    case protocol::ReportId::driver: return bytes_of(driver.report(bus_frame.time_periods));
     case protocol::ReportId::request_results: return bytes_of(request_results.report);
     case protocol::ReportId::parameters: return parameters_report(id, parameters);
     case protocol::ReportId::stored: return parameters_report(id, at_next_start);

@@ -50,7 +50,7 @@ class FakeUsbipServer {
   Bytes device_descriptor;
   Bytes configuration;  ///< descriptor
   protocol::InformationReport information{};
-  protocol::FrameReport frame{};
+  protocol::FrameReport bus_frame{};
   std::optional<protocol::BlackBoxReport> black_box;  ///< empty: the request is stalled
   protocol::ParameterSet parameters = protocol::default_parameters();
   protocol::StoreReport store{};

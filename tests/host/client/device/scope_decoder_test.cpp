@@ -31,10 +31,10 @@ struct FrameBuilder {
     header.first_period = first_period;
     header.sample_count = samples;
     header.length = static_cast<std::uint16_t>(sizeof header + payload.size());
-    std::vector<std::byte> frame(header.length);
-    std::memcpy(frame.data(), &header, sizeof header);
-    std::copy(payload.begin(), payload.end(), frame.begin() + sizeof header);
-    return frame;
+    std::vector<std::byte> scope_frame(header.length);
+    std::memcpy(scope_frame.data(), &header, sizeof header);
+    std::copy(payload.begin(), payload.end(), scope_frame.begin() + sizeof header);
+    return scope_frame;
   }
 };
 
@@ -178,11 +178,11 @@ TEST_CASE("no frame is longer than there are, and none belongs to a selection of
 TEST_CASE("malformed frames are refused, counted, and do not spoil the next one") {
   auto decoder = decoder_for(few);
   REQUIRE(decoder.decode(full_frame(0, 900)));
-  auto frame = full_frame(0, 1000);
-  const auto damage = [&](std::size_t at, std::uint8_t value) { frame[at] = std::byte{value}; };
-  SUBCASE("shorter than its header") { frame.resize(10); }
-  SUBCASE("cut off") { frame.resize(frame.size() - 1); }
-  SUBCASE("bytes too many") { frame.push_back(std::byte{0}); }
+  auto scope_frame = full_frame(0, 1000);
+  const auto damage = [&](std::size_t at, std::uint8_t value) { scope_frame[at] = std::byte{value}; };
+  SUBCASE("shorter than its header") { scope_frame.resize(10); }
+  SUBCASE("cut off") { scope_frame.resize(scope_frame.size() - 1); }
+  SUBCASE("bytes too many") { scope_frame.push_back(std::byte{0}); }
   SUBCASE("wrong magic") { damage(0, 0); }
   SUBCASE("wrong encoding") { damage(offsetof(protocol::ScopeFrameHeader, encoding), 1); }
   SUBCASE("unknown encoding") { damage(offsetof(protocol::ScopeFrameHeader, encoding), 9); }
@@ -190,21 +190,23 @@ TEST_CASE("malformed frames are refused, counted, and do not spoil the next one"
   SUBCASE("more samples than bytes") { damage(offsetof(protocol::ScopeFrameHeader, sample_count), 3); }
   SUBCASE("fewer samples than bytes") { damage(offsetof(protocol::ScopeFrameHeader, sample_count), 1); }
   SUBCASE("no samples") { damage(offsetof(protocol::ScopeFrameHeader, sample_count), 0); }
-  CHECK_FALSE(decoder.decode(frame));
+  CHECK_FALSE(decoder.decode(scope_frame));
   CHECK(decoder.malformed_frames() == 1);
   CHECK(decoder.decode(full_frame(0, 1000)));
 }
 
 TEST_CASE("the rest of a frame that was begun for another reader is not malformed") {
   auto decoder = decoder_for(few);
-  const auto frame = full_frame(0, 500, 40);
-  const std::vector<std::byte> rest(frame.begin() + 64, frame.end());
+  const auto scope_frame = full_frame(0, 500, 40);
+  const std::vector<std::byte> rest(scope_frame.begin() + 64, scope_frame.end());
   SUBCASE("of many bytes") { CHECK_FALSE(decoder.decode(rest)); }
-  SUBCASE("shorter than a header") { CHECK_FALSE(decoder.decode(std::vector(frame.end() - 10, frame.end()))); }
+  SUBCASE("shorter than a header") {
+    CHECK_FALSE(decoder.decode(std::vector(scope_frame.end() - 10, scope_frame.end())));
+  }
   SUBCASE("after whole frames that were left over") {
     decoder.expect(8, {});
     decoder.expect(9, few);
-    CHECK_FALSE(decoder.decode(frame));
+    CHECK_FALSE(decoder.decode(scope_frame));
     CHECK_FALSE(decoder.decode(rest));
   }
   CHECK(decoder.malformed_frames() == 0);
@@ -212,12 +214,12 @@ TEST_CASE("the rest of a frame that was begun for another reader is not malforme
 
 TEST_CASE("where no reader was before, or the rest has come, nothing without a header is the rest of a frame") {
   auto decoder = decoder_for(few);
-  const auto frame = full_frame(0, 500, 40);
-  const std::vector<std::byte> rest(frame.begin() + 64, frame.end());
+  const auto scope_frame = full_frame(0, 500, 40);
+  const std::vector<std::byte> rest(scope_frame.begin() + 64, scope_frame.end());
   SUBCASE("it came") { CHECK_FALSE(decoder.decode(rest)); }
-  SUBCASE("a frame came") { REQUIRE(decoder.decode(frame)); }
+  SUBCASE("a frame came") { REQUIRE(decoder.decode(scope_frame)); }
   SUBCASE("the scope was not given up") {
-    REQUIRE(decoder.decode(frame));
+    REQUIRE(decoder.decode(scope_frame));
     decoder.expect(8, few);
   }
   CHECK(decoder.malformed_frames() == 0);
@@ -256,10 +258,10 @@ TEST_CASE("noise never gets through, and never reads beyond its end") {
   const auto good = changes_frame().build(0, 0, 1);
   std::uint64_t accepted = 0;
   for (int round = 0; round < 20'000; ++round) {
-    auto frame = good;
-    for (int i = 0; i < 3; ++i) frame[random() % frame.size()] = static_cast<std::byte>(random());
-    frame.resize(random() % (frame.size() + 1));
-    accepted += decoder.decode(std::vector(frame)).has_value();  // a copy, so that sanitizers see its end
+    auto scope_frame = good;
+    for (int i = 0; i < 3; ++i) scope_frame[random() % scope_frame.size()] = static_cast<std::byte>(random());
+    scope_frame.resize(random() % (scope_frame.size() + 1));
+    accepted += decoder.decode(std::vector(scope_frame)).has_value();  // a copy, so that sanitizers see its end
   }
   CHECK(accepted < 400);  // accepted only if the noise changed values alone and the length stayed the same
   CHECK(decoder.malformed_frames() > 15'000);

@@ -65,7 +65,7 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
 TEST_CASE("the time of a board that was away goes on, also beyond the wrap of its counter") {
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   FakeUsbipServer server;
-  server.frame.time_periods = 0xFFFF'FFF0;
+  server.bus_frame.time_periods = 0xFFFF'FFF0;
   device::Session session([&] { return std::optional(server.endpoint()); });
   const auto shows = [&](std::int64_t time_periods) {
     return eventually([&] {
@@ -76,7 +76,7 @@ TEST_CASE("the time of a board that was away goes on, also beyond the wrap of it
   REQUIRE(eventually([&] { return is_connected(session); }));
   server.send(1, bytes_of(pose_at(10)));
   REQUIRE(shows(wrap + 10));
-  server.frame.time_periods = 20;
+  server.bus_frame.time_periods = 20;
   server.hang_up();
   REQUIRE(eventually([&] { return session.reconnection().has_value(); }));
   server.send(1, bytes_of(pose_at(30)));

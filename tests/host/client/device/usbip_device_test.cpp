@@ -357,8 +357,8 @@ TEST_CASE("a sign of life goes out 200 control periods after the last command, a
 TEST_CASE("poses, frames, samples and transactions are on one time that does not wrap with the board's counters") {
   constexpr std::int64_t wrap = std::int64_t{1} << 32;
   FakeUsbipServer server;
-  server.frame.sequence = 0xFFFF'FFFF;
-  server.frame.time_periods = 0xFFFF'FFF0;
+  server.bus_frame.sequence = 0xFFFF'FFFF;
+  server.bus_frame.time_periods = 0xFFFF'FFF0;
   const auto arm = device::Device::open(server.endpoint());
   auto report = pose_number(3);
   report.time_periods = 60;
@@ -367,10 +367,10 @@ TEST_CASE("poses, frames, samples and transactions are on one time that does not
   REQUIRE(pose);
   CHECK(pose->sequence == wrap + 3);
   CHECK(pose->time_periods == wrap + 60);
-  server.frame.sequence = 4;
-  server.frame.time_periods = 80;
-  CHECK(arm->frame().value().sequence == wrap + 4);
-  CHECK(arm->frame().value().time_periods == wrap + 80);
+  server.bus_frame.sequence = 4;
+  server.bus_frame.time_periods = 80;
+  CHECK(arm->bus_frame().value().sequence == wrap + 4);
+  CHECK(arm->bus_frame().value().time_periods == wrap + 80);
   server.send(2, scope_frame(arm->select_signals(std::array{protocol::Signal::force_N}), 90, 0.5f));
   CHECK(arm->read_scope(60s)->first_period == wrap + 90);
   const device::ParameterChange change{protocol::Parameter::force_limit_N, 1.0f};
@@ -379,11 +379,11 @@ TEST_CASE("poses, frames, samples and transactions are on one time that does not
 
 TEST_CASE("the begin of the newest frame of the bus is told as the device counts it") {
   FakeUsbipServer server;
-  server.frame.sequence = 12;
-  server.frame.time_cycles = 345;
+  server.bus_frame.sequence = 12;
+  server.bus_frame.time_cycles = 345;
   const auto arm = device::Device::open(server.endpoint());
-  CHECK(arm->frame().value().sequence == 12);
-  CHECK(arm->frame().value().time_cycles == 345);
+  CHECK(arm->bus_frame().value().sequence == 12);
+  CHECK(arm->bus_frame().value().time_cycles == 345);
 }
 
 TEST_CASE("a device names its board, also where it is refused") {
@@ -562,7 +562,8 @@ TEST_CASE("a device continues on another link, and calls that wait on the old on
   const auto arm = device::Device::open(before.endpoint());
   arm->select_signals(std::vector{protocol::Signal::force_N});
   before.holds_requests = true;
-  auto waits = std::async(std::launch::async, [&] { return message_of<device::Disconnected>([&] { arm->frame(); }); });
+  auto waits =
+      std::async(std::launch::async, [&] { return message_of<device::Disconnected>([&] { arm->bus_frame(); }); });
   before.hang_up();
   CHECK(waits.get() != "");
   arm->take_link_of(*device::Device::open(after.endpoint()));

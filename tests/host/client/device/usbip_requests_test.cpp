@@ -255,7 +255,7 @@ TEST_CASE("the device is asked for no more of a report than it uses, because it 
 
 TEST_CASE("a device that counts no frames of the bus is opened, and its frame is not known") {
   FakeUsbipServer server;
-  server.frame = {};
+  server.bus_frame = {};
   const auto arm = device::Device::open(server.endpoint());
-  CHECK_FALSE(arm->frame().has_value());
+  CHECK_FALSE(arm->bus_frame().has_value());
 }
