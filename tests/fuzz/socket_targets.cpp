@@ -88,7 +88,7 @@ const Registered control_answers{"control_answers", [](Input input) {
                                        case 0: device::status_of(answer); break;
                                        case 1: device::pin_levels_of(answer); break;
                                        case 2:
-                                         device::put_in_fault_of(answer, {.fault = "supply_sag", .for_s = 0.5});
+                                         device::injection_of(answer, {.fault = "supply_sag", .for_s = 0.5});
                                          break;
                                        case 3: device::injections_of(answer); break;
                                        case 4: device::meter_reading_of(answer); break;

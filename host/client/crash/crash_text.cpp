@@ -11,12 +11,12 @@ namespace {
 
 /// A bit of CFSR and its meaning (ARMv7-M, B3.2.15). A stack error also explains other bits that are set at the same
 /// time.
-struct FaultBit {
+struct CpuFaultBit {
   unsigned bit;
   const char* meaning;
 };
 
-constexpr FaultBit fault_bits[] = {
+constexpr CpuFaultBit cpu_fault_bits[] = {
     {3, "memory protection refused a stack access on exception return"},
     {4,
      "memory protection refused a stack access on exception entry: the stack has overflowed, or the stack pointer is "
@@ -51,9 +51,9 @@ std::string cause(const protocol::CrashFacts& crash) {
   if (crash.exception >= 16)
     return fmt::format("Interrupt {} occurred, although it is not used.", crash.exception - 16);
   if (has(crash.hard_fault_status, 1)) return "A handler's address could not be read from the vector table.";
-  const auto* found = std::find_if(std::begin(fault_bits), std::end(fault_bits),
-                                   [&](const FaultBit& fault) { return has(status, fault.bit); });
-  if (found == std::end(fault_bits)) return fmt::format("The processor raised exception {}.", crash.exception);
+  const auto* found = std::find_if(std::begin(cpu_fault_bits), std::end(cpu_fault_bits),
+                                   [&](const CpuFaultBit& cpu_fault) { return has(status, cpu_fault.bit); });
+  if (found == std::end(cpu_fault_bits)) return fmt::format("The processor raised exception {}.", crash.exception);
   std::string sentence = fmt::format("The processor could not continue: {}", found->meaning);
   if (has(status, protection_address_holds) || has(status, bus_address_holds))
     sentence += fmt::format(", 0x{:08x}", crash.fault_address);

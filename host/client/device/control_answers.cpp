@@ -32,15 +32,15 @@ Whole whole_number(const json& value, const char* sentence) {
   return value.get<Whole>();
 }
 
-PutInFault put_in_fault(const json& entry, const char* time_key, const char* sentence) {
-  PutInFault fault{.number = whole_number<unsigned>(entry.at("number"), sentence),
-                   .fault = entry.at("fault").get<std::string>(),
-                   .of = entry.value("of", std::string()),
-                   .at_s = entry.at(time_key).get<double>(),
-                   .has_come = std::string_view(time_key) == "since_s"};
-  if (entry.contains("amount")) fault.amount = entry["amount"].get<double>();
-  if (entry.contains("until_s")) fault.until_s = entry["until_s"].get<double>();
-  return fault;
+Injection injection_in(const json& entry, const char* time_key, const char* sentence) {
+  Injection injection{.number = whole_number<unsigned>(entry.at("number"), sentence),
+                      .fault = entry.at("fault").get<std::string>(),
+                      .of = entry.value("of", std::string()),
+                      .at_s = entry.at(time_key).get<double>(),
+                      .has_come = std::string_view(time_key) == "since_s"};
+  if (entry.contains("amount")) injection.amount = entry["amount"].get<double>();
+  if (entry.contains("until_s")) injection.until_s = entry["until_s"].get<double>();
+  return injection;
 }
 
 }  // namespace
@@ -74,16 +74,16 @@ PinLevels pin_levels_of(const json& answer) {
   });
 }
 
-PutInFault put_in_fault_of(const json& answer, const protocol::InjectionRequest& request) {
+Injection injection_of(const json& answer, const protocol::InjectionRequest& request) {
   return read_or_fail(damaged_answer, [&] {
-    PutInFault put_in{.number = whole_number<unsigned>(answer.value("number", json(0u)), damaged_answer),
-                      .fault = request.fault,
-                      .of = request.of,
-                      .amount = request.amount,
-                      .at_s = answer.value("at_s", 0.0),
-                      .has_come = request.after_s == 0.0};
-    if (request.for_s) put_in.until_s = put_in.at_s + *request.for_s;
-    return put_in;
+    Injection injection{.number = whole_number<unsigned>(answer.value("number", json(0u)), damaged_answer),
+                        .fault = request.fault,
+                        .of = request.of,
+                        .amount = request.amount,
+                        .at_s = answer.value("at_s", 0.0),
+                        .has_come = request.after_s == 0.0};
+    if (request.for_s) injection.until_s = injection.at_s + *request.for_s;
+    return injection;
   });
 }
 
@@ -96,8 +96,8 @@ Injections injections_of(const json& status) {
                    .period = whole_number<std::uint64_t>(period.at("number"), sentence),
                    .period_at_s = period.at("board_time_s").get<double>(),
                    .faults = {}};
-    for (const json& each : status.at("injected")) now.faults.push_back(put_in_fault(each, "since_s", sentence));
-    for (const json& each : status.at("still_to_come")) now.faults.push_back(put_in_fault(each, "at_s", sentence));
+    for (const json& each : status.at("injected")) now.faults.push_back(injection_in(each, "since_s", sentence));
+    for (const json& each : status.at("still_to_come")) now.faults.push_back(injection_in(each, "at_s", sentence));
     return now;
   });
 }

@@ -16,7 +16,7 @@ nlohmann::json parse_answer(std::string_view line, std::string_view command);
 // faults are required. Each function throws Error if a value has the wrong type.
 BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);
-PutInFault put_in_fault_of(const nlohmann::json& answer, const protocol::InjectionRequest& request);
+Injection injection_of(const nlohmann::json& answer, const protocol::InjectionRequest& request);
 Injections injections_of(const nlohmann::json& status);
 MeterReading meter_reading_of(const nlohmann::json& answer);
 Trace trace_of(const nlohmann::json& answer);

@@ -89,12 +89,12 @@ void ControlClient::glitch(const std::string& pin, double duration_s) {
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 
-PutInFault ControlClient::inject(const protocol::InjectionRequest& fault) {
-  json request{{"command", "inject"}, {"fault", fault.fault}, {"after_s", fault.after_s}};
-  if (!fault.of.empty()) request["of"] = fault.of;
-  if (fault.amount) request["amount"] = *fault.amount;
-  if (fault.for_s) request["for_s"] = *fault.for_s;
-  return put_in_fault_of(call(request), fault);
+Injection ControlClient::inject(const protocol::InjectionRequest& injection) {
+  json request{{"command", "inject"}, {"fault", injection.fault}, {"after_s", injection.after_s}};
+  if (!injection.of.empty()) request["of"] = injection.of;
+  if (injection.amount) request["amount"] = *injection.amount;
+  if (injection.for_s) request["for_s"] = *injection.for_s;
+  return injection_of(call(request), injection);
 }
 
 void ControlClient::heal(const std::string& fault, const std::string& of) {

@@ -37,7 +37,7 @@ struct HandWaypoint {
 };
 
 /// An injected fault of a virtual board, active or scheduled.
-struct PutInFault {
+struct Injection {
   unsigned number;  ///< unique within this board
   std::string fault;
   std::string of;  ///< the affected component; empty if there is only one
@@ -45,7 +45,7 @@ struct PutInFault {
   double at_s;                         ///< board time of its start
   std::optional<double> until_s = {};  ///< none: until it is removed
   bool has_come;
-  bool operator==(const PutInFault&) const = default;
+  bool operator==(const Injection&) const = default;
 };
 
 /// The injected faults of a virtual board at one instant.
@@ -55,7 +55,7 @@ struct Injections {
   /// firmware's `time_periods` unless the core missed a control interrupt.
   std::uint64_t period = 0;
   double period_at_s = 0;
-  std::vector<PutInFault> faults;  ///< active faults, then scheduled faults
+  std::vector<Injection> faults;  ///< active faults, then scheduled faults
 };
 
 /// A pin of the chip: "high", "low" or "floating".
@@ -135,7 +135,7 @@ class ControlClient {
   PinLevels drive_pin(const std::string& pin, const std::string& level);
   void glitch(const std::string& pin, double duration_s);  ///< inverts a pin ("PA0") for this time
   /// Injects a fault and returns its number and start time.
-  PutInFault inject(const protocol::InjectionRequest& fault);
+  Injection inject(const protocol::InjectionRequest& injection);
   void heal(const std::string& fault, const std::string& of = {});  ///< removes the fault; without `of`, from all
                                                                     ///< components
   void heal_all();

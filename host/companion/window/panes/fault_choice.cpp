@@ -93,7 +93,7 @@ std::vector<std::string_view> wires() {
   return names;
 }
 
-protocol::InjectionRequest request_of(const TypedFault& typed) {
+protocol::InjectionRequest request_of(const TypedInjection& typed) {
   const auto& row = info(typed.fault);
   protocol::InjectionRequest request{.fault = std::string(row.name)};
   if (row.place != InjectionPlace::none) request.of = typed.of;
@@ -103,13 +103,13 @@ protocol::InjectionRequest request_of(const TypedFault& typed) {
   return request;
 }
 
-std::string place_and_amount(const device::PutInFault& put_in) {
-  const auto fault = protocol::find_injection(put_in.fault);
-  std::string described = put_in.of;
+std::string place_and_amount(const device::Injection& injection) {
+  const auto fault = protocol::find_injection(injection.fault);
+  std::string described = injection.of;
   if (fault && !described.empty()) described = fmt::format("{}{}", word_for(protocol::info(*fault).place), described);
-  if (!put_in.amount) return described;
+  if (!injection.amount) return described;
   const std::string_view unit = fault ? protocol::info(*fault).unit : "";
-  return fmt::format("{}{}{:.6g}{}{}", described, described.empty() ? "" : ", ", *put_in.amount,
+  return fmt::format("{}{}{:.6g}{}{}", described, described.empty() ? "" : ", ", *injection.amount,
                      unit.empty() ? "" : " ", unit);
 }
 

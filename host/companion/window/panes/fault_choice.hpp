@@ -25,16 +25,16 @@ bool is_found(const protocol::InjectionInfo& row, std::string_view search);
 std::vector<std::string_view> wires();
 
 /// Contents of the input fields. An empty field selects the default of the board.
-struct TypedFault {
+struct TypedInjection {
   protocol::InjectedFault fault;
   std::string of, amount, after_s, for_s;
 };
 
 /// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks the request.
-protocol::InjectionRequest request_of(const TypedFault& typed);
+protocol::InjectionRequest request_of(const TypedInjection& typed);
 
 /// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.
-std::string place_and_amount(const device::PutInFault& put_in);
+std::string place_and_amount(const device::Injection& injection);
 
 /// Returns a text such as "0.05 ms", "12.4 ms" or "1.35 s".
 std::string duration_text(double duration_s);

@@ -15,7 +15,7 @@ class FaultForm {
  public:
   FaultForm(protocol::InjectedFault fault, std::string of) : typed_{fault, std::move(of), {}, {}, {}} {}
 
-  const TypedFault& typed() const { return typed_; }
+  const TypedInjection& typed() const { return typed_; }
   /// Moves the keyboard focus to the first field in the next frame.
   void take_keyboard() { takes_keyboard_ = true; }
   /// Returns true if the user injects the fault.
@@ -37,7 +37,7 @@ class FaultForm {
   void draw_names(std::span<const std::string_view> names, const Style& style);
   void draw_wires(const Style& style);
 
-  TypedFault typed_;
+  TypedInjection typed_;
   bool takes_keyboard_ = false;
 };
 

@@ -9,7 +9,7 @@ namespace inkwell::window {
 
 namespace {
 
-using Phase = LoggedFault::Phase;
+using Phase = LoggedInjection::Phase;
 
 /// A fault is recorded without a time after this number of answers. After a reset, the period count of an earlier fault
 /// may never be reached.
@@ -17,21 +17,22 @@ constexpr int patience_answers = 8;
 
 /// True if the fault may stop the control interrupt. A stopped control interrupt does not count periods until the
 /// firmware restarts.
-bool stops_the_count(const device::PutInFault& put_in) {
-  const auto fault = protocol::find_injection(put_in.fault);
+bool stops_the_count(const device::Injection& injection) {
+  const auto fault = protocol::find_injection(injection.fault);
   if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts continue
   return !fault || protocol::info(*fault).part == protocol::InjectionPart::core;
 }
 
 }  // namespace
 
-void FaultLog::add(const device::PutInFault& put_in) {
-  const auto known = std::ranges::find(faults_, put_in.number, [](const auto& each) { return each.put_in.number; });
-  const Phase phase = put_in.has_come ? Phase::in : Phase::to_come;
+void FaultLog::add(const device::Injection& injection) {
+  const auto known =
+      std::ranges::find(faults_, injection.number, [](const auto& each) { return each.injection.number; });
+  const Phase phase = injection.has_come ? Phase::in : Phase::to_come;
   if (known == faults_.end()) {
-    faults_.push_back({put_in, phase, {}});
+    faults_.push_back({injection, phase, {}});
   } else {
-    known->put_in = put_in;
+    known->injection = injection;
     known->phase = phase;
   }
 }
@@ -39,32 +40,32 @@ void FaultLog::add(const device::PutInFault& put_in) {
 void FaultLog::take(const device::Injections& now) {
   if (newest_ && now.board_time_s < newest_->board_time_s) *this = {};
   end_those_gone(now);
-  for (const device::PutInFault& each : now.faults) add(each);
+  for (const device::Injection& each : now.faults) add(each);
   forget_oldest();
   place_pending(now);
   newest_ = now;
 }
 
 void FaultLog::end_those_gone(const device::Injections& now) {
-  for (LoggedFault& each : faults_)
-    if (std::ranges::find(now.faults, each.put_in.number, &device::PutInFault::number) == now.faults.end())
+  for (LoggedInjection& each : faults_)
+    if (std::ranges::find(now.faults, each.injection.number, &device::Injection::number) == now.faults.end())
       each.phase = Phase::over;
   // Removes faults that were healed before their start time.
-  std::erase_if(faults_, [&](const LoggedFault& each) {
-    return each.phase == Phase::over && each.put_in.at_s > now.board_time_s;
+  std::erase_if(faults_, [&](const LoggedInjection& each) {
+    return each.phase == Phase::over && each.injection.at_s > now.board_time_s;
   });
 }
 
 void FaultLog::forget_oldest() {
-  const auto is_over = [](const LoggedFault& each) { return each.phase == Phase::over; };
+  const auto is_over = [](const LoggedInjection& each) { return each.phase == Phase::over; };
   for (auto over = std::ranges::count_if(faults_, is_over); over > static_cast<std::ptrdiff_t>(over_maximum); --over)
     faults_.erase(std::ranges::find_if(faults_, is_over));
 }
 
 void FaultLog::notice(const device::NoticedFault& fault) {
   pending_ = Pending{fault};
-  for (const LoggedFault& each : faults_)
-    if (each.phase == Phase::in) pending_->in.push_back(each.put_in.number);
+  for (const LoggedInjection& each : faults_)
+    if (each.phase == Phase::in) pending_->in.push_back(each.injection.number);
 }
 
 bool FaultLog::Pending::was_in(unsigned number) const { return std::ranges::find(in, number) != in.end(); }
@@ -97,11 +98,11 @@ void FaultLog::place_pending(const device::Injections& now) {
 }
 
 void FaultLog::show_with(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s) {
-  for (LoggedFault& each : faults_) {
+  for (LoggedInjection& each : faults_) {
     if (each.noticed || each.phase == Phase::to_come) continue;
-    const double came_s = each.put_in.at_s;
-    const bool is_sure = noticed_s && (!stops_the_count(each.put_in) || run_began_s >= came_s);
-    const bool was_noticed_since = is_sure ? *noticed_s >= came_s : pending_->was_in(each.put_in.number);
+    const double came_s = each.injection.at_s;
+    const bool is_sure = noticed_s && (!stops_the_count(each.injection) || run_began_s >= came_s);
+    const bool was_noticed_since = is_sure ? *noticed_s >= came_s : pending_->was_in(each.injection.number);
     if (was_noticed_since) each.noticed = {fault, is_sure ? std::optional(*noticed_s - came_s) : std::nullopt};
   }
 }

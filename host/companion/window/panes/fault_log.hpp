@@ -10,7 +10,7 @@
 
 namespace inkwell::window {
 
-struct LoggedFault {
+struct LoggedInjection {
   enum class Phase : std::uint8_t { to_come, in, over };
   struct Noticed {
     protocol::Fault fault;
@@ -18,7 +18,7 @@ struct LoggedFault {
     std::optional<double> after_s;
   };
 
-  device::PutInFault put_in;
+  device::Injection injection;
   Phase phase;
   std::optional<Noticed> noticed;  ///< first fault that the board detected after the injection
 };
@@ -29,7 +29,7 @@ class FaultLog {
   static constexpr std::size_t over_maximum = 4;
 
   /// Adds an injected fault. A short fault can be missing in the next answer of the board.
-  void add(const device::PutInFault& put_in);
+  void add(const device::Injection& injection);
   /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
   /// the log is cleared.
   void take(const device::Injections& now);
@@ -39,7 +39,7 @@ class FaultLog {
   bool waits_for_answer() const { return pending_.has_value(); }
 
   /// Logged faults in the order of injection.
-  const std::vector<LoggedFault>& faults() const { return faults_; }
+  const std::vector<LoggedInjection>& faults() const { return faults_; }
 
  private:
   struct Pending {
@@ -55,7 +55,7 @@ class FaultLog {
   void place_pending(const device::Injections& now);
   void show_with(protocol::Fault fault, std::optional<double> noticed_s, double run_began_s);
 
-  std::vector<LoggedFault> faults_;
+  std::vector<LoggedInjection> faults_;
   std::optional<device::Injections> newest_;
   std::optional<Pending> pending_;
 };

@@ -15,8 +15,8 @@
 #include "host/companion/window/frame/imgui_versions.hpp"
 #include "host/companion/window/frame/inspection.hpp"
 #include "host/companion/window/frame/widgets.hpp"
-#include "host/companion/window/panes/board_faults.hpp"
 #include "host/companion/window/panes/fault_choice.hpp"
+#include "host/companion/window/panes/fault_injector.hpp"
 #include "host/companion/window/panes/fault_log.hpp"
 #include "host/companion/window/panes/pane.hpp"
 
@@ -26,7 +26,7 @@ namespace inkwell::window {
 namespace {
 
 using protocol::InjectedFault;
-using FaultPhase = LoggedFault::Phase;
+using InjectionPhase = LoggedInjection::Phase;
 
 constexpr const char* heading = "Fault injection";
 constexpr float log_part_maximum = 0.42f;  // of the pane's height
@@ -47,13 +47,13 @@ void draw_badge(std::string_view word, const Style& style) {
   ImGui::PopFont();
 }
 
-std::string when_text(const LoggedFault& fault) {
-  switch (fault.phase) {
-    case FaultPhase::to_come: return fmt::format("starts at {:.2f} s", fault.put_in.at_s);
-    case FaultPhase::in: return fmt::format("active since {:.2f} s", fault.put_in.at_s);
-    case FaultPhase::over: break;
+std::string when_text(const LoggedInjection& logged) {
+  switch (logged.phase) {
+    case InjectionPhase::to_come: return fmt::format("starts at {:.2f} s", logged.injection.at_s);
+    case InjectionPhase::in: return fmt::format("active since {:.2f} s", logged.injection.at_s);
+    case InjectionPhase::over: break;
   }
-  return fmt::format("started at {:.2f} s, over", fault.put_in.at_s);
+  return fmt::format("started at {:.2f} s, over", logged.injection.at_s);
 }
 
 class FaultsPane final : public Pane {
@@ -72,13 +72,13 @@ class FaultsPane final : public Pane {
   bool is_moving() const override { return board_ && (board_->has_changed() || log_.waits_for_answer()); }
 
  private:
-  void take(const BoardFaults::News& news);
+  void take(const FaultInjector::News& news);
   void inject();
   void heal_all();
   void draw_heading(const Style& style);
   void draw_log(const Style& style);
-  void draw_logged(const LoggedFault& fault, const Style& style);
-  void draw_noticed(const LoggedFault& fault, const Style& style);
+  void draw_logged(const LoggedInjection& logged, const Style& style);
+  void draw_noticed(const LoggedInjection& logged, const Style& style);
   void draw_search(const Style& style);
   void draw_table(const Style& style);
   /// Returns true if the rows below the title are visible.
@@ -89,7 +89,7 @@ class FaultsPane final : public Pane {
   std::vector<InjectedFault> found() const;
 
   DeviceDesk& desk_;
-  std::optional<BoardFaults> board_;
+  std::optional<FaultInjector> board_;
   FaultLog log_;
   std::optional<device::NoticedFault> noticed_;
   std::string refusal_;
@@ -101,20 +101,20 @@ class FaultsPane final : public Pane {
   float log_height_ = 0.0f;  ///< total height in the previous frame
 };
 
-void FaultsPane::take(const BoardFaults::News& news) {
-  if (const auto* gone = std::get_if<BoardFaults::Gone>(&news)) {
+void FaultsPane::take(const FaultInjector::News& news) {
+  if (const auto* gone = std::get_if<FaultInjector::Gone>(&news)) {
     gone_ = gone->sentence;
     return;
   }
   gone_.clear();
   if (const auto* answer = std::get_if<device::Injections>(&news)) log_.take(*answer);
-  if (const auto* put_in = std::get_if<device::PutInFault>(&news)) log_.add(*put_in);
-  if (const auto* refusal = std::get_if<BoardFaults::Refusal>(&news)) refusal_ = refusal->sentence;
+  if (const auto* injection = std::get_if<device::Injection>(&news)) log_.add(*injection);
+  if (const auto* refusal = std::get_if<FaultInjector::Refusal>(&news)) refusal_ = refusal->sentence;
 }
 
 void FaultsPane::follow(const PaneNews&) {
   if (!board_) return;
-  for (const BoardFaults::News& each : board_->take_news()) take(each);
+  for (const FaultInjector::News& each : board_->take_news()) take(each);
   const auto& fault = desk_.view().status.fault;
   if (fault && fault != noticed_) log_.notice(*fault);
   noticed_ = fault;
@@ -175,12 +175,13 @@ void FaultsPane::draw_log(const Style& style) {
   if (!is_low_)
     ImGui::BeginChild("log", {0, std::min(log_height_, log_part_maximum * ImGui::GetWindowHeight())}, false,
                       ImGuiWindowFlags_NavFlattened);
-  for (const LoggedFault& each : log_.faults()) draw_logged(each, style);
+  for (const LoggedInjection& each : log_.faults()) draw_logged(each, style);
   if (!is_low_) {
     log_height_ = ImGui::GetCursorPosY();
     ImGui::EndChild();
   }
-  const bool any = std::ranges::any_of(log_.faults(), [](const auto& each) { return each.phase != FaultPhase::over; });
+  const bool any =
+      std::ranges::any_of(log_.faults(), [](const auto& each) { return each.phase != InjectionPhase::over; });
   ImGui::BeginDisabled(!any);
   if (button("Heal all", {-1, 0})) heal_all();
   help_on_hover("Heal all", "Heals all active faults and cancels all faults that have not started. Key: Ctrl+Delete",
@@ -189,40 +190,40 @@ void FaultsPane::draw_log(const Style& style) {
   ImGui::Dummy({0, style.points(4)});
 }
 
-void FaultsPane::draw_logged(const LoggedFault& fault, const Style& style) {
+void FaultsPane::draw_logged(const LoggedInjection& logged, const Style& style) {
   const Palette& palette = *style.palette;
-  const bool is_over = fault.phase == FaultPhase::over;
-  ImGui::PushID(static_cast<int>(fault.put_in.number));
+  const bool is_over = logged.phase == InjectionPhase::over;
+  ImGui::PushID(static_cast<int>(logged.injection.number));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ImGui::GetStyle().ItemSpacing.x, style.points(2)});
   ImGui::AlignTextToFramePadding();
-  text(style.fonts.strong, is_over ? palette.text_quiet : palette.text, fault.put_in.fault);
+  text(style.fonts.strong, is_over ? palette.text_quiet : palette.text, logged.injection.fault);
   if (!is_over) {
     const float width = style.points(52);
     ImGui::SameLine();
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - width);
     if (ImGui::Button("Heal", {width, 0})) {
       refusal_.clear();
-      board_->heal(fault.put_in.fault, fault.put_in.of);
+      board_->heal(logged.injection.fault, logged.injection.of);
     }
-    note_item(fmt::format("Heal {}", fault.put_in.fault));
+    note_item(fmt::format("Heal {}", logged.injection.fault));
   }
   ImGui::PushFont(style.fonts.caption);
-  const std::string where = place_and_amount(fault.put_in);
-  wrapped_text(palette.text_quiet, fmt::format("{}{}{}", where, where.empty() ? "" : ", ", when_text(fault)));
-  draw_noticed(fault, style);
+  const std::string where = place_and_amount(logged.injection);
+  wrapped_text(palette.text_quiet, fmt::format("{}{}{}", where, where.empty() ? "" : ", ", when_text(logged)));
+  draw_noticed(logged, style);
   ImGui::PopFont();
   ImGui::PopStyleVar();
   ImGui::Dummy({0, style.points(1)});
   ImGui::PopID();
 }
 
-void FaultsPane::draw_noticed(const LoggedFault& fault, const Style& style) {
+void FaultsPane::draw_noticed(const LoggedInjection& logged, const Style& style) {
   const Palette& palette = *style.palette;
-  if (fault.noticed) {
-    const auto& [noticed, after_s] = *fault.noticed;
+  if (logged.noticed) {
+    const auto& [noticed, after_s] = *logged.noticed;
     const auto when = after_s ? fmt::format(", after {}", duration_text(*after_s)) : std::string();
     wrapped_text(palette.caution, fmt::format("Reported fault: {}{}", protocol::info(noticed).name, when));
-  } else if (fault.phase != FaultPhase::to_come && !log_.waits_for_answer()) {
+  } else if (logged.phase != InjectionPhase::to_come && !log_.waits_for_answer()) {
     const bool in_fault = desk_.view().state() == protocol::State::fault;
     wrapped_text(palette.text_quiet,
                  in_fault ? "No fault reported: the board was already in a fault" : "No fault reported");

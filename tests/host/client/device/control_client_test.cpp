@@ -75,9 +75,9 @@ TEST_CASE("what is in a board and what is still to come are taken from its statu
   REQUIRE(now.faults.size() == 2);
   CHECK(
       now.faults[0] ==
-      device::PutInFault{.number = 1, .fault = "motor_open", .of = "2", .at_s = 1.5, .until_s = 3.5, .has_come = true});
+      device::Injection{.number = 1, .fault = "motor_open", .of = "2", .at_s = 1.5, .until_s = 3.5, .has_come = true});
   CHECK(now.faults[1] ==
-        device::PutInFault{.number = 2, .fault = "supply_sag", .amount = 9.5, .at_s = 4.5, .has_come = false});
+        device::Injection{.number = 2, .fault = "supply_sag", .amount = 9.5, .at_s = 4.5, .has_come = false});
   FakeControlServer older([](const json&) { return "{\"ok\": true, \"injected\": []}\n"; });
   CHECK(contains(message_of<device::Error>([&] { client_of(older).injections(); }), "its injected faults"));
 }

@@ -85,7 +85,9 @@ TEST_CASE("of another fault's fields nothing is asked for") {
 }
 
 TEST_CASE("what is no number is told with its field") {
-  const auto text_of = [](const TypedFault& typed) { return message_of<device::Error>([&] { request_of(typed); }); };
+  const auto text_of = [](const TypedInjection& typed) {
+    return message_of<device::Error>([&] { request_of(typed); });
+  };
   CHECK(contains(text_of({InjectedFault::supply_sag, "", "much", "", ""}), "`much` is not a number. Enter the amount"));
   CHECK(contains(text_of({InjectedFault::supply_sag, "", "1,5", "", ""}), "without commas"));
   CHECK(contains(text_of({InjectedFault::supply_sag, "", "inf", "", ""}), "is not a number"));

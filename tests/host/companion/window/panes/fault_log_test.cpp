@@ -9,25 +9,25 @@
 
 using namespace inkwell;
 using namespace inkwell::window;
+using device::Injection;
 using device::Injections;
-using device::PutInFault;
 using protocol::Fault;
-using Phase = LoggedFault::Phase;
+using Phase = LoggedInjection::Phase;
 
 namespace {
 
-PutInFault put_in(unsigned number, double at_s, const std::string& fault = "motor_open") {
+Injection injection(unsigned number, double at_s, const std::string& fault = "motor_open") {
   return {.number = number, .fault = fault, .of = "2", .at_s = at_s, .has_come = true};
 }
 
-PutInFault to_come(unsigned number, double at_s) {
-  PutInFault fault = put_in(number, at_s);
-  fault.has_come = false;
-  return fault;
+Injection to_come(unsigned number, double at_s) {
+  Injection scheduled = injection(number, at_s);
+  scheduled.has_come = false;
+  return scheduled;
 }
 
 /// Answer of a board at this board time. The firmware started at `run_began_s`.
-Injections answer(double board_time_s, std::vector<PutInFault> faults, double run_began_s = 1.0,
+Injections answer(double board_time_s, std::vector<Injection> faults, double run_began_s = 1.0,
                   double period_s = 50e-6) {
   const double since_s = board_time_s - run_began_s;
   return {.board_time_s = board_time_s,
@@ -38,7 +38,7 @@ Injections answer(double board_time_s, std::vector<PutInFault> faults, double ru
 
 std::vector<unsigned> numbers(const FaultLog& log) {
   std::vector<unsigned> numbers;
-  for (const auto& each : log.faults()) numbers.push_back(each.put_in.number);
+  for (const auto& each : log.faults()) numbers.push_back(each.injection.number);
   return numbers;
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("a fault is to come, in, and over, whoever put it in") {
   log.take(answer(2.0, {to_come(1, 3.0)}));
   REQUIRE(log.faults().size() == 1);
   CHECK(log.faults()[0].phase == Phase::to_come);
-  log.take(answer(3.1, {put_in(1, 3.0)}));
+  log.take(answer(3.1, {injection(1, 3.0)}));
   REQUIRE(log.faults().size() == 1);
   CHECK(log.faults()[0].phase == Phase::in);
   log.take(answer(3.2, {}));
@@ -66,7 +66,7 @@ TEST_CASE("what is healed before it came is no longer told") {
 
 TEST_CASE("one that is over before the board is asked again is told as over") {
   FaultLog log;
-  log.add(put_in(1, 2.0));
+  log.add(injection(1, 2.0));
   CHECK(log.faults()[0].phase == Phase::in);
   log.take(answer(2.1, {}));
   REQUIRE(log.faults().size() == 1);
@@ -75,8 +75,8 @@ TEST_CASE("one that is over before the board is asked again is told as over") {
 
 TEST_CASE("of those that are over the newest are told, all that are in") {
   FaultLog log;
-  std::vector<PutInFault> all;
-  for (unsigned number = 1; number <= FaultLog::over_maximum + 3; ++number) all.push_back(put_in(number, 2.0));
+  std::vector<Injection> all;
+  for (unsigned number = 1; number <= FaultLog::over_maximum + 3; ++number) all.push_back(injection(number, 2.0));
   log.take(answer(2.1, all));
   CHECK(log.faults().size() == FaultLog::over_maximum + 3);
   log.take(answer(2.2, {all[0]}));
@@ -85,24 +85,24 @@ TEST_CASE("of those that are over the newest are told, all that are in") {
 
 TEST_CASE("a board that starts anew begins a new log") {
   FaultLog log;
-  log.take(answer(9.0, {put_in(1, 8.0)}));
+  log.take(answer(9.0, {injection(1, 8.0)}));
   log.notice({Fault::supply_low, 150'000});
-  log.take(answer(9.1, {put_in(1, 8.0)}));
+  log.take(answer(9.1, {injection(1, 8.0)}));
   REQUIRE(log.faults()[0].noticed);
-  log.take(answer(1.5, {put_in(1, 1.4, "supply_cut")}));
+  log.take(answer(1.5, {injection(1, 1.4, "supply_cut")}));
   REQUIRE(log.faults().size() == 1);
-  CHECK(log.faults()[0].put_in.fault == "supply_cut");
+  CHECK(log.faults()[0].injection.fault == "supply_cut");
   CHECK_FALSE(log.faults()[0].noticed);
   CHECK(log.faults()[0].phase == Phase::in);
 }
 
 TEST_CASE("a noticed fault is set beside each that came before, with the time to the end of its control period") {
   FaultLog log;
-  log.take(answer(2.0, {put_in(1, 1.5), put_in(2, 1.999), to_come(3, 2.5)}));
+  log.take(answer(2.0, {injection(1, 1.5), injection(2, 1.999), to_come(3, 2.5)}));
   log.notice({Fault::motor_implausible, 20'100});  // began at 2.005 s
   CHECK(log.waits_for_answer());
   CHECK_FALSE(log.faults()[0].noticed);
-  log.take(answer(2.2, {put_in(1, 1.5), put_in(2, 1.999), put_in(4, 2.1), to_come(3, 2.5)}));
+  log.take(answer(2.2, {injection(1, 1.5), injection(2, 1.999), injection(4, 2.1), to_come(3, 2.5)}));
   CHECK_FALSE(log.waits_for_answer());
   CHECK(numbers(log) == std::vector<unsigned>{1, 2, 3, 4});
   REQUIRE(log.faults()[0].noticed);
@@ -115,26 +115,26 @@ TEST_CASE("a noticed fault is set beside each that came before, with the time to
 
 TEST_CASE("only the first that was noticed is told") {
   FaultLog log;
-  log.take(answer(2.0, {put_in(1, 1.9)}));
+  log.take(answer(2.0, {injection(1, 1.9)}));
   log.notice({Fault::supply_low, 20'000});
-  log.take(answer(2.1, {put_in(1, 1.9)}));
+  log.take(answer(2.1, {injection(1, 1.9)}));
   log.notice({Fault::over_speed, 22'000});
-  log.take(answer(2.2, {put_in(1, 1.9)}));
+  log.take(answer(2.2, {injection(1, 1.9)}));
   CHECK(log.faults()[0].noticed->fault == Fault::supply_low);
 }
 
 TEST_CASE("it waits for an answer that has come to the control period, but not for ever") {
   FaultLog log;
-  log.take(answer(2.0, {put_in(1, 1.9)}));
+  log.take(answer(2.0, {injection(1, 1.9)}));
   log.notice({Fault::watchdog, 20'500});
-  log.take(answer(2.01, {put_in(1, 1.9)}));
+  log.take(answer(2.01, {injection(1, 1.9)}));
   CHECK(log.waits_for_answer());
-  log.take(answer(2.1, {put_in(1, 1.9)}));
+  log.take(answer(2.1, {injection(1, 1.9)}));
   CHECK(*log.faults()[0].noticed->after_s == doctest::Approx(0.12505));
 
-  log.take(answer(2.2, {put_in(2, 2.15)}));
+  log.take(answer(2.2, {injection(2, 2.15)}));
   log.notice({Fault::watchdog, 900'000});  // from a run before a reset
-  for (int i = 0; i < 20 && log.waits_for_answer(); ++i) log.take(answer(2.3 + 0.1 * i, {put_in(2, 2.15)}));
+  for (int i = 0; i < 20 && log.waits_for_answer(); ++i) log.take(answer(2.3 + 0.1 * i, {injection(2, 2.15)}));
   REQUIRE(log.faults().back().noticed);
   CHECK_FALSE(log.faults().back().noticed->after_s);
 }
@@ -142,8 +142,8 @@ TEST_CASE("it waits for an answer that has come to the control period, but not f
 TEST_CASE("control periods are as long as the board's crystal makes them") {
   FaultLog log;
   const double slow_s = 50.5e-6;
-  log.take(answer(2.0, {put_in(1, 1.9)}, 1.0, slow_s));
-  const auto now = answer(3.0, {put_in(1, 1.9)}, 1.0, slow_s);
+  log.take(answer(2.0, {injection(1, 1.9)}, 1.0, slow_s));
+  const auto now = answer(3.0, {injection(1, 1.9)}, 1.0, slow_s);
   log.notice({Fault::supply_low, static_cast<std::uint32_t>(now.period) - 1000});
   log.take(now);
   CHECK(*log.faults()[0].noticed->after_s == doctest::Approx(1.1 - 999 * slow_s));
@@ -151,16 +151,16 @@ TEST_CASE("control periods are as long as the board's crystal makes them") {
 
 TEST_CASE("a core that was kept from its interrupt counts too few, until it starts anew") {
   FaultLog log;
-  log.take(answer(2.0, {put_in(1, 1.9, "core_stalled")}));
+  log.take(answer(2.0, {injection(1, 1.9, "core_stalled")}));
   log.notice({Fault::servo_overrun, 17'000});  // earlier than the injection by the board's counter
-  log.take(answer(2.1, {put_in(1, 1.9, "core_stalled"), put_in(3, 2.05, "core_halted")}));
+  log.take(answer(2.1, {injection(1, 1.9, "core_stalled"), injection(3, 2.05, "core_halted")}));
   REQUIRE(log.faults()[0].noticed);
   CHECK_FALSE(log.faults()[0].noticed->after_s);
   CHECK_FALSE(log.faults()[1].noticed);  // injected after the report
 
-  log.take(answer(2.3, {put_in(2, 2.25, "core_stalled")}));
+  log.take(answer(2.3, {injection(2, 2.25, "core_stalled")}));
   log.notice({Fault::watchdog, 400});
-  log.take(answer(2.6, {put_in(2, 2.25, "core_stalled")}, 2.5));
+  log.take(answer(2.6, {injection(2, 2.25, "core_stalled")}, 2.5));
   const auto& stalled = log.faults().back();
   REQUIRE(stalled.noticed);
   CHECK(*stalled.noticed->after_s == doctest::Approx(0.27005));

@@ -1,6 +1,6 @@
 // Tests the thread that injects faults into a virtual board. A control socket replaces the board. The test sets the
 // answers of the socket.
-#include "host/companion/window/panes/board_faults.hpp"
+#include "host/companion/window/panes/fault_injector.hpp"
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ constexpr auto nothing_in =
 
 /// Reads messages of the thread until a message of this kind arrives.
 template <class Kind>
-Kind wait_for(BoardFaults& faults) {
+Kind wait_for(FaultInjector& faults) {
   std::optional<Kind> come;
   REQUIRE(eventually([&] {
     for (const auto& news : faults.take_news())
@@ -49,15 +49,15 @@ TEST_CASE("the board is asked again and again, and told what to do") {
     return request.at("command") == "inject" ? R"({"ok": true, "number": 3, "at_s": 1.6})" + std::string("\n")
                                              : nothing_in + std::string("\n");
   });
-  BoardFaults faults({"127.0.0.1", server.port()});
+  FaultInjector faults({"127.0.0.1", server.port()});
   CHECK(wait_for<device::Injections>(faults).period == 7);
   CHECK(wait_for<device::Injections>(faults).board_time_s == 1.5);
   faults.inject({.fault = "motor_open", .of = "2", .for_s = 0.25});
-  const auto put_in = wait_for<device::PutInFault>(faults);
-  CHECK(put_in.number == 3);
-  CHECK(put_in.fault == "motor_open");
-  CHECK(put_in.at_s == 1.6);
-  CHECK(put_in.until_s == 1.85);
+  const auto injection = wait_for<device::Injection>(faults);
+  CHECK(injection.number == 3);
+  CHECK(injection.fault == "motor_open");
+  CHECK(injection.at_s == 1.6);
+  CHECK(injection.until_s == 1.85);
   faults.heal("motor_open", "2");
   faults.heal_all();
   REQUIRE(eventually([&] { return was_asked(server, {{"command", "heal"}}); }));
@@ -69,19 +69,19 @@ TEST_CASE("a refusal is told, and what comes after it is done") {
     return request.at("command") == "inject" ? R"({"ok": false, "error": "there is no such motor"})" + std::string("\n")
                                              : nothing_in + std::string("\n");
   });
-  BoardFaults faults({"127.0.0.1", server.port()});
+  FaultInjector faults({"127.0.0.1", server.port()});
   faults.inject({.fault = "motor_open", .of = "9"});
-  CHECK(wait_for<BoardFaults::Refusal>(faults).sentence.find("no such motor") != std::string::npos);
+  CHECK(wait_for<FaultInjector::Refusal>(faults).sentence.find("no such motor") != std::string::npos);
   CHECK(wait_for<device::Injections>(faults).period == 7);
 }
 
 TEST_CASE("a board that goes away is told once, and is asked again when it is back; nothing of before is done then") {
   std::atomic<bool> answers = true;
   FakeControlServer server([&](const json&) { return answers ? nothing_in + std::string("\n") : std::string("no\n"); });
-  BoardFaults faults({"127.0.0.1", server.port()});
+  FaultInjector faults({"127.0.0.1", server.port()});
   wait_for<device::Injections>(faults);
   answers = false;
-  CHECK_FALSE(wait_for<BoardFaults::Gone>(faults).sentence.empty());
+  CHECK_FALSE(wait_for<FaultInjector::Gone>(faults).sentence.empty());
   faults.inject({.fault = "supply_cut"});
   const json inject{{"command", "inject"}, {"fault", "supply_cut"}, {"after_s", 0.0}};
   REQUIRE(eventually([&] { return was_asked(server, inject); }));
@@ -102,7 +102,7 @@ TEST_CASE("an answer like the last one is no change") {
     if (has_fault) answer["injected"].push_back({{"number", 1}, {"fault", "supply_cut"}, {"since_s", 1.0}});
     return answer.dump() + "\n";
   });
-  BoardFaults faults({"127.0.0.1", server.port()});
+  FaultInjector faults({"127.0.0.1", server.port()});
   wait_for<device::Injections>(faults);
   const auto asked = server.requests().size();
   REQUIRE(eventually([&] { return server.requests().size() >= asked + 2; }));

@@ -16,7 +16,7 @@
 
 namespace inkwell::window {
 
-class BoardFaults {
+class FaultInjector {
  public:
   struct Refusal {
     std::string sentence;
@@ -25,10 +25,10 @@ class BoardFaults {
   struct Gone {
     std::string sentence;
   };
-  using News = std::variant<device::Injections, device::PutInFault, Refusal, Gone>;
+  using News = std::variant<device::Injections, device::Injection, Refusal, Gone>;
 
-  explicit BoardFaults(device::SocketAddress control);
-  ~BoardFaults();
+  explicit FaultInjector(device::SocketAddress control);
+  ~FaultInjector();
 
   void inject(const protocol::InjectionRequest& request);
   void heal(const std::string& fault, const std::string& of);
@@ -52,9 +52,9 @@ class BoardFaults {
   std::condition_variable_any asked_;
   std::vector<Request> requests_;
   std::vector<News> news_;
-  std::vector<device::PutInFault> seen_;  ///< faults of the last returned answer
-  bool is_gone_ = false;                  ///< last reported state
-  std::jthread thread_;                   ///< last member, because the thread uses all members above
+  std::vector<device::Injection> seen_;  ///< faults of the last returned answer
+  bool is_gone_ = false;                 ///< last reported state
+  std::jthread thread_;                  ///< last member, because the thread uses all members above
 };
 
 }  // namespace inkwell::window

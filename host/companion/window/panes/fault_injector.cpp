@@ -1,4 +1,4 @@
-#include "host/companion/window/panes/board_faults.hpp"
+#include "host/companion/window/panes/fault_injector.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,30 +16,30 @@ constexpr auto answer_limit = 2s;  // for a board that a debugger has stopped; a
 
 }  // namespace
 
-BoardFaults::BoardFaults(device::SocketAddress control)
+FaultInjector::FaultInjector(device::SocketAddress control)
     : control_(std::move(control)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-BoardFaults::~BoardFaults() = default;  // std::jthread requests its thread to stop and joins it
+FaultInjector::~FaultInjector() = default;  // std::jthread requests its thread to stop and joins it
 
-void BoardFaults::inject(const protocol::InjectionRequest& request) {
+void FaultInjector::inject(const protocol::InjectionRequest& request) {
   queue_request([this, request](device::ControlClient& board) { publish(board.inject(request)); });
 }
 
-void BoardFaults::heal(const std::string& fault, const std::string& of) {
+void FaultInjector::heal(const std::string& fault, const std::string& of) {
   queue_request([fault, of](device::ControlClient& board) { board.heal(fault, of); });
 }
 
-void BoardFaults::heal_all() {
+void FaultInjector::heal_all() {
   queue_request([](device::ControlClient& board) { board.heal_all(); });
 }
 
-void BoardFaults::queue_request(Request request) {
+void FaultInjector::queue_request(Request request) {
   const std::scoped_lock lock(mutex_);
   requests_.push_back(std::move(request));
   asked_.notify_one();
 }
 
-void BoardFaults::publish(News news) {
+void FaultInjector::publish(News news) {
   const std::scoped_lock lock(mutex_);
   const bool is_answer = std::holds_alternative<device::Injections>(news);
   const bool is_gone = std::holds_alternative<Gone>(news);
@@ -49,14 +49,14 @@ void BoardFaults::publish(News news) {
   news_.push_back(std::move(news));
 }
 
-std::vector<BoardFaults::News> BoardFaults::take_news() {
+std::vector<FaultInjector::News> FaultInjector::take_news() {
   const std::scoped_lock lock(mutex_);
   for (const News& each : news_)
     if (const auto* answer = std::get_if<device::Injections>(&each)) seen_ = answer->faults;
   return std::exchange(news_, {});
 }
 
-bool BoardFaults::has_changed() const {
+bool FaultInjector::has_changed() const {
   const std::scoped_lock lock(mutex_);
   return std::ranges::any_of(news_, [this](const News& each) {
     const auto* answer = std::get_if<device::Injections>(&each);
@@ -64,7 +64,7 @@ bool BoardFaults::has_changed() const {
   });
 }
 
-void BoardFaults::carry_out(const Request& request, device::ControlClient& board) {
+void FaultInjector::carry_out(const Request& request, device::ControlClient& board) {
   try {
     request(board);
   } catch (const device::CommandRefused& refused) {
@@ -72,7 +72,7 @@ void BoardFaults::carry_out(const Request& request, device::ControlClient& board
   }
 }
 
-void BoardFaults::run(const std::stop_token& stop) {
+void FaultInjector::run(const std::stop_token& stop) {
   std::optional<device::ControlClient> board;
   while (!stop.stop_requested()) {
     std::vector<Request> requests;
