@@ -169,11 +169,12 @@ void update_by_probe(const Image& image, const std::string& interface, Consent c
   insist(image, installed, consent);
   write_image_file(image, folder.path() / image_file);
   bool is_verified = false;
-  const auto watch = [&](const std::string& line) {
+  const auto note_line = [&](const std::string& line) {
     is_verified |= line == verified_line;
     on_line(line);
   };
-  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), watch) != 0) throw device::Error(cannot_use);
+  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), note_line) != 0)
+    throw device::Error(cannot_use);
   if (!is_verified) throw device::Error(not_verified);
 }
 

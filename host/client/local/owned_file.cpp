@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 std::system_error failure(const fs::path& path) { return {errno, std::generic_category(), path.string()}; }
 
 /// Follows a symbolic link, because the target must be replaced instead of the link.
-fs::path resolve_links(fs::path path) {
-  constexpr int links_maximum = 40;  // limit of Linux
+fs::path resolve_symbolic_links(fs::path path) {
+  constexpr int symbolic_links_maximum = 40;  // limit of Linux
   std::error_code code;
-  for (int i = 0; i < links_maximum && fs::is_symlink(path, code); ++i) {
+  for (int i = 0; i < symbolic_links_maximum && fs::is_symlink(path, code); ++i) {
     const fs::path target = fs::read_symlink(path, code);
     if (code) break;
     path = path.parent_path() / target;
@@ -90,7 +90,7 @@ void write_all(const Descriptor& file, std::span<const std::byte> content, const
 }  // namespace
 
 OwnedFile::OwnedFile(const fs::path& path, Flock flock_like)
-    : path_(resolve_links(path)), next_path_(path_), flock_(flock_like) {
+    : path_(resolve_symbolic_links(path)), next_path_(path_), flock_(flock_like) {
   next_path_ += ".new";
   acquire();
 }

@@ -13,7 +13,7 @@ constexpr float soft_edge_pixels = 0.5f;
 
 }  // namespace
 
-LineBatch::LineBatch() : program_(shaders::line_vertex, shaders::line_fragment) {
+LineBatch::LineBatch() : shader_program_(shaders::line_vertex, shaders::line_fragment) {
   glGenVertexArrays(1, &vertex_array_);
   glGenBuffers(1, &buffer_);
   glBindVertexArray(vertex_array_);
@@ -71,7 +71,7 @@ void LineBatch::draw(const glm::mat4& to_clip, glm::vec2 viewport_pixels) {
   }
   segments_.clear();
   if (corners_.empty()) return;
-  program_.use();
+  shader_program_.use();
   glBindVertexArray(vertex_array_);
   glBindBuffer(GL_ARRAY_BUFFER, buffer_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners_.size() * sizeof(Corner)), corners_.data(),

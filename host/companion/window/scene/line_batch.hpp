@@ -39,7 +39,7 @@ class LineBatch {
   std::vector<Corner> corners_;
   GLuint vertex_array_ = 0;
   GLuint buffer_ = 0;
-  ShaderProgram program_;
+  ShaderProgram shader_program_;
 };
 
 }  // namespace inkwell::window

@@ -24,20 +24,21 @@ GLuint compile(GLenum kind, const char* source) {
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_source) : program_(glCreateProgram()) {
+ShaderProgram::ShaderProgram(const char* vertex_source, const char* fragment_source)
+    : shader_program_(glCreateProgram()) {
   const GLuint vertex = compile(GL_VERTEX_SHADER, vertex_source);
   const GLuint fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
-  glAttachShader(program_, vertex);
-  glAttachShader(program_, fragment);
-  glLinkProgram(program_);
+  glAttachShader(shader_program_, vertex);
+  glAttachShader(shader_program_, fragment);
+  glLinkProgram(shader_program_);
   glDeleteShader(vertex);
   glDeleteShader(fragment);
   GLint linked = GL_FALSE;
-  glGetProgramiv(program_, GL_LINK_STATUS, &linked);
+  glGetProgramiv(shader_program_, GL_LINK_STATUS, &linked);
   if (linked != GL_TRUE) throw std::runtime_error("The OpenGL driver could not link a shader.");
 }
 
-ShaderProgram::~ShaderProgram() { glDeleteProgram(program_); }
+ShaderProgram::~ShaderProgram() { glDeleteProgram(shader_program_); }
 
 void ShaderProgram::set(const char* name, const glm::mat4& value) const {
   glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(value));

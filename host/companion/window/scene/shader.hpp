@@ -19,7 +19,7 @@ class ShaderProgram {
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;
 
-  void use() const { glUseProgram(program_); }
+  void use() const { glUseProgram(shader_program_); }
   void set(const char* name, const glm::mat4& value) const;
   void set(const char* name, const glm::vec3& value) const;
   void set(const char* name, const glm::vec2& value) const;
@@ -28,8 +28,8 @@ class ShaderProgram {
   void set(const char* name, Colour value) const;
 
  private:
-  GLint location(const char* name) const { return glGetUniformLocation(program_, name); }
-  GLuint program_;
+  GLint location(const char* name) const { return glGetUniformLocation(shader_program_, name); }
+  GLuint shader_program_;
 };
 
 glm::vec4 to_vector(Colour colour);

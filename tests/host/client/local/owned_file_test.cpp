@@ -83,18 +83,18 @@ class Child {
 
 TEST_CASE("a file has one owner, whatever name the second one uses, before and after it was replaced") {
   const TemporaryDirectory directory;
-  const fs::path file = directory / "file", link = directory / "link", hard_link = directory / "hard",
+  const fs::path file = directory / "file", symbolic_link = directory / "link", hard_link = directory / "hard",
                  moved = directory / "moved";
   std::ofstream(file) << "old";
-  fs::create_symlink("file", link);
+  fs::create_symlink("file", symbolic_link);
   fs::create_hard_link(file, hard_link);
   {
-    OwnedFile owned(link);
+    OwnedFile owned(symbolic_link);
     CHECK(owned.warning().empty());
-    for (const auto& name : {file, link, hard_link}) CHECK(contains(refusal(name), of_this_process()));
+    for (const auto& name : {file, symbolic_link, hard_link}) CHECK(contains(refusal(name), of_this_process()));
     replace(owned, "new");
-    for (const auto& name : {file, link, hard_link}) CHECK(contains(refusal(name), of_this_process()));
-    CHECK(fs::is_symlink(link));
+    for (const auto& name : {file, symbolic_link, hard_link}) CHECK(contains(refusal(name), of_this_process()));
+    CHECK(fs::is_symlink(symbolic_link));
     CHECK(text_in(file) == "new");
     fs::rename(file, moved);
     CHECK(contains(refusal(moved), of_this_process()));
