@@ -31,19 +31,6 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// Compares a row for axis 1, 3, x or z with the row for axis 2 or y. Returns false if the row for axis 2 or y is
-/// missing or differs (see alike()).
-template <class Table>
-constexpr bool neighbors_are_alike(const Table& table, std::size_t index) {
-  const auto& row = table[index];
-  const std::size_t place = axis_place(row.name);
-  if (place == std::string_view::npos || row.name[place] == '2' || row.name[place] == 'y') return true;
-  const int distance = row.name[place] == '1' || row.name[place] == 'x' ? 1 : -1;
-  for (const auto& other : table)
-    if (is_named_after(other.name, row.name, distance) && alike(other, row)) return true;
-  return false;
-}
-
 // The functions are not constexpr, so that a call stops the compilation and the compiler prints the function name.
 void the_table_has_no_three_rows_of_this_name();
 void the_three_rows_differ_in_unit_range_or_kind();

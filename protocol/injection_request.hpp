@@ -57,11 +57,12 @@ constexpr std::string_view wanted_place(InjectionPlace place) {
 /// Returns the help text of a row, in which values replace the names in braces.
 inline std::string help_of(const InjectionInfo& row) {
   constexpr std::string_view figure = "{wire_spike_us}";
-  const auto place = row.help.find(figure);
-  if (place == std::string_view::npos) return std::string(row.help);
-  std::string help(row.help.substr(0, place));
+  const std::string_view text = row.help;
+  const auto place = text.find(figure);
+  if (place == std::string_view::npos) return std::string(text);
+  std::string help(text.substr(0, place));
   help += std::to_string(static_cast<int>(1e6 * wire_spike_s + 0.5));
-  help += row.help.substr(place + figure.size());
+  help += text.substr(place + figure.size());
   return help;
 }
 

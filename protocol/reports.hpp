@@ -81,66 +81,31 @@ constexpr bool is_closed(std::uint8_t switches, Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
-// clang-format off
-/// X(bit, name, meaning)
-#define INKWELL_FORCE_SOURCES(X)                                   \
-  X(1, walls, "The force law of the board acts. In the default image, the force law renders the walls of the box.") \
-  X(2, shapes, "Planes or a sphere placed by a program act on the probe.") \
-  X(4, program, "A program on the PC sends forces.")
-// clang-format on
-
-/// Force sources that the hand feels: bits of PoseReport::force_sources.
-enum class ForceSource : std::uint8_t {
-#define X(bit, name, ...) name = bit,
-  INKWELL_FORCE_SOURCES(X)
-#undef X
-};
+enum class ForceSource : std::uint8_t;
+enum class Limit : std::uint8_t;
 
 struct ForceSourceInfo {
   ForceSource source;
   std::string_view name;
-  std::string_view meaning;
-};
-
-inline constexpr auto force_source_table = std::to_array<ForceSourceInfo>({
-#define X(bit, name, meaning) {ForceSource::name, #name, meaning},
-    INKWELL_FORCE_SOURCES(X)
-#undef X
-});
-
-constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
-  return (force_sources & static_cast<std::uint8_t>(source)) != 0;
-}
-
-// clang-format off
-/// X(bit, name, meaning)
-#define INKWELL_LIMITS(X)                                          \
-  X(1, force, "The force is limited by force_limit_N. After an increase, the limit rises gradually to the new value.")               \
-  X(2, current, "A motor is at its current limit. All motor currents are scaled down together, so the force is weaker but keeps its direction.") \
-  X(4, change, "The force changes at its largest rate, force_change_N_per_s.") \
-  X(8, energy, "The energy reserve is empty: the force component along the motion is reduced.") \
-  X(16, heat, "A hot motor is at its reduced current limit. All motor currents are scaled down together.") \
-  X(32, speed, "The probe speed is close to speed_limit_m_per_s: the force component along the motion is reduced.")
-// clang-format on
-
-/// Limits that reduce the force: bits of PoseReport::limits. A limit is not a fault.
-enum class Limit : std::uint8_t {
-#define X(bit, name, ...) name = bit,
-  INKWELL_LIMITS(X)
-#undef X
+  const char* meaning;
 };
 
 struct LimitInfo {
   Limit limit;
   std::string_view name;
-  std::string_view meaning;
+  const char* meaning;
 };
 
-inline constexpr auto limit_table = std::to_array<LimitInfo>({
-#define X(bit, name, meaning) {Limit::name, #name, meaning},
-    INKWELL_LIMITS(X)
-#undef X
-});
+}  // namespace inkwell::protocol
+
+#include <tables/force_sources.hpp>  // ForceSource, force_source_table
+#include <tables/limits.hpp>         // Limit, limit_table
+
+namespace inkwell::protocol {
+
+constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
+  return (force_sources & static_cast<std::uint8_t>(source)) != 0;
+}
 
 constexpr bool is_reached(std::uint8_t limits, Limit limit) { return (limits & static_cast<std::uint8_t>(limit)) != 0; }
 

@@ -32,7 +32,7 @@ constexpr std::array<Limits, parameter_count> table_limits = []() {
   std::array<Limits, parameter_count> rows{};
   for (std::size_t i = 0; i < parameter_count; ++i) {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];
-    rows[i] = {row.id, row.kind != ParameterKind::real, protocol::needs_force_off(row), row.minimum, row.maximum};
+    rows[i] = {row.id, row.kind != ParameterKind::real, row.needs_force_off, row.minimum, row.maximum};
   }
   return rows;
 }();

@@ -32,13 +32,6 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
          name.ends_with(plain + "_per_turn");
 }
 
-/// A parameter table for changes by tests. All tests share this table, because each table needs 3.5 KB of the target's
-/// memory.
-auto& fresh_table() {
-  static auto table = parameter_table;
-  return table = parameter_table;
-}
-
 /// Help text of a signal whose value is a sum of bits: the text `begin` and all bits of the table.
 template <class Table, class Bit>
 std::string help_of_bits(std::string begin, const Table& table, Bit bit) {
@@ -94,7 +87,7 @@ TEST_CASE("parameters: names and ids are unique and found, names end in their un
     CHECK(find_parameter(row.id) == static_cast<Parameter>(i));
     CHECK(find_parameter(row.name) == static_cast<Parameter>(i));
     CHECK(ends_in_unit(row.name, row.unit));
-    CHECK(row.help.ends_with('.'));
+    CHECK(std::string_view(row.help).ends_with('.'));
     CHECK_FALSE(row.group.empty());
     CHECK(row.minimum < row.maximum);
     CHECK(default_parameters().values[i] == row.default_value);
@@ -120,7 +113,7 @@ TEST_CASE("signals: names are unique and found, end in their unit, and all have 
     CHECK(find_signal(row.name) == static_cast<Signal>(i));
     CHECK(&info(static_cast<Signal>(i)) == &row);
     CHECK(ends_in_unit(row.name, row.unit));
-    CHECK(row.help.ends_with('.'));
+    CHECK(std::string_view(row.help).ends_with('.'));
   }
   CHECK_FALSE(find_signal("no_such_signal").has_value());
 }
@@ -133,9 +126,9 @@ void check_codes(const Table& table) {
     CAPTURE(row.name);
     CHECK(row.code == next++);
     CHECK(names.insert(row.name).second);
-    CHECK(row.cause.ends_with('.'));
-    CHECK(row.remedy.ends_with('.'));
-    CHECK(row.remedy.size() >= 10);
+    CHECK(std::string_view(row.cause).ends_with('.'));
+    CHECK(std::string_view(row.remedy).ends_with('.'));
+    CHECK(std::string_view(row.remedy).size() >= 10);
   }
 }
 
@@ -150,8 +143,8 @@ TEST_CASE("every fault and refusal has a cause and a remedy") {
 
 TEST_CASE("every state and event has a meaning, and a state of another version has no force") {
   CHECK(state_table.size() == static_cast<std::size_t>(State::testing) + 1);
-  for (const EventInfo& row : event_table) CHECK_FALSE(row.meaning.empty());
-  for (const StateInfo& row : state_table) CHECK(row.meaning.ends_with('.'));
+  for (const EventInfo& row : event_table) CHECK(*row.meaning != '\0');
+  for (const StateInfo& row : state_table) CHECK(std::string_view(row.meaning).ends_with('.'));
   CHECK(info(State::active).name == "active");
   CHECK(info(State::limited).name == "limited");
   CHECK(info(static_cast<State>(200)).name == "unknown");
@@ -223,39 +216,6 @@ TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash"
   CHECK(detail::fnv1a(2166136261u, "a") == 0xE40C292Cu * 16777619u);
 }
 
-TEST_CASE("a parameter table with a default out of range, ids that do not rise or a scattered group is refused") {
-  const auto changed = [](auto change) -> const auto& {
-    auto& table = fresh_table();
-    change(table);
-    return table;
-  };
-  const auto range_holds = [&](auto change) { return detail::default_is_in_range(changed(change), 7); };
-  CHECK_FALSE(range_holds([](auto& rows) { rows[7].default_value = rows[7].maximum + 1.0f; }));
-  CHECK_FALSE(range_holds([](auto& rows) { rows[7].default_value = rows[7].minimum - 1.0f; }));
-  CHECK(range_holds([](auto& rows) { rows[7].default_value = rows[7].minimum; }));
-  CHECK(range_holds([](auto& rows) { rows[7].default_value = rows[7].maximum; }));
-  const auto id_rises = [&](auto change, std::size_t row) { return detail::id_rises(changed(change), row); };
-  CHECK(id_rises([](auto&) {}, 7));
-  CHECK(id_rises([](auto& rows) { rows[0].id = 0; }, 0));
-  CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[6].id; }, 7));
-  CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[8].id; }, 8));
-  const auto stands = [&](auto change, std::size_t row) {
-    return detail::is_contiguous_with_its_group(changed(change), row);
-  };
-  REQUIRE(parameter_table[0].group != parameter_table[7].group);
-  CHECK(stands([](auto&) {}, 0));
-  CHECK(stands([](auto& rows) { rows[7].group = "of its own"; }, 7));
-  CHECK_FALSE(stands([](auto& rows) { rows[7].group = rows[0].group; }, 7));
-  CHECK_FALSE(stands([](auto& rows) { rows[7].group = "of its own"; }, 8));
-}
-
-TEST_CASE("a signal is found at the place that its id says") {
-  CHECK(detail::id_is_place(0, signal_table[0].name));
-  CHECK(detail::id_is_place(signal_count - 1, signal_table.back().name));
-  CHECK_FALSE(detail::id_is_place(1, signal_table[0].name));
-  CHECK_FALSE(detail::id_is_place(signal_count, "beyond"));
-}
-
 TEST_CASE("the rows for three axes are found by their names") {
   CHECK(of_axis(Parameter::gear_ratio_1, 0) == Parameter::gear_ratio_1);
   CHECK(of_axis(Parameter::gear_ratio_1, 2) == Parameter::gear_ratio_3);
@@ -274,36 +234,13 @@ TEST_CASE("the rows for three axes are found by their names") {
   CHECK(set.of_each(Parameter::origin_x_m) == std::array{1.0f, 2.0f, 3.0f});
 }
 
-TEST_CASE("a table in which the rows for three axes differ, or one lacks, is refused") {
+TEST_CASE("names that differ only in the axis belong to the rows of one group") {
   CHECK(detail::is_named_after("gear_ratio_2", "gear_ratio_1", 1));
   CHECK(detail::is_named_after("box_minimum_z_m", "box_minimum_x_m", 2));
   CHECK_FALSE(detail::is_named_after("gear_ratio_3", "gear_ratio_1", 1));
   CHECK_FALSE(detail::is_named_after("gear_radio_2", "gear_ratio_1", 1));
   CHECK_FALSE(detail::is_named_after("gear_ratio_2_m", "gear_ratio_1", 1));
   CHECK_FALSE(detail::is_named_after("wall_stiffness_N_per_m", "wall_damping_Ns_per_m", 0));
-
-  const auto refused = [](auto change) {
-    auto& table = fresh_table();
-    change(table[static_cast<std::size_t>(Parameter::current_limit_2_A)]);
-    const bool first = detail::neighbors_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_1_A));
-    const bool third = detail::neighbors_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_3_A));
-    CHECK(first == third);
-    return !first;
-  };
-  CHECK(refused([](auto& row) { row.name = "current_limit_two_A"; }));
-  CHECK(refused([](auto& row) { row.unit = "mA"; }));
-  CHECK(refused([](auto& row) { row.minimum = -1.0f; }));
-  CHECK(refused([](auto& row) { row.maximum = 2.0f; }));
-  CHECK(refused([](auto& row) { row.kind = ParameterKind::whole; }));
-  CHECK(refused([](auto& row) { row.group = "arm"; }));
-  CHECK(refused([](auto& row) { row.belongs_to_arm = false; }));
-  CHECK_FALSE(refused([](auto& row) { row.default_value = 0.5f; }));
-
-  static auto signals = signal_table;
-  signals[static_cast<std::size_t>(Signal::duty_3)].wire = SignalWire::float32;
-  CHECK_FALSE(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::duty_3)));
-  CHECK(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::duty_1)));
-  CHECK(detail::neighbors_are_alike(signals, static_cast<std::size_t>(Signal::supply_V)));
 }
 
 TEST_CASE("the numbers of the protocol, which both ends of another version count on") {

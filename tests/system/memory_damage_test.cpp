@@ -118,7 +118,7 @@ TEST_CASE("a bit that flips in what the next start would give is told, and is no
   rig.control.inject({"ram_bit", text_of(stored_force_limit()), 7});
   CHECK(rig.device->stored_parameters()[Parameter::force_limit_N] != force_limit_N);
   CHECK_THROWS_WITH_AS(rig.device->restore_stored_parameters(),
-                       doctest::Contains(protocol::info(protocol::Refusal::busy).cause.data()), device::Refused);
+                       doctest::Contains(protocol::info(protocol::Refusal::busy).cause), device::Refused);
   CHECK(rig.device->parameters()[Parameter::force_limit_N] == force_limit_N);
   rig.run_until(is_in_fault, 0.5);
   CHECK(rig.pose().fault == Fault::memory_damaged);

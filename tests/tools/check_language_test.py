@@ -48,6 +48,10 @@ class Words(unittest.TestCase):
     def test_the_table_of_the_glossary_is_not_checked(self):
         self.assertEqual([], self.found(check_language.page_text(GLOSSARY)))
 
+    def test_texts_of_tables_over_a_line_end(self):
+        text = check_language.table_text('# bears\nhelp = """\\\n  It stops at \\\n  once."""\n')
+        self.assertEqual([(1, "bears"), (3, "at\nonce")], [(line, word.replace(" ", "\n")) for line, word in self.found(text)])
+
     def test_strings_of_sources_without_code_and_comments(self):
         source = '#include "bears.hpp"\nint bear;  // "bear"\nconst char* text = "A \\"bear\\" stops at once.";\n'
         self.assertEqual([(3, "at once"), (3, "bear")], self.found(check_language.string_text(source)))

@@ -52,29 +52,32 @@ bool is_bad(int count, bool known) {
   if (count > 3 && known) count = 0;
   return count < 0 || (known && count(known, 2) == 1);
 }
-    {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
-    {State::ready, State::unreferenced, {}, events(Event::referenced)},
+"""
+WAYS = """
+  { from = "ready", to = "ramping", needs = ["enable"], unless = ["disable", "stop"] },
+  { from = "ready", to = "unreferenced", needs = [], unless = ["referenced"] },
 """
 safety = {mutant.what: mutant.applied_to(CODE) for mutant in mutants.safety_mutants("a.cpp", CODE)}
 assert "if (count > 3) count = 0;" in safety["without && known"]
 assert "return count < 0;" in safety["without || (known && count(known, 2) == 1)"]
 assert "|| (known);" in safety["without && count(known, 2) == 1"]
 assert "if (!(count > 3 && known))" in safety["if (not (count > 3 && known))"]
-assert "{State::ready, State::ready, events(Event::enable)" in safety["without the way ready to ramping by events(Event::enable)"]
-assert "events(Event::enable), {}}" in safety["ready to ramping by events(Event::enable) without unless events(Event::disable, Event::stop)"]
-assert "{State::ready, State::ready, {}" in safety["without the way ready to unreferenced by {}"]
-assert len(safety) == 7, safety
+assert len(safety) == 4, safety
+ways = {mutant.what: mutant.applied_to(WAYS) for mutant in mutants.safety_mutants("a.toml", WAYS)}
+assert 'from = "ready", to = "ready", needs = ["enable"]' in ways['without the way ready to ramping by ["enable"]']
+assert 'needs = ["enable"], unless = [] }' in ways['ready to ramping by ["enable"] without unless ["disable", "stop"]']
+assert 'from = "ready", to = "ready", needs = []' in ways["without the way ready to unreferenced by []"]
+assert len(ways) == 3, ways
 
 TABLE = """
-      {Fault::not_finite, every, when_gone, coast},
-      {Fault::encoder_wire, moving, at_once, coast, true},
+  { fault = "not_finite", monitored_in = ["every"], clearing = "when_gone", off = "coast" },
+  { fault = "encoder_wire", monitored_in = ["moving"], clearing = "at_once", off = "coast", voids_reference = true },
 """
-watches = mutants.watch_mutants("table.hpp", TABLE)
+watches = mutants.watch_mutants("table.toml", TABLE)
 assert [mutant.what for mutant in watches] == ["without watching not_finite", "without watching encoder_wire"], watches
-assert "{Fault::encoder_wire, States{}, at_once, coast, true}," in watches[1].applied_to(TABLE)
-assert mutants.watch_mutants("table.hpp", "  X(5, ramping, true)") == []
-source = (Path(sys.argv[1]) / "protocol/supervision.hpp").read_text()
-rows = source[source.index("condition_table = []"): source.index("std::to_array", source.index("condition_table = []")) + 4000]
-assert len(mutants.watch_mutants("supervision.hpp", source)) == rows.count("{Fault::"), "a row is written otherwise"
-assert len([mutant for mutant in mutants.way_mutants("supervision.hpp", source) if mutant.what.startswith("without")]) == \
-    source.count("    {State::"), "a way is written otherwise"
+assert '"encoder_wire", monitored_in = [], clearing' in watches[1].applied_to(TABLE)
+assert mutants.watch_mutants("table.toml", '[state.ramping]\nid = 5') == []
+source = (Path(sys.argv[1]) / "protocol/tables/supervision.toml").read_text()
+assert len(mutants.watch_mutants("supervision.toml", source)) == source.count("fault = \""), "a row is written otherwise"
+assert len([mutant for mutant in mutants.way_mutants("supervision.toml", source) if mutant.what.startswith("without")]) == \
+    source.count("from = \""), "a way is written otherwise"

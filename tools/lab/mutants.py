@@ -124,18 +124,18 @@ def other_mutants(path: str, source: str) -> list[Mutant]:
 
 
 NOT_WATCHED = "without watching "
-WATCH = re.compile(r"^ +\{Fault::(?P<fault>\w+), (?P<states>[^{},]+), \w+, \w+(?:, \w+)?\},$", re.MULTILINE)
+WATCH = re.compile(r'^ +\{ fault = "(?P<fault>\w+)", monitored_in = (?P<states>\[[^\[\]]*\]), ', re.MULTILINE)
 
 
 def watch_mutants(path: str, source: str) -> list[Mutant]:
     """Mutants of the table of monitored faults: each row is active in no state."""
     return [Mutant(path, source.count("\n", 0, found.start("fault")) + 1, NOT_WATCHED + found["fault"],
-                   found.start("states"), found.end("states"), "States{}")
+                   found.start("states"), found.end("states"), "[]")
             for found in WATCH.finditer(source)]
 
 
-WAY = re.compile(r"^ +\{State::(?P<from>\w+), State::(?P<to>\w+), (?P<needs>\{\}|events\([^()]*\)), (?P<unless>\{\}|events\([^()]*\))\},$",
-                 re.MULTILINE)
+WAY = re.compile(r'^ +\{ from = "(?P<from>\w+)", to = "(?P<to>\w+)", needs = (?P<needs>\[[^\[\]]*\]), '
+                 r'unless = (?P<unless>\[[^\[\]]*\]) \},$', re.MULTILINE)
 
 
 def way_mutants(path: str, source: str) -> list[Mutant]:
@@ -145,9 +145,9 @@ def way_mutants(path: str, source: str) -> list[Mutant]:
         line = source.count("\n", 0, found.start("from")) + 1
         way = f"{found['from']} to {found['to']} by {found['needs']}"
         mutants.append(Mutant(path, line, f"without the way {way}", found.start("to"), found.end("to"), found["from"]))
-        if found["needs"] != "{}" and found["unless"] != "{}":
+        if found["needs"] != "[]" and found["unless"] != "[]":
             mutants.append(Mutant(path, line, f"{way} without unless {found['unless']}", found.start("unless"),
-                                  found.end("unless"), "{}"))
+                                  found.end("unless"), "[]"))
     return mutants
 
 

@@ -38,9 +38,9 @@ const inkwell::process::HeldAtFork rows_at_fork(rows_mutex);
 
 // All texts of the tables, including the texts of a force law, are zero-terminated.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
-  return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
+  return {row.name.data(), row.unit.data(), row.help, row.minimum, row.maximum, row.default_value};
 }
-inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help.data()}; }
+inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help}; }
 
 /// A row in C form; null after the last row. Rows are never moved or freed. Force law rows are added later, and
 /// programs may read rows in their last destructors.

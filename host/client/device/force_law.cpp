@@ -49,7 +49,7 @@ class RowReader {
   void texts_of(Row& row) {
     row.name = name();
     row.unit = text();
-    row.help = text();
+    row.help = text().data();
   }
 
  private:

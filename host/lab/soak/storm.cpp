@@ -112,7 +112,7 @@ std::optional<device::ParameterChange> illegal_entry(Random& random, const Param
       return device::ParameterChange{parameter, info(parameter).minimum + 0.5f};
     }
     case Refusal::force_is_on: {
-      const Parameter parameter = random_parameter(random, [](const auto& row) { return needs_force_off(row); });
+      const Parameter parameter = random_parameter(random, [](const auto& row) { return row.needs_force_off; });
       const auto& row = info(parameter);
       return device::ParameterChange{parameter, now[parameter] == row.minimum ? row.maximum : row.minimum};
     }
@@ -131,7 +131,7 @@ std::vector<Parameter> within(Reach reach) {
   std::vector<Parameter> some;
   const auto rows = protocol::known_parameters();
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (reach == Reach::whole || !needs_force_off(rows[i])) some.push_back(static_cast<Parameter>(i));
+    if (reach == Reach::whole || !rows[i].needs_force_off) some.push_back(static_cast<Parameter>(i));
   return some;
 }
 

@@ -64,7 +64,7 @@ ReturnChoice draw_content(const ReturnedValues& values, float room, bool force_i
   const ImVec2 half{0.5f * (ImGui::GetContentRegionAvail().x - gap), 0};
   auto choice = ReturnChoice::none;
   const bool waits = force_is_on && std::ranges::any_of(values.rows(), [](const auto& row) {
-                       return protocol::needs_force_off(protocol::info(row.parameter));
+                       return protocol::info(row.parameter).needs_force_off;
                      });
   ImGui::BeginDisabled(waits);
   if (coloured_button(count == 1 ? "Restore old value" : "Restore old values", palette.accent, palette.pane, half))

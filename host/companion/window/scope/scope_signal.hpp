@@ -22,7 +22,9 @@ class ScopeSignal {
 
   std::string_view name() const { return formula_ ? std::string_view(formula_->name) : info(signal_).name; }
   std::string_view unit() const;
-  std::string_view help() const { return formula_ ? std::string_view(formula_->text) : info(signal_).help; }
+  std::string_view help() const {
+    return formula_ ? std::string_view(formula_->text) : std::string_view(info(signal_).help);
+  }
   /// Returns the device signals that this signal needs.
   std::vector<protocol::Signal> inputs() const;
 

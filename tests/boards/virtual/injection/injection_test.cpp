@@ -120,8 +120,9 @@ TEST_CASE("the help has a line for each fault") {
   const std::string help = explain_injections();
   for (const auto& row : inkwell::protocol::injection_table) {
     CAPTURE(row.name);
+    const std::string text = row.help;
     CHECK(help.find("  " + std::string(row.name)) != std::string::npos);
-    CHECK(help.find(std::string(row.help.substr(0, row.help.find('{')))) != std::string::npos);
+    CHECK(help.find(text.substr(0, text.find('{'))) != std::string::npos);
   }
   CHECK(help.find("Number of spikes of 2 us per second on a digital input") != std::string::npos);
   CHECK(help.find('{') == std::string::npos);

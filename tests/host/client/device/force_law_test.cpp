@@ -40,14 +40,14 @@ TEST_CASE("the description of a force law is taken apart") {
   CHECK(law.parameters[0].id == protocol::force_law_first_id);
   CHECK(law.parameters[0].name == "test_gain_N");
   CHECK(law.parameters[0].unit == "N");
-  CHECK(law.parameters[0].help == "A gain.");
+  CHECK(std::string(law.parameters[0].help) == "A gain.");
   CHECK(law.parameters[0].minimum == -1.0f);
   CHECK(law.parameters[0].maximum == 2.0f);
   CHECK(law.parameters[0].default_value == 0.5f);
   REQUIRE(law.signals.size() == 1);
   CHECK(law.signals[0].id == protocol::signal_count);
   CHECK(law.signals[0].name == "test_depth_m");
-  CHECK(law.signals[0].help == "A depth.");
+  CHECK(std::string(law.signals[0].help) == "A depth.");
 }
 
 TEST_CASE("the law of this image is described whole") {

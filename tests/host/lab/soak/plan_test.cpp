@@ -81,7 +81,7 @@ TEST_CASE("careful values stay where a sound arm stays sound") {
       CAPTURE(info(parameter).name);
       const Range range = range_of(parameter, Reach::careful);
       CHECK((value >= range.minimum && value <= range.maximum));
-      CHECK_FALSE(needs_force_off(info(parameter)));
+      CHECK_FALSE(info(parameter).needs_force_off);
       CHECK((range.minimum >= info(parameter).minimum && range.maximum <= info(parameter).maximum));
     }
 }
