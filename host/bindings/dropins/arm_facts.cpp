@@ -99,11 +99,10 @@ std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm) {
   const auto jacobian = jacobian_at(arm, pose.joint_rad);
   const double all = determinant(jacobian);
-  // For links of some decimeters the determinant is about 1e-3 m^3. The forces become unbounded as the determinant
-  // approaches 0.
+  // Near a singularity the determinant approaches 0, and the computed forces become unbounded.
   constexpr double smallest_m3 = 1e-6;
   if (std::abs(all) < smallest_m3) return {};
-  // Cramer's rule on J^T F = tau: row i of J^T is column i of J.
+  // Solves J^T F = tau with Cramer's rule.
   Vector force_N{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto replaced = jacobian;

@@ -1,4 +1,4 @@
-// Properties of an arm in HDAPI terms, read once when the arm is opened.
+// Properties of an arm in HDAPI terms.
 #pragma once
 
 #include <array>
@@ -24,16 +24,16 @@ struct ArmFacts {
   Workspace box;                  ///< usable range
 };
 
-/// Throws std::runtime_error with the library's error text if the result is an error.
+/// Throws std::runtime_error with inkwell_error_text() if `result` is not INKWELL_OK.
 void require(inkwell_result result);
 
-/// Throws std::runtime_error with the reason if the arm does not answer.
+/// Throws std::runtime_error if the arm does not answer.
 ArmFacts read_facts(inkwell_arm* arm);
 
-/// Force at the probe for these joint torques (tau = J^T F); zero where the arm is singular.
+/// Returns the probe force that the joint torques produce (tau = J^T F). Returns zero at a singularity of the arm.
 Vector force_of_torques(inkwell_arm* arm, const inkwell_pose& pose, const Vector& torque_Nm);
 
-/// Jacobian in row-major order, m/rad. The Jacobian times the joint speeds is the probe velocity.
+/// Jacobian in row-major order, m/rad.
 std::array<double, 9> jacobian_at(inkwell_arm* arm, const double (&joint_rad)[3]);
 
 }  // namespace inkwell::dropins

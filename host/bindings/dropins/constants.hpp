@@ -1,4 +1,4 @@
-// Types and values of the HDAPI binary interface. Programs use their original headers, so this header is internal.
+// Types and values of the HDAPI binary interface. Programs include the original HDAPI headers instead of this header.
 #pragma once
 
 #include <cstdint>

@@ -13,29 +13,29 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double motor_value_full = 32767.0;
-/// Intervals for reading the motor heat and for checking the arm's state.
+/// Period of the motor heat readings, and period of the arm state checks.
 constexpr auto heat_period = 500ms, care_period = 20ms;
 constexpr double enable_timeout_s = 1.0;
-/// Weight of each new sample in the smoothed angular velocity, with one sample per millisecond.
+/// Filter weight of a new angular velocity sample at 1000 samples per second.
 constexpr double angular_smoothing = 0.125;
 /// Below this speed the probe counts as stationary.
 constexpr double rest_m_per_s = 0.1;
 
-// HDAPI treats these faults as temporary. The force returns automatically once the probe is stationary.
+// After these faults the force returns automatically when the probe is stationary.
 bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
-/// True if the board has accepted or refused the request. A link error leaves the request undecided.
+/// Returns true if the board has accepted or refused the request. After a link error, the decision of the board is
+/// unknown.
 bool is_judged(inkwell_result result) { return result == INKWELL_OK || result == INKWELL_REFUSED; }
 
-/// The board raises these faults if a program exits or is late while the force is on.
+/// The board raises these faults if a program exits or sends no forces while the force is on.
 bool is_of_a_host(int fault) { return fault == INKWELL_FAULT_USB_GONE || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
 }
 
-/// Rotation vector between two attitudes that are about a millisecond apart. The rotation axis is in the antisymmetric
-/// part of the rotation matrix.
+/// Returns the rotation vector between two attitudes, for small angles.
 Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
   const auto turn = [&](int row, int column) {
     double sum = 0;
@@ -70,7 +70,7 @@ Device::Device(Handle handle, std::string name, const std::string& address)
   care_thread_ = std::thread([this] { care(); });
 }
 
-/// In HDAPI a device belongs to one program, and its force is initially off. The force or the exit of a previous
+/// HDAPI reserves a device for one program, and the force of a new device is off. A force or a fault of a previous
 /// program must not affect this program.
 void Device::claim() {
   const double none_N[3]{};
@@ -78,7 +78,6 @@ void Device::claim() {
   inkwell_pose pose;
   require(inkwell_get_pose(arm(), &pose));
   if (pose.state == INKWELL_ACTIVE) require(inkwell_disable_force(arm()));
-  // The first frame reports a fault that cannot be cleared.
   if (pose.state == INKWELL_FAULT && is_of_a_host(pose.fault)) inkwell_clear_fault(arm());
 }
 
@@ -132,10 +131,10 @@ bool Device::sends_poses() const {
   return inkwell_get_pose(arm(), &pose) == INKWELL_OK;
 }
 
-/// Whether a previous program, or the loss of the link, caused the fault.
+/// Returns true if a previous program or a lost link caused the fault.
 bool Device::is_inherited(int fault) const { return is_of_a_host(fault) && !had_force_; }
 
-/// Raises an error for each condition that is new since the last frame.
+/// Raises an error for each new condition.
 void Device::note_condition() {
   const int fault = !is_lost_ && now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
   if (fault != 0) held_ = {};
@@ -199,8 +198,7 @@ Vector Device::send(const Command& command, const inkwell_pose& pose) {
   if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   if (!wants_force() || is_lost_) return answer.force_N;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // The next frame reports the specific cause: a lost link or a fault. Until that frame, FORCE_ERROR reports the
-  // missing force.
+  // For a lost link or a reported fault, FORCE_ERROR is not raised.
   const bool is_new = result != INKWELL_FORCE_LOST || !is_force_loss_reported_;
   is_force_loss_reported_ = result == INKWELL_FORCE_LOST;
   if (result == INKWELL_OK) return answer.force_N;
@@ -221,7 +219,7 @@ Calibration Device::calibration() {
     raise(comm_error, inkwell_error_text(), result);
     return calibration_needs_manual_input;
   }
-  // During a fault, a closed inkwell switch does not lead to a calibration.
+  // The board does not reference the encoders during a fault.
   const bool is_about_to_be = pose.in_inkwell != 0 && pose.state != INKWELL_FAULT;
   return is_referenced != 0 ? calibration_ok
          : is_about_to_be   ? calibration_needs_update
@@ -266,8 +264,8 @@ void Device::care() {
     bool asked_for = force_is_requested_;
     lock.unlock();
     inkwell_pose pose;
-    // A failure means that the link is lost or the arm is not ready. The next frame reports a lost link. The next pass
-    // retries if the arm is not ready.
+    // If the link is lost, the next frame reports the error. If the arm is not ready, the next pass of this loop tries
+    // again.
     const bool is_lost = inkwell_get_pose(arm(), &pose) != INKWELL_OK;
     // inkwell_wait_for_pose() returns a time-out if the board is silent, and INKWELL_DISCONNECTED if the link is lost.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
@@ -288,7 +286,7 @@ void Device::care() {
       if (pose.state == INKWELL_FAULT && wanted &&
           (clears || (asked_for && passes_by && speed_m_per_s(pose) < rest_m_per_s)))
         is_cleared = is_judged(inkwell_clear_fault(arm()));
-      // If the link failed, the next pass clears the fault.
+      // After a link error, the next pass of the loop repeats the clear request.
       if (is_cleared) clears = false;
       if (pose.state == INKWELL_READY && wanted && asked_for &&
           inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK)

@@ -1,4 +1,4 @@
-// An arm as an HDAPI device: frames, requested forces, and allowed forces.
+// HDAPI device for one arm.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace inkwell::dropins {
 
-/// The program's requests in one frame, in the program's units.
+/// Force and torque requests of a program in one frame.
 struct Command {
   std::optional<Vector> force_N, joint_torque_mNm;
   std::optional<std::array<double, 6>> motor_values;
@@ -33,7 +33,7 @@ struct Moment {
   Command command;
 };
 
-/// Capabilities, and their initial values for an opened device.
+/// HDAPI capabilities with their initial values.
 #define INKWELL_HD_CAPABILITIES(X)                                  \
   X(0x4000, force_output, "HD_FORCE_OUTPUT", false)                 \
   X(0x4001, max_force_clamping, "HD_MAX_FORCE_CLAMPING", true)      \
@@ -48,11 +48,10 @@ struct Capabilities {
 #define X(value, name, text, at_start) bool name = at_start;
   INKWELL_HD_CAPABILITIES(X)
 #undef X
-  /// NULL for an unknown capability.
+  /// Returns NULL for an unknown capability.
   bool* find(Enum value);
 };
 
-/// Settings that a program may change.
 struct Settings {
   double velocity_limit_mm_per_s = 1200.0;
   double impulse_limit_N_per_ms = 4.0;
@@ -60,10 +59,10 @@ struct Settings {
   double status_light = 0.0;
 };
 
-/// Every member function requires the lock of Devices unless stated otherwise.
+/// The caller of a member function must hold Devices::mutex(), unless stated otherwise.
 class Device {
  public:
-  /// Opens the arm and claims its force. Throws std::runtime_error with the reason.
+  /// Opens the arm and becomes its driver. Throws std::runtime_error on failure.
   Device(Handle handle, std::string name, const std::string& address);
   ~Device();
   Device(const Device&) = delete;
@@ -82,21 +81,21 @@ class Device {
   Capabilities capabilities;
   Settings settings;
 
-  /// `tick`: the scheduler's tick number if the scheduler calls this function.
+  /// `tick` is the number of the scheduler tick, or none outside the servo thread.
   void begin_frame(std::optional<std::uint64_t> tick);
   void end_frame();
   bool in_frame() const { return in_frame_; }
   /// The requests of the current frame.
   Command& command() { return now_.command; }
 
-  /// Called when the scheduler starts or stops. The force depends on this state and on the capability.
+  /// Called when the scheduler starts or stops. The force can be on only while the scheduler runs.
   void set_scheduler_runs(bool runs);
-  /// Switches the force on or off as the program requests, even after the arm has lost the force.
+  /// Switches the force on or off as the program requests.
   void follow_force_output();
   /// Returns when the board has confirmed that the force is off, or when the program requests the force again. Raises
-  /// COMM_ERROR if the board does not confirm that the force is off. Called without the lock of Devices.
+  /// COMM_ERROR if the board does not confirm that the force is off. The caller must not hold Devices::mutex().
   void wait_until_force_is_off();
-  /// Called after each tick. Repeats the force of the last frame if the tick had no frame.
+  /// Called after each tick. If the tick had no frame, sends the force of the last frame again.
   void renew_force();
 
   Calibration calibration();
@@ -113,11 +112,11 @@ class Device {
   void poll();
   bool is_inherited(int fault) const;
   void note_condition();
-  /// Limits the force of `command` as HDAPI requires, sends the force and returns it.
+  /// Applies the HDAPI limits to a force, sends the limited force and returns it.
   Vector send(const Command& command, const inkwell_pose& pose);
   std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
-  /// This thread makes the calls that need a round trip to the device. Frames therefore do not wait for these calls.
+  /// Function of the thread for calls that wait for the board.
   void care();
 
   const Handle handle_;
@@ -144,8 +143,8 @@ class Device {
   std::condition_variable care_changed_, off_known_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
   bool force_is_requested_ = false;  ///< since the last loss
-  /// Reason why the board did not confirm that the force is off; "" after the confirmation. Not set while the force is
-  /// requested or the confirmation is pending.
+  /// Error text of the last attempt to switch the force off; empty after a success. Not set until an attempt is
+  /// complete.
   std::optional<std::string> off_problem_;
   std::thread care_thread_;
 };

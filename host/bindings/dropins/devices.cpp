@@ -17,17 +17,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Programs use these names for the only arm.
+/// HDAPI names of the default device.
 constexpr std::string_view default_names[] = {"", "Default Device", "Default PHANToM"};
 
-/// Throws std::runtime_error if the text has the form of an address but is invalid.
+/// Throws std::runtime_error for an invalid address.
 inkwell_address_kind kind_of(const std::string& address) {
   inkwell_address_kind kind{};
   if (inkwell_kind_of_address(address.c_str(), &kind) != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
   return kind;
 }
 
-/// True if the address starts a separate board each time it is opened.
+/// Returns true if inkwell_open() starts a new virtual board for this address.
 bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
 thread_local Handle current_here = invalid_handle;
@@ -89,8 +89,7 @@ Handle Devices::open(const char* given) {
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = current_here = handle;
-    // Programs assume that errors on the stack belong to the last call, so errors of an earlier device with the same
-    // handle are removed.
+    // Removes the errors of an earlier device with the same handle.
     forget_errors_of(handle);
     return handle;
   } catch (const std::exception& error) {
@@ -107,7 +106,7 @@ bool Devices::close(Handle handle) {
     device = std::exchange(devices_[handle], nullptr);
     if (current_ == handle) current_ = invalid_handle;
   }
-  // The scheduler may still wait for a pose of the device. This function must not return before the arm is closed.
+  // The scheduler may still use the device. The arm must be closed when this function returns.
   while (device.use_count() > 1) std::this_thread::sleep_for(1ms);
   return true;
 }

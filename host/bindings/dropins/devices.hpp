@@ -1,4 +1,4 @@
-// The open devices of the program by handle, and the current device.
+// The open devices and the current device of a program.
 #pragma once
 
 #include <atomic>
@@ -22,39 +22,38 @@ struct ParentsDevices {
 class Devices {
  public:
   explicit Devices(const ParentsDevices& parents) : parents_(parents) {}
-  /// Does not lock the mutex, because a thread of the parent may have locked it, and this thread does not exist in the
-  /// child.
+  /// Does not lock the mutex, because a thread of the parent process may own the lock.
   ParentsDevices as_parents() const;
 
-  /// Every call of the interface locks this mutex while it uses a device, but not while it opens or closes a device.
+  /// Each HDAPI function locks this mutex to use a device.
   std::mutex& mutex() { return mutex_; }
 
   /// Opens the arm with this name and makes it current. On failure raises an error and returns invalid_handle. Locks
   /// the mutex.
   Handle open(const char* name);
-  /// Locks the mutex. False if no device has this handle.
+  /// Locks the mutex. Returns false if no device has this handle.
   bool close(Handle handle);
   void close_all();
   /// Returns once the force of every device is off. Locks the mutex.
   void wait_until_forces_are_off();
 
-  // The following functions require the mutex.
+  // The caller of the following functions must hold the mutex.
 
-  /// The device with this handle. If no device has this handle, returns NULL and raises BAD_HANDLE.
+  /// Returns NULL and raises BAD_HANDLE if no device has this handle.
   Device* find(Handle handle);
-  /// The current device of the calling thread. If the thread has selected no device, this is the device that the
-  /// program selected last.
+  /// The current device of the calling thread. A thread without a selection uses the device that the program selected
+  /// last.
   Handle current_handle() const;
   Device* current() { return find(current_handle()); }
-  /// Keeps the current device open while the mutex is unlocked. If there is no current device, returns NULL and raises
-  /// BAD_HANDLE.
+  /// The returned pointer keeps the device open while the mutex is unlocked. If there is no current device, returns
+  /// NULL and raises BAD_HANDLE.
   std::shared_ptr<Device> hold_current();
   bool make_current(Handle handle);
-  /// Selects the device for the calling thread only. Has no effect if the handle has no device.
+  /// Selects the device for the calling thread. Has no effect if no device has this handle.
   void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   void renew_forces();
-  /// Returns the first device that sends poses, or NULL. This device sets the pace of the scheduler.
+  /// Returns the first device that sends poses, or NULL. The scheduler follows the poses of this device.
   std::shared_ptr<Device> pacing();
 
  private:

@@ -13,8 +13,7 @@ namespace inkwell::dropins {
 namespace {
 
 constexpr std::size_t stack_maximum = 256;
-/// Limit for texts that are never freed. There is one sentence for each device and cause, so a program normally needs
-/// only a few.
+/// Maximum number of stored texts, because stored texts are never freed.
 constexpr std::size_t kept_maximum = 1024;
 
 struct Text {
@@ -64,7 +63,7 @@ struct Stack {
   std::set<std::string> kept;
 };
 
-/// Never destroyed, because destructors of static objects may read errors.
+/// The stack is never destroyed, because destructors of static objects may read errors.
 Stack& stack() {
   static auto& stack = *new Stack;
   return stack;

@@ -7,20 +7,21 @@
 
 namespace inkwell::dropins {
 
-/// Pushes an error. `sentence` states the problem and the remedy; if it is empty, the text of the code is used. When
-/// the stack is full, the oldest error is dropped.
+/// Pushes an error. `sentence` states the problem and the remedy. An empty `sentence` selects the standard text of the
+/// code. When the stack is full, the oldest error is dropped.
 void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int internal_code = 0);
 
 /// Pops and returns the newest error; returns `success` if the stack is empty.
 ErrorInfo take_error();
 
-/// Removes the errors of one device and returns whether `wanted` was among them.
+/// Removes all errors of one device, and returns true if one of the errors was `wanted`.
 bool forget_errors_of(Handle device, ErrorCode wanted = success);
 
-/// "HD_DEVICE_FAULT: ..." with the newest sentence for this code. Never NULL; remains valid.
+/// Returns a text such as "HD_DEVICE_FAULT: ..." with the newest sentence for this code. The text is never NULL and
+/// remains valid.
 const char* error_text(unsigned code);
 
-/// Returns the text at a permanent address, which is the same for equal texts.
+/// Returns a permanent copy of the text. Equal texts share one copy.
 const char* keep(const std::string& text);
 
 }  // namespace inkwell::dropins

@@ -6,7 +6,7 @@
 namespace inkwell::dropins {
 namespace {
 
-/// The board drops a force that is not renewed within this time. After such a pause the ramp restarts from zero.
+/// Expiry time of a force on the board. After a longer pause, the ramp restarts from zero.
 constexpr double pause_s = 0.05;
 
 Vector scaled_to(const Vector& vector, double longest) {

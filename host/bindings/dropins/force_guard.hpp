@@ -1,5 +1,4 @@
-// Force limits that HDAPI guarantees: a maximum, no jumps, no force above the speed limit, and a ramp after an
-// interruption.
+// HDAPI force limits: maximum force, rate of change, speed limit, and ramp after an interruption.
 #pragma once
 
 #include <array>
@@ -12,7 +11,6 @@ using Vector = std::array<double, 3>;
 
 double length(const Vector& vector);
 
-/// The active limits and their values.
 struct ForceLimits {
   double maximum_N;
   double speed_m_per_s;

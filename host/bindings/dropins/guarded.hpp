@@ -1,4 +1,4 @@
-// No exception leaves the C interfaces. A canceled thread stops only where it waits for the scheduler.
+// No exception leaves the C functions. Thread cancellation takes effect only while a thread waits for the scheduler.
 #pragma once
 
 #include <exception>

@@ -1,4 +1,5 @@
-// Devices, frames, scheduler, errors, calibration. Parameters and capabilities are in hd_state.cpp.
+// HDAPI functions for devices, frames, scheduler, errors and calibration. The functions for parameters and capabilities
+// are in hd_state.cpp.
 #include "host/bindings/dropins/hd_interface.hpp"
 
 #include <chrono>
@@ -13,7 +14,7 @@ namespace process = inkwell::process;
 
 namespace {
 
-/// If a callback does not return, hdStopScheduler() does not return either.
+/// Time limit of hdStopScheduler() for the running callback.
 constexpr auto for_ever = std::chrono::hours(24);
 
 Handle current_handle() {
@@ -21,8 +22,7 @@ Handle current_handle() {
   return runtime().devices.current_handle();
 }
 
-/// Runs a callback for a waiting thread. The callback starts with the current device of the waiting thread. Afterwards
-/// the waiting thread has the current device of the callback.
+/// Runs a callback for a waiting thread. The callback and the waiting thread use the same current device.
 struct ForCaller {
   HdCallback callback;
   void* user;
@@ -53,7 +53,7 @@ void with_device(Handle handle, Action action) {
 
 }  // namespace
 
-// ---- devices and frames ------------------------------------------------------------------------------------
+// ---- devices, frames ---------------------------------------------------------------------------------------
 
 HdHandle hdInitDevice(const char* name) {
   const process::CancellationGuard guard;
@@ -167,7 +167,7 @@ HdEnum hdCheckCalibration(void) {
 HdEnum hdCheckCalibrationStyle(void) { return calibration_style_inkwell; }
 
 void hdUpdateCalibration(HdEnum style) {
-  // The board references the encoders automatically when the stylus rests in the inkwell, so no action is needed.
+  // The board references the encoders automatically when the stylus is in the inkwell.
   with_device(current_handle(), [&](Device& device) {
     if (style != calibration_style_inkwell)
       return raise(invalid_enum, device.handle(), "The arm is calibrated by the inkwell. Update that style.");

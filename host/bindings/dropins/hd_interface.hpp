@@ -55,7 +55,7 @@ INKWELL_HD void hdUpdateCalibrationMessage(HdEnum style);
 INKWELL_HD HdBoolean hdDeploymentLicense(const char* vendor, const char* application, const char* password);
 INKWELL_HD HdBoolean hdScaleGimbalAngles(double x, double y, double z, double transform[16]);
 
-/// Not part of HDAPI. libhdPhantom.so calls this function to remove the errors of one device, because these errors
-/// concern frames that the program does not see. Returns 1 if the removed errors included a lost link.
+/// Not part of HDAPI. libhdPhantom.so calls this function to remove the errors of its internal frames. Returns 1 if one
+/// of the removed errors was a lost link.
 INKWELL_HD HdBoolean hdInkwellForgetErrors(HdHandle device);
 }

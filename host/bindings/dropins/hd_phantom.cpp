@@ -1,8 +1,7 @@
-// The library libhdPhantom.so, which CHAI3D 3 uses for the Omni. The library is a client of libHD.so with one frame per
-// tick for each open device.
+// Library libhdPhantom.so for CHAI3D 3. The library calls libHD.so with one frame per tick and open device.
 //
-// CHAI3D's x axis points to the user, y to the right, z up. These axes are HDAPI's z, x and y axes. CHAI3D's units are
-// meters and newtons.
+// CHAI3D axes: x to the user, y to the right, z up. The axes x, y, z of CHAI3D are the axes z, x, y of HDAPI. CHAI3D's
+// units are meters and newtons.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -31,13 +30,12 @@ constexpr Enum current_buttons = 0x2000, current_position = 0x2050, current_velo
                current_transform = 0x2052, usable_workspace = 0x2551, current_force = 0x2700, force_output = 0x4000;
 constexpr unsigned short priority = 32767;
 constexpr char type_text[] = "PHANTOM Omni";
-/// Time limit for a tick; the original library waits indefinitely.
+/// Longest wait for a scheduler tick.
 constexpr auto tick_patience = 1s;
-/// A force expires after this number of ticks. A working program sets a force in each tick, and a hanging program must
-/// lose its force.
+/// A force expires after this number of ticks.
 constexpr int force_ticks = 100;
 constexpr int good = 0, bad = -1;
-/// HDAPI axis of each CHAI3D axis.
+/// Index of the HDAPI axis for each CHAI3D axis.
 constexpr std::size_t hd_axis[3]{2, 0, 1};
 constexpr double mm = 1e-3;
 
@@ -69,7 +67,7 @@ struct Servo {
 
 std::atomic<Servo*> current = nullptr;
 
-/// A forked child has a separate object, because the open devices belong to its parent.
+/// A forked child gets a new object, because the open devices belong to the parent process.
 Servo& servo() {
   static const bool is_made = [] {
     current = new Servo;
@@ -139,7 +137,7 @@ void list_arms() {
   std::vector<inkwell_device> arms(count);
   if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return;
   arms.resize(std::min(count, arms.size()));
-  // The arm that INKWELL_DEVICE names is last in the list, but must be the first choice.
+  // The arm in INKWELL_DEVICE is the last entry and must become the first entry.
   std::reverse(arms.begin(), arms.end());
   servo().addresses.clear();
   for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);
@@ -173,8 +171,8 @@ bool is_open(int number) {
   return true;
 }
 
-/// Always passes the last values to `write`, because some programs ignore the result. Returns -1 if the values are not
-/// current.
+/// Passes the last values to `write` even on failure, because some programs ignore the result. Returns -1 if the values
+/// are outdated.
 template <class Write>
 int read(int number, Write write) {
   const process::CancellationGuard guard;
@@ -192,8 +190,8 @@ int read(int number, Write write) {
   return sees ? result : bad;
 }
 
-/// Calls `set` and waits for the next tick, which uses the new values. If the device is lost or not open, does not call
-/// `set` and returns -1.
+/// Calls `set` and waits for the next tick, which uses the new values. Returns -1 and does not call `set` if the device
+/// is lost or not open.
 template <class Set>
 int set_until_next_tick(int number, Set set) {
   const process::CancellationGuard guard;
@@ -300,7 +298,7 @@ INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, c
   });
 }
 
-/// The stylus has no motors, so a torque is accepted and has no effect.
+/// A torque has no effect, because the gimbal has no motors.
 INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
   const double* const torque_Nm[3]{x, y, z};
   if (!is_finite(torque_Nm)) return bad;

@@ -1,4 +1,4 @@
-// Reads and writes of parameters and capabilities, based on the parameter table.
+// HDAPI functions for parameters and capabilities.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@ using namespace inkwell::dropins;
 
 namespace {
 
-/// Finds the table row for a call with this type, and the current device if the row needs a device. Raises an error for
-/// an invalid call.
+/// Finds the parameter's table row, and the current device if the parameter requires a device. Raises an error for an
+/// invalid call.
 struct Query {
   const Parameter* row = nullptr;
   Device* device = nullptr;
@@ -70,8 +70,8 @@ void set(Enum value, unsigned type, const Value* values) {
   });
 }
 
-/// Runs `action` with the current device's capability. Raises an error if there is no device, or if the device lacks
-/// the capability.
+/// Calls `action` with a capability of the current device. Raises an error if the device or the capability does not
+/// exist.
 template <class Action>
 void with_capability(Enum capability, Action action) {
   guarded([&] {
@@ -82,7 +82,7 @@ void with_capability(Enum capability, Action action) {
   });
 }
 
-/// Returns the device if the capability is its force output.
+/// Returns the device if the capability is `force_output`, and NULL otherwise.
 std::shared_ptr<Device> switch_capability(Enum capability, bool on) {
   std::shared_ptr<Device> switched;
   with_capability(capability, [&](Device& device, bool& is_on) {
@@ -122,7 +122,7 @@ void hdEnable(HdEnum capability) { switch_capability(capability, true); }
 
 void hdDisable(HdEnum capability) {
   const auto device = switch_capability(capability, false);
-  // A callback does not wait, because waiting would stop the ticks.
+  // A callback must not wait, because the wait would block the scheduler.
   if (device && !runtime().scheduler.tick_of_caller()) guarded([&] { device->wait_until_force_is_off(); });
 }
 

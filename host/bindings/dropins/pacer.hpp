@@ -1,5 +1,4 @@
-// Derives the scheduler's ticks from the poses of the first device that sends poses, or from the computer's clock if no
-// device sends poses.
+// Derives the scheduler ticks from a device's poses, or from the PC clock if no device sends poses.
 #pragma once
 
 #include <chrono>
@@ -16,7 +15,7 @@ class Pacer {
   explicit Pacer(Devices& devices) : devices_(devices) {}
 
   /// Waits until this number of poses has arrived since the last call, or until `ends` returns true. Returns the board
-  /// time between the ticks, or 0 if it is unknown.
+  /// time between the ticks, or 0 if the time is unknown.
   double wait(std::uint32_t poses, const std::function<bool()>& ends);
 
  private:

@@ -9,11 +9,11 @@
 namespace inkwell::dropins {
 namespace {
 
-// Published stiffness and damping of the Omni, which programs use to scale their forces.
+// Published stiffness and damping of the Omni. Programs scale their forces with these values.
 constexpr double stiffness_N_per_mm = 0.5, damping_Ns_per_mm = 0.002;
 constexpr double tabletop_offset_mm = 110.0;  // height of the origin above the table
 constexpr double input_axes = 6, output_axes = 3;
-/// The gimbal potentiometers are shown as encoders with this number of counts per turn.
+/// HDAPI reports the gimbal angles as encoder counts with this resolution.
 constexpr double gimbal_counts_per_turn = 4096;
 constexpr int button_1 = 1, button_2 = 2;
 constexpr double status_light_maximum = 7;
@@ -50,7 +50,8 @@ void read_encoders(const Source& source, double* values) {
   }
 }
 
-/// Rows: linear velocity in mm/s, then angular velocity, which stays 0 because the three joints do not determine it.
+/// The first three rows are the linear velocity in mm/s. The last three rows are 0, because the three joints do not
+/// determine the angular velocity.
 void read_jacobian(const Source& source, double* values) {
   const auto jacobian = jacobian_at(source.device->arm(), pose(source).joint_rad);
   std::fill_n(values, values_maximum, 0.0);

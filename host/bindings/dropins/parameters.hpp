@@ -1,4 +1,4 @@
-// The table of HDAPI parameters: value, name, count, types and meaning.
+// Table of the HDAPI parameters.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace inkwell::dropins {
 
-/// Permitted types of a parameter, as bits.
+/// Bit mask of the permitted parameter types.
 enum Type : unsigned {
   type_boolean = 1,
   type_integer = 2,
@@ -23,7 +23,7 @@ inline constexpr unsigned type_real = type_float | type_double;
 
 inline constexpr std::size_t values_maximum = 36;
 
-/// Source of parameter values: a frame of a device, or the scheduler. Without a device both pointers are NULL.
+/// Source of parameter values: a frame of a device, or the scheduler. Both pointers are NULL if there is no device.
 struct Source {
   const Device* device;
   const Moment* moment;
@@ -38,10 +38,10 @@ struct Parameter {
   unsigned count;
   unsigned types;
   const char* meaning;
-  /// Writes `count` values. NULL for a text parameter.
+  /// Writes `count` values. The function is NULL for a text parameter.
   void (*read)(const Source& source, double* values) = nullptr;
   std::string (*text)(const Source& source) = nullptr;
-  /// False for a value out of range. NULL for a read-only parameter.
+  /// Returns false for a value out of range. The function is NULL for a read-only parameter.
   bool (*write)(Device& device, const double* values) = nullptr;
   bool needs_device = true;
 };

@@ -15,7 +15,7 @@ std::atomic<Runtime*> current = nullptr;
 
 constexpr auto patience = 1s;  // limit for a callback that does not return
 
-/// Stops the callbacks and fades the force out if the program exits without closing its devices.
+/// Stops the callbacks and fades out the force when the program exits with open devices.
 __attribute__((destructor)) void end() {
   if (current != nullptr && runtime().scheduler.stop(patience)) runtime().devices.close_all();
 }

@@ -19,12 +19,12 @@ struct Runtime {
                       }};
 };
 
-/// Never destroyed, because destructors of static objects may call the library. A forked child has a separate runtime,
-/// because the devices and the servo thread belong to the parent.
+/// The object is never destroyed, because destructors of static objects may call the library. A forked child has a
+/// separate runtime, because the devices and the servo thread belong to the parent.
 Runtime& runtime();
 
-/// Registers a handler that stops the callbacks before the program's static objects are destroyed. Static objects that
-/// were created before this call outlive the callbacks, so call this function before the scheduler starts.
+/// Registers a handler that stops the callbacks before the program's static objects are destroyed. The callbacks may
+/// use all static objects that were created before this call.
 void stop_callbacks_at_exit();
 
 }  // namespace inkwell::dropins

@@ -15,10 +15,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned long pose_rate_Hz = 1000;
 constexpr std::size_t tasks_maximum = 1024;
-/// Programs store handles in 32-bit integers, and some programs use signed integers.
+/// Some programs store handles in signed 32-bit integers.
 constexpr TaskHandle handle_maximum = 0x7FFFFFFF;
 constexpr TaskHandle no_task = 0;
-/// Nice value of the servo thread. Without permission the value does not change.
+/// Nice value of the servo thread.
 constexpr int precedence = -10;
 
 }  // namespace
@@ -26,7 +26,7 @@ constexpr int precedence = -10;
 Scheduler::Scheduler(Pace pace, std::function<void()> end_tick)
     : pace_(std::move(pace)), end_tick_(std::move(end_tick)) {}
 
-// ---- start and stop ----------------------------------------------------------------------------------------
+// ---- start, stop -------------------------------------------------------------------------------------------
 
 void Scheduler::start() {
   std::unique_lock lock(mutex_);
@@ -110,7 +110,7 @@ bool Scheduler::tick() {
   return true;
 }
 
-// ---- rate and time -----------------------------------------------------------------------------------------
+// ---- rate, time --------------------------------------------------------------------------------------------
 
 bool Scheduler::set_rate(unsigned long rate_Hz) {
   if (rate_Hz != pose_rate_Hz && rate_Hz != pose_rate_Hz / 2) return false;
@@ -163,7 +163,7 @@ TaskHandle Scheduler::add(Callback callback, void* user, unsigned short priority
 }
 
 /// The destructor removes a task and waits until a running call of the task has returned. The data of the task may be
-/// on the caller's stack, which is released when the scheduler stops or the caller is canceled.
+/// on the caller's stack.
 class Scheduler::OffTheList {
  public:
   OffTheList(Scheduler& scheduler, std::unique_lock<std::mutex>& lock, TaskHandle handle)

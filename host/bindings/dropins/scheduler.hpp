@@ -1,4 +1,4 @@
-// HDAPI's servo loop: one thread that calls the program's callbacks once per tick, in the order of their priority.
+// HDAPI servo loop. One thread calls the program's callbacks once per tick, in priority order.
 #pragma once
 
 #include <atomic>
@@ -20,38 +20,40 @@ namespace inkwell::dropins {
 
 class Scheduler {
  public:
-  /// Waits for the next tick, that is, for this number of poses of the device. Returns early if `ends` returns true.
+  /// Waits for the next tick, which is due after `poses` poses of the device. Returns early if `ends` returns true.
   /// Returns the time between the ticks in seconds, or 0 if it is unknown.
   using Pace = std::function<double(std::uint32_t poses, const std::function<bool()>& ends)>;
 
-  /// `end_tick` is called after the callbacks of each tick.
+  /// The servo thread calls `end_tick` after the callbacks of each tick.
   Scheduler(Pace pace, std::function<void()> end_tick);
 
   /// Throws std::system_error if the system cannot create the thread. A running scheduler continues.
   void start();
-  /// Waits for the running callback, unless the callback itself calls this function. False if the wait exceeds `limit`.
-  /// The callbacks remain listed.
+  /// Waits for the running callback, unless the callback itself calls this function. Returns false if the wait exceeds
+  /// `limit`. The callbacks remain listed.
   bool stop(std::chrono::milliseconds limit);
   bool runs() const;
 
-  /// False if no device can send poses at this rate.
+  /// Returns false if no device can send poses at this rate.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
-  /// Rate of the last tick, measured in the time of the pacing device. If this rate is unknown, returns the set rate.
+  /// Returns the rate of the last tick in board time. Returns the set rate if the board time is unknown.
   double measured_rate_Hz() const;
 
-  /// Returns invalid_handle if the list is full. In the servo thread, the callback is called once before it is listed.
+  /// Returns invalid_handle if the list is full. A call in the servo thread first calls the callback once.
   TaskHandle add(Callback callback, void* user, unsigned short priority);
-  /// Returns when the callback is done. Without a servo thread, or in the servo thread, the callback is called once.
+  /// Returns when the callback is done. In the servo thread, or if no servo thread runs, the function calls the
+  /// callback once.
   bool run_until_done(Callback callback, void* user, unsigned short priority);
-  /// False if the callback is not listed. On return the callback is not running, unless it calls this function itself.
+  /// Returns false if the callback is not listed. On return the callback is not running, unless the callback itself
+  /// made this call.
   bool remove(TaskHandle handle);
   bool is_listed(TaskHandle handle) const;
-  /// True when the callback is done; false in the servo thread, or if the scheduler stops.
+  /// Returns true when the callback is done. Returns false in the servo thread, or if the scheduler stops.
   bool wait_until_done(TaskHandle handle);
 
   double time_since_tick_s() const;
-  /// The number of the current tick in the servo thread; none in other threads.
+  /// Returns the current tick number in the servo thread, and none in other threads.
   std::optional<std::uint64_t> tick_of_caller() const;
 
  private:
@@ -67,9 +69,8 @@ class Scheduler {
   TaskHandle list(Callback callback, void* user, unsigned short priority);
   Tasks::const_iterator find(TaskHandle handle) const;
   void loop();
-  /// Runs the tasks of one tick. Returns false if a callback has forked and this is the child process.
+  /// Runs the tasks of one tick. Returns false in the child process if a callback has called fork().
   bool tick();
-  /// Removes a task from the list, and waits until the task is not running.
   class OffTheList;
 
   const Pace pace_;

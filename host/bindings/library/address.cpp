@@ -35,7 +35,7 @@ inkwell_device entry(const std::string& address, const device::Endpoint& endpoin
 OpenedArm open_arm(const std::string& given, device::LockStep* lock_step) {
   const auto address = device::parse_address(given.empty() ? environment_address() : given);
   const bool is_stepped = address.seed.has_value();
-  // While this function opens a stepped board, board time passes only for the requests of this function.
+  // A stepped board stays paused until the arm is open.
   device::VirtualBoardOptions board{
       .seed = next_seed(), .real_time = !is_stepped, .paused = is_stepped, .lock_step = true};
   OpenedArm opened{device::open_arm(address, board, lock_step), is_stepped};

@@ -14,10 +14,10 @@ struct OpenedArm {
   bool is_stepped;  ///< board time passes only while a call of the library waits for it
 };
 
-/// Opens the arm at an address of inkwell_open(). An empty address stands for the address in INKWELL_DEVICE. A virtual
-/// board uses `lock_step`.
+/// Opens the arm at an address in the format of inkwell_open(). An empty address selects the address in INKWELL_DEVICE.
+/// Arms on USB ignore `lock_step`.
 OpenedArm open_arm(const std::string& address, device::LockStep* lock_step);
-/// Lists the arms that open_arm() can find, with their addresses.
+/// Lists the available arms and their addresses.
 std::vector<inkwell_device> list_devices();
 
 }  // namespace inkwell::library

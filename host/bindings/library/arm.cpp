@@ -17,10 +17,10 @@ namespace {
 
 using protocol::Command;
 
-/// enable_force is sent again after this board time.
+/// The library repeats an unanswered enable_force command after this board time.
 constexpr double retry_s = 0.1;
 
-/// After this time without a pose the board counts as reset or paused.
+/// Without a pose for this time, the library considers the board silent.
 constexpr double silence_s = 2.0;
 
 std::int64_t periods_of(const inkwell_pose& pose) { return std::llround(pose.time_s * protocol::servo_rate_Hz); }
@@ -122,7 +122,7 @@ void Arm::enable_force(double timeout_s) {
   poses_.use_force();
   poses_.forget_lost_force();
   for (double waited_s = 0;;) {
-    // A board that is not referenced yet drops the request, so the request is repeated.
+    // The command is repeated, because a board with unreferenced encoders ignores the command.
     device().carry_out(Command::enable_force);
     const double wait_s = std::min(limit_s - waited_s, retry_s);
     const auto now = poses_.wait(
@@ -138,7 +138,7 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-// A silent board may still receive requests, so the request is sent during a silence too.
+// A silent board may still receive the command.
 void Arm::disable_force() {
   expecting_force_off([this] { linked_device().disable_force(); });
 }
@@ -147,7 +147,7 @@ void Arm::stop() {
   expecting_force_off([this] { linked_device().stop(); });
 }
 
-/// Clears a fault that a previous program, or the loss of the link, has caused.
+/// Clears a fault if a previous program or a lost link caused the fault.
 void Arm::clear_inherited_fault() {
   const auto now = shown_fault(pose());
   if (now.state == protocol::State::fault && device::is_left_by_a_host(now.fault) && !poses_.had_force()) clear_fault();

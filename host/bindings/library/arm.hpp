@@ -1,15 +1,14 @@
-// An open arm, which consists of parts. Each part owns its data, and any thread may call any part.
+// Parts of an open arm.
 //
-//   Part         (thread)                    data.
-//   PoseFeed     (no thread)                 the newest pose, and lost poses, links and forces.
-//   Turns        (no thread)                 the turns of all virtual boards of the program.
-//   Connection   (connects, reads poses)     the device, the started board, and the geometry of the arm.
-//   ForceOutput  (sends forces)              the newest force and the force mode.
-//   ScopeStream  (reads samples)             the selected signals, the unread samples, and the recording.
-//   Servo        (calls the servo function)  the servo function and its state.
+//   PoseFeed stores the newest pose, and reports lost poses, links and forces.
+//   Turns synchronizes the virtual boards of the program in lock step.
+//   Connection connects the arm and reads its poses in a thread.
+//   ForceOutput sends the newest force in a thread.
+//   ScopeStream reads the samples of the selected signals in a thread.
+//   Servo calls the servo function in a thread.
 //
-// Each part has private mutexes. While a part holds a mutex, it may call only PoseFeed. PoseFeed may then call only
-// Turns. In lock step the pose thread does the work of the threads of ForceOutput and ScopeStream.
+// Any thread may call any part. While a part holds its mutex, the part may call only PoseFeed. With its mutex locked,
+// PoseFeed may call only Turns. In lock step, the pose thread also runs ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>
@@ -29,7 +28,8 @@ namespace inkwell::library {
 class Arm {
  public:
   explicit Arm(const std::string& address);
-  /// Removes the force first and then waits for a running call of the servo. The servo must not call this destructor.
+  /// Removes the force, and then waits until a running servo call has returned. The servo must not call this
+  /// destructor.
   ~Arm();
   Arm(const Arm&) = delete;
   Arm& operator=(const Arm&) = delete;
@@ -47,16 +47,15 @@ class Arm {
     poses_.read(take);
   }
   /// Returns the first pose after the pose with this sequence number. Throws Disconnected if the link is lost, and
-  /// TimedOut if no such pose arrives in time. If `answer` shows that the calling thread sets a force for each pose,
-  /// lock step waits for this force.
+  /// TimedOut after the time-out. `answer` states whether lock step waits for a force from the calling thread.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence,
                              Turns::Answer answer = Turns::Answer::none) const;
   /// Waits until this board time has passed. Throws TimedOut if no poses arrive.
   void sleep(double duration_s) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
-  /// Makes this arm object the driver, as set_force(), place_shapes() and start_servo() do. Throws InUse with the name
-  /// of the driver if another program or arm object drives the arm.
+  /// Makes this arm object the driver and switches the force on. Throws InUse with the name of the driver if another
+  /// program or arm object drives the arm.
   void enable_force(double timeout_s);
   /// Takes the arm over from its current driver.
   void take_over();
@@ -74,7 +73,7 @@ class Arm {
   void factory_reset();
   void start_recording(const std::string& path) { scope_.start_recording(path, endpoint().is_virtual); }
 
-  /// Passes the control client of the arm's own virtual board to `action`. Throws NotNow if this arm has not started a
+  /// Passes the control client of the arm's virtual board to `action`. Throws NotNow if this arm has not started a
   /// board.
   template <class Action>
   void with_own_board(Action action) {
@@ -85,8 +84,8 @@ class Arm {
   inkwell_pose pose() const;
   device::Device& linked_device();  ///< throws Disconnected while the link is lost
   void clear_inherited_fault();
-  /// Runs an action that switches the force off, and does not report this as a lost force. Restores the state if the
-  /// board refuses the action.
+  /// Calls `action` to switch the force off. The switch-off is not reported as a lost force. If `action` throws, later
+  /// losses of the force are reported.
   template <class Action>
   void expecting_force_off(Action action) {
     poses_.expect_force_off();

@@ -1,5 +1,4 @@
-// The header of the C interface cannot include the protocol. This file compares the header's numbers with those of the
-// protocol.
+// Compares the constants of the C header with the constants of the protocol.
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
@@ -20,7 +19,7 @@ struct Code {
 #define CODE(name) \
   { #name, INKWELL_##name }
 
-/// Whether the C name equals `prefix` plus the protocol's name in capitals.
+/// Returns true if `c` is `prefix` plus `name` in capitals.
 constexpr bool is_capital_of(std::string_view c, std::string_view prefix, std::string_view name) {
   if (!c.starts_with(prefix)) return false;
   c.remove_prefix(prefix.size());
@@ -73,7 +72,7 @@ constexpr Code limits[] = {CODE(LIMIT_FORCE),  CODE(LIMIT_CURRENT), CODE(LIMIT_C
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));
-// `limits` occupies former padding, so older programs still find all other members at their offsets.
+// The member `limits` uses former padding and does not change the offsets of other members.
 static_assert(offsetof(inkwell_pose, position_m) == 24 && sizeof(inkwell_pose) == 240);
 
 constexpr Code stored[] = {CODE(STORED_NOTHING), CODE(STORED_PARAMETERS), CODE(STORED_FACTORY_RESET),

@@ -11,8 +11,7 @@
 namespace inkwell::library {
 namespace {
 
-// This is a plain array, because destructors may call the library at program exit, after the thread's objects were
-// destroyed.
+// A plain array remains valid when destructors call the library at program exit.
 thread_local char error_text[sentence_maximum];
 
 inkwell_result fail(inkwell_result result, const char* sentence) {

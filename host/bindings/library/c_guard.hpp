@@ -1,5 +1,5 @@
-// Guards every call of the C interface. No exception leaves the library, and each call returns a result. A canceled
-// thread stops only where it waits. A forked child uses no arm of its parent.
+// Guards every call of the C interface. Each call returns a result code instead of an exception. Thread cancellation
+// takes effect only while a thread waits. A forked child process cannot use the parent's arm.
 #pragma once
 
 #include <cxxabi.h>
@@ -24,8 +24,7 @@ struct inkwell_arm {
 
 namespace inkwell::library {
 
-/// Returns the result code for the exception in progress. Stores the sentence of the exception as inkwell_error_text()
-/// of the calling thread.
+/// Returns the result code for the current exception. Stores the exception's message for inkwell_error_text().
 inkwell_result result_of_exception() noexcept;
 
 template <class Action>
@@ -48,7 +47,7 @@ Pointer required(Pointer pointer, const char* what) {
   return pointer;
 }
 
-/// Throws NotNow in a forked child, which has a copy of the arm without its threads.
+/// Throws NotNow in a forked child process, which has no copy of the arm's threads.
 inline Arm& arm_of(inkwell_arm* arm) {
   const auto& origin = required(arm, "The arm")->origin;
   if (origin.is_here()) return arm->arm;

@@ -1,4 +1,5 @@
-// Devices, pose, force and shapes of the C interface. Parameters, signals and the scope are in c_tables.cpp.
+// Functions of the C interface for devices, poses, force and shapes. The functions for parameters, signals and the
+// scope are in c_tables.cpp.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -21,7 +22,7 @@ std::array<float, 3> floats(const double (&values)[3]) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
 }
 
-/// Writes the vector's three values to every `stride`-th element.
+/// Writes the vector's values at intervals of `stride` elements.
 void put(const control::Vector3& vector, double* to, std::size_t stride) {
   to[0] = vector.x;
   to[stride] = vector.y;
@@ -270,7 +271,7 @@ inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_plane* plane
   });
 }
 
-// ---- the hand of a virtual board ---------------------------------------------------------------------------
+// ---- virtual hand ------------------------------------------------------------------------------------------
 
 inkwell_result inkwell_move_virtual_hand(inkwell_arm* arm, const double target_m[3], double stiffness_N_per_m) {
   return guarded([&] {

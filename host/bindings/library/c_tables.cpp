@@ -1,4 +1,4 @@
-// Parameters, signals, scope and recordings of the C interface.
+// Functions of the C interface for parameters, signals, scope and recordings.
 #include <algorithm>
 #include <deque>
 #include <mutex>
@@ -36,14 +36,14 @@ void require_at_most(std::size_t maximum, std::size_t count, const char* what) {
 std::mutex rows_mutex;
 const inkwell::process::HeldAtFork rows_at_fork(rows_mutex);
 
-// All texts of the tables, including the texts of a force law, are zero-terminated.
+// All texts of the tables are zero-terminated.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
   return {row.name.data(), row.unit.data(), row.help, row.minimum, row.maximum, row.default_value};
 }
 inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help}; }
 
-/// A row in C form; null after the last row. Rows are never moved or freed. Force law rows are added later, and
-/// programs may read rows in their last destructors.
+/// Returns a row as a C struct, or null after the last row. Rows are never moved or freed. Programs may read rows until
+/// the process exits.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
   static auto& rows = *new std::deque<Row>;
@@ -85,8 +85,7 @@ inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names
   });
 }
 
-// ---- stored parameters
-// -----------------------------------------------------------------------------------------------
+// ---- stored parameters --------------------------------------------------------------------------------------
 
 inkwell_result inkwell_store_parameters(inkwell_arm* arm) {
   return guarded([&] { device::store_parameters(arm_of(arm).device()); });
@@ -121,7 +120,7 @@ inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store) {
   });
 }
 
-// ---- the board's self-test ---------------------------------------------------------------------------------
+// ---- self-test ---------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -154,7 +153,7 @@ inkwell_result inkwell_get_self_test(inkwell_arm* arm, inkwell_test_item* items,
   return guarded([&] { read_test(arm, false, items, capacity, count); });
 }
 
-// ---- scope and recording -----------------------------------------------------------------------------------
+// ---- scope, recording --------------------------------------------------------------------------------------
 
 size_t inkwell_signal_count(void) { return protocol::known_signals().size(); }
 

@@ -21,12 +21,12 @@ constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
-/// A wait counts for at most this time, because a stopped process receives no poses.
+/// A longer wait counts as this time, because the process may have been suspended.
 constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";
 
-/// The board is connected again, but the library cannot continue on it.
+/// Thrown if the library cannot use a reconnected board.
 class CannotReturn : public Error {
  public:
   using Error::Error;
@@ -71,7 +71,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       poses_.take_turns(arm_.board ? Turns::of_own_boards() : std::make_shared<Turns>(false), opening.is_stepped);
     set_geometry(arm_.device->parameters());
     read_poses([&](const ReadPose& first) {
-      // A virtual board that was started for this arm has its stylus in the inkwell until the program moves the hand.
+      // The stylus of a new virtual board is in the inkwell, so the board references its encoders.
       if (is_open_ || (arm_.board && (!first.is_referenced || first.pose.state == INKWELL_STARTING))) return;
       is_open_ = true;
       poses_.let_program_decide();
@@ -88,7 +88,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       read_poses([this, is_first = true](const ReadPose& read) mutable {
         if (!std::exchange(is_first, false)) return;
         poses_.let_program_decide();
-        // The loss must be reported before the program switches the force on again.
+        // The program must receive the error before the force is on again.
         if (read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
           arm_.device->send(protocol::Command::disable_force);
       });
@@ -97,7 +97,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
     }
   }
   {
-    // The virtual board exits when this thread exits, because this thread created it. Other threads may still use the
+    // The virtual board exits when this thread exits, because this thread created the board. Other threads may use the
     // device until `ends_` is set.
     std::unique_lock lock(end_mutex_);
     end_changed_.wait(lock, [this] { return ends_; });
@@ -143,7 +143,7 @@ bool Connection::report_lost_claim() {
   return true;
 }
 
-// ---- after a loss ------------------------------------------------------------------------------------------
+// ---- reconnection ------------------------------------------------------------------------------------------
 
 bool Connection::reopen() {
   for (;;) {

@@ -1,4 +1,4 @@
-// Opens the arm, reads its poses, and reopens the arm after a lost link, in a separate thread.
+// Thread that opens the arm, reads poses, and reopens the arm after a lost link.
 #pragma once
 
 #include <condition_variable>
@@ -19,18 +19,18 @@ namespace inkwell::library {
 
 class Connection {
  public:
-  /// Returns once poses arrive. If this arm has started a virtual board, the first poses are referenced. Throws Error.
+  /// Returns once poses arrive. If the arm has started a virtual board, the constructor also waits for referenced
+  /// encoders. Throws Error.
   Connection(const std::string& address, PoseFeed& poses);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// The device of the arm. The object does not change when a lost link is restored.
+  /// The reference stays valid after a lost link.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
 
-  /// Passes the board's control client to `action`; calls are serialized. Throws NotNow if this arm has not started a
-  /// board.
+  /// Passes the board's control client to `action` under a mutex. Throws NotNow if this arm has not started a board.
   template <class Action>
   void with_own_board(Action action) {
     const std::lock_guard lock(control_mutex_);
@@ -45,9 +45,10 @@ class Connection {
   using OnPose = std::function<void(const ReadPose&)>;
   /// Reads poses until the arm closes. Throws when the link is lost.
   void read_poses(const OnPose& on_pose);
-  /// Reports that another program drives the arm, or that no program drives it. False if the driver is not known yet.
+  /// Reports the new driver of the arm, or that the arm has no driver. Returns false if the driver is not known yet.
   bool report_lost_claim();
-  /// Waits until the arm is connected again and opens it. False if the arm closes before it is connected again.
+  /// Waits until the arm is connected again, and opens the arm. Returns false if the program closes the arm during the
+  /// wait.
   bool reopen();
   bool try_to_reopen();
   std::optional<device::Endpoint> find_again() const;

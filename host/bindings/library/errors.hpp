@@ -1,4 +1,4 @@
-// Errors of the library itself. Errors of the device are in error.hpp and the headers next to it.
+// Exceptions of the library. error.hpp declares the device errors.
 #pragma once
 
 #include "host/client/device/error.hpp"

@@ -1,4 +1,4 @@
-// Estimates how often a program sends a force. The board interpolates over this time.
+// Estimates the interval between a program's forces. The board interpolates the force over this interval.
 #pragma once
 
 #include <array>
@@ -8,13 +8,12 @@
 
 namespace inkwell::library {
 
-/// Intervals are counted in poses, which follow board time. The PC clock is unsuitable, because a busy computer delays
-/// threads, and a virtual board runs in simulated time.
+/// Intervals are counted in poses, which follow board time. The PC clock does not follow the simulated time of a
+/// virtual board.
 class ForceInterval {
  public:
-  /// Usual interval between the program's forces in ms: the median of five intervals. A single late force therefore
-  /// does not change the median. `pose_sequence` is the sequence of the newest pose that the program had read when it
-  /// computed this force.
+  /// Returns the median of the last five intervals in ms. `pose_sequence` belongs to the pose from which the program
+  /// computed the force.
   int next(std::uint32_t pose_sequence);
 
  private:

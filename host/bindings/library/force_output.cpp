@@ -9,7 +9,7 @@
 namespace inkwell::library {
 namespace {
 
-/// Longest delay of stop() while the device does not accept a force.
+/// Longest delay of stop() if the device accepts no force.
 constexpr auto attention = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -42,7 +42,7 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
   device::ForceRequest request;
   request.pose_sequence = pose_sequence;
   for (std::size_t i = 0; i < 3; ++i) {
-    // A value beyond the float range is replaced by a huge value, which the board limits.
+    // Values beyond the float range are clamped, and the board limits the force.
     constexpr double largest_N = 1e30;
     if (!std::isfinite(force_N[i]))
       throw BadArgument("The force is not a finite number on one axis. Give finite numbers.");
@@ -78,7 +78,7 @@ void ForceOutput::run() {
 
 void ForceOutput::send_next(std::chrono::milliseconds patience) {
   try {
-    // The bus accepts one report per frame, so a queue of forces would never drain. While a report is pending, a newer
+    // USB carries one report per bus frame, so a queue of forces would never drain. While a report is pending, a newer
     // force replaces the force in `next_`.
     if (!device_.wait_until_written(patience)) return;
     device::ForceRequest request = take_force();

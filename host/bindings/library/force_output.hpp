@@ -16,8 +16,8 @@
 
 namespace inkwell::library {
 
-/// Sends the newest force when the device has received the previous force. USB transfers one force per millisecond, and
-/// an old force is useless. In lock step the force is sent before the next pose is requested.
+/// Sends the newest force when the device has received the previous force. In lock step the force is sent before the
+/// next pose is requested.
 class ForceOutput : private TurnPart {
  public:
   /// Sends no forces while `poses` reports a loss.
@@ -25,10 +25,10 @@ class ForceOutput : private TurnPart {
   ~ForceOutput();
 
   void set_mode(protocol::ForceMode mode);
-  /// `pose_sequence` is the sequence of the newest pose that the program had read when it computed the force. Throws
-  /// BadArgument if the force is not finite.
+  /// `pose_sequence` belongs to the pose from which the program computed the force. Throws BadArgument if the force is
+  /// not finite.
   void send(const double (&force_N)[3], std::uint32_t pose_sequence);
-  /// Stops the force, which then fades out.
+  /// Fades the force out.
   void let_go();
   /// No force is sent after this function returns.
   void stop();

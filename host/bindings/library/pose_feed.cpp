@@ -13,8 +13,8 @@
 namespace inkwell::library {
 namespace {
 
-/// A silence of this length or longer is reported to a stepped program. A virtual board on a busy computer may compute
-/// a pose slowly.
+/// A stepped program receives an error after a silence of this length. The limit is long, because a virtual board on a
+/// busy computer is slow.
 constexpr double stepped_silence_s = 2.0;
 
 constexpr char lost_with_the_link[] =
@@ -42,8 +42,7 @@ double checked_timeout_s(double seconds) {
   return std::max(seconds, 0.0);
 }
 
-// ---- for the thread that reads the poses
-// ------------------------------------------------------------------------------
+// ---- pose thread --------------------------------------------------------------------------------------------
 
 void PoseFeed::take_turns(std::shared_ptr<Turns> turns, bool is_stepped) {
   turns_ = std::move(turns);

@@ -1,4 +1,4 @@
-// Informs all threads of the newest pose, and of losses of the poses, the link and the force.
+// Distributes poses to all threads, and reports losses of poses, link and force.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /// No time-out.
 inline constexpr double forever_s = std::numeric_limits<double>::infinity();
 
-/// Returns the time-out of a call, at least 0. Throws BadArgument if the time-out is not a number.
+/// Returns the time-out, or 0 for a negative time-out. Throws BadArgument if the time-out is not a number.
 double checked_timeout_s(double seconds);
 
 /// Reason why no poses arrive.
@@ -37,7 +37,7 @@ enum class Loss : std::uint8_t {
   link,     ///< the link is lost, and the connection searches for the board
 };
 
-/// Task of the pose thread in each turn. Used in lock step only.
+/// Functions that the pose thread calls in each turn of lock step.
 class TurnPart {
  public:
   virtual ~TurnPart() = default;
@@ -51,25 +51,25 @@ class TurnPart {
 
 class PoseFeed final : public device::LockStep {
  public:
-  // ---- for the thread that reads the poses ---------------------------------------------------------------------
+  // ---- pose thread ---------------------------------------------------------------------------------------------
 
-  /// Switches to lock step with these turns. After let_program_decide(), if `is_stepped`, board time passes only while
-  /// a call waits.
+  /// Switches to lock step with these turns.
   void take_turns(std::shared_ptr<Turns> turns, bool is_stepped);
-  /// From this call on, the program decides when time passes. Call this again after a lost link.
+  /// From this call on, the time of a stepped board passes only while a call waits. Call this function again after a
+  /// lost link.
   void let_program_decide();
-  /// Waits until the next pose may be requested. Without lock step, a request is always allowed. False if the arm
-  /// closes.
+  /// Waits until the next pose may be requested. Without lock step, the function returns immediately. Returns false if
+  /// the arm closes.
   bool begin_turn();
-  /// Called when the arm closes, so that begin_turn() no longer waits.
+  /// Ends the wait of begin_turn() when the arm closes.
   void leave_turns();
 
-  /// Publishes a pose, which ends a loss. In lock step the function returns after the servos have answered the pose and
-  /// the waiting calls were notified.
+  /// Publishes a pose and ends a loss of poses. In lock step, the function waits for the servos' answers and then
+  /// notifies waiting calls.
   void publish(const inkwell_pose& pose, bool is_referenced);
-  /// Reports a loss. `cause` is a sentence with the remedy; the newest cause replaces earlier causes.
+  /// Reports a loss. `cause` is a sentence with the remedy. The newest cause replaces the previous cause.
   void lose(Loss kind, const std::string& cause);
-  /// This program has lost its claim to the arm.
+  /// Reports that this program is no longer the driver.
   void lose_claim(const std::string& cause);
 
   // ---- poses ---------------------------------------------------------------------------------------------------
@@ -78,7 +78,7 @@ class PoseFeed final : public device::LockStep {
     inkwell_pose pose{};
     bool is_referenced = false;  ///< whether the encoders are referenced
   };
-  /// The newest pose, also during a loss.
+  /// Returns the newest known pose.
   Seen last() const;
   Loss loss() const;
   /// Passes the newest pose to `take`, then throws Disconnected during a loss.
@@ -93,9 +93,9 @@ class PoseFeed final : public device::LockStep {
   /// Throws Disconnected while the link is lost.
   void require_link() const;
 
-  /// Waits until `condition(pose, loss)` is true. Also returns after this board time, or after the same wall time
-  /// without a pose. Returns the newest pose. Throws Disconnected while the link is lost, but not during a silence.
-  /// `answer` states how the calling thread answers the pose.
+  /// Waits until `condition(pose, loss)` is true. The time-out is in board time, or in wall time while no poses arrive.
+  /// Returns the newest pose. Throws Disconnected while the link is lost, but not during a silence. `answer` states how
+  /// the calling thread answers the pose.
   template <class Condition>
   inkwell_pose wait(Condition condition, double timeout_s = forever_s,
                     Turns::Answer answer = Turns::Answer::none) const {
@@ -114,23 +114,23 @@ class PoseFeed final : public device::LockStep {
 
   // ---- the force ---------------------------------------------------------------------------------------------
 
-  /// From this call on, losses of the force are reported to this program.
+  /// After this call, the library reports lost forces to this program.
   void use_force();
   /// Called when this program switches the force on, or accepts that the force is off.
   void forget_lost_force();
   /// Called when this program switches the force off.
   void expect_force_off();
-  /// Throws ForceLost after an unexpected loss of the force, until the force is on again or the loss was accepted.
+  /// Throws ForceLost after an unexpected loss of the force. The loss counts until the force is on, or until
+  /// forget_lost_force() is called.
   void require_force() const;
-  /// uses_force() returns whether this program uses forces. had_force() returns whether its force was on since the link
-  /// was opened.
   bool uses_force() const;
+  /// Returns true if the force was on since the link was opened.
   bool had_force() const;
 
-  /// Counts lost links, silences and lost forces. Each of these events stops the running servo.
+  /// Returns the number of lost links, silences and lost forces. Each of these losses stops the running servo.
   std::uint64_t interruptions() const;
-  /// Waits until `condition` is true and returns the newest pose. Throws the newest loss if interruptions() has changed
-  /// from `known`. Only for servos. In lock step, board time stops until the servo waits again or ends its answer.
+  /// Waits until `condition` is true and returns the newest pose. Throws the newest interruption if interruptions()
+  /// differs from `known`. Only for servos. In lock step, board time then stops until the servo's next wait.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
     const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };
@@ -143,10 +143,10 @@ class PoseFeed final : public device::LockStep {
   // ---- lock step ---------------------------------------------------------------------------------------------
 
   bool is_in_lock_step() const { return turn_.has_value(); }
-  /// Calls `part` in each turn until `part` is removed. Only in lock step.
+  /// Calls `part` in each turn until remove() is called. Only in lock step.
   void add(TurnPart& part);
   void remove(TurnPart& part);
-  /// Marks that a thread answers a pose, so that board time waits for the thread. Has no effect outside lock step.
+  /// Stops board time until the thread has answered the pose. Has no effect outside lock step.
   void begin_answer(std::thread::id thread, Turns::Answer answer) const;
   void end_answer(std::thread::id thread) const;
 
@@ -163,7 +163,7 @@ class PoseFeed final : public device::LockStep {
     std::optional<inkwell_pose> pose = {};  ///< set when the wait is over
   };
 
-  /// Registers a waiter until the call returns or its thread is canceled. Requires the mutex.
+  /// Registers a waiter for the lifetime of this object. Requires the mutex.
   class WaitingCall {
    public:
     WaitingCall(const PoseFeed& feed, Waiter& waiter);
@@ -178,7 +178,7 @@ class PoseFeed final : public device::LockStep {
 
   inkwell_pose wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_over, double timeout_s,
                     Turns::Answer answer) const;
-  // The functions below require the mutex.
+  // The caller of the following functions must hold the mutex.
   void begin_waiting(Waiter& waiter) const;
   void end_waiting(const Waiter& waiter) const;
   enum class Waiting : std::uint8_t { servos, others, all };

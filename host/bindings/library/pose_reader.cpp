@@ -8,7 +8,7 @@ namespace {
 /// Maps newer states to the states that existing programs know.
 inkwell_state state_of(protocol::State state) {
   if (protocol::force_is_on(state)) return INKWELL_ACTIVE;
-  // The arm is temporarily unavailable, and no action is required.
+  // In these states the arm is temporarily unavailable.
   if (state == protocol::State::update || state == protocol::State::testing) return INKWELL_STARTING;
   return static_cast<inkwell_state>(state);
 }

@@ -1,4 +1,4 @@
-// Computes the derived values of a pose.
+// Computes the library pose from a board's pose report.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ struct ReadPose {
   bool is_referenced;
 };
 
-/// Each object serves one arm and one thread.
+/// Use one object for each arm, in a single thread.
 class PoseReader {
  public:
   inkwell_pose read(const device::Pose& report, const control::Arm& geometry);

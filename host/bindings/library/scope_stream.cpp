@@ -14,9 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Limit for unread samples: five seconds.
+/// The buffer stores the samples of five seconds.
 constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
-/// Longest delay of the thread's exit while no samples arrive.
+/// Longest delay of the thread's exit.
 constexpr auto read_timeout = 20ms;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The thread that reads the scope for callers and for a recording.
+// Reads scope samples for callers and for a recording.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@
 
 namespace inkwell::library {
 
-/// In lock step there is no thread. The samples before a pose are read together with the pose.
+/// In lock step, the pose thread reads the samples with each pose.
 class ScopeStream : private TurnPart {
  public:
   ScopeStream(device::Device& device, PoseFeed& poses);
@@ -27,8 +27,8 @@ class ScopeStream : private TurnPart {
 
   /// Throws NotNow during a recording.
   void select(const std::vector<protocol::Signal>& signals);
-  /// At most `capacity` received samples; none on time-out. Throws NotNow if no signals are selected, and Disconnected
-  /// if a lost link has ended the selection.
+  /// Returns at most `capacity` samples, or none on time-out. Throws NotNow if no signals are selected, and
+  /// Disconnected if a lost link has ended the selection.
   std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
 
   /// Throws NotNow if no signals are selected or a recording is running.
@@ -42,9 +42,9 @@ class ScopeStream : private TurnPart {
   void run();
   void keep(device::ScopeSamples samples);
   void end(std::uint64_t selection, const std::string& cause);
-  /// Requires the mutex, and unlocks the mutex during the wait.
+  /// `lock` must be locked and is unlocked during the wait.
   void wait_for_samples(std::unique_lock<std::mutex>& lock, double timeout_s);
-  /// If no signals are selected, the call also clears the reason why the last selection ended.
+  /// If no signals are selected, the function clears `ended_by_`.
   bool is_selected();
 
   device::Device& device_;

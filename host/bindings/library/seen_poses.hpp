@@ -1,5 +1,5 @@
-// For each thread, the newest pose for which the thread has waited. The arm stores these poses, because destructors of
-// static objects may call the library after thread-local objects are destroyed.
+// Stores the newest pose of each waiting thread. Thread-local storage is unsuitable, because static destructors may
+// call the library later.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace inkwell::library {
 
 class SeenPoses {
  public:
-  /// Sequence number of the calling thread's newest pose; none before its first pose.
+  /// Returns the sequence number of the calling thread's newest pose, if any.
   std::optional<std::uint32_t> newest() const {
     const std::lock_guard lock(mutex_);
     const auto seen = sequences_.find(std::this_thread::get_id());
@@ -29,7 +29,7 @@ class SeenPoses {
     const std::lock_guard lock(mutex_);
     if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());
   }
-  /// Whether the calling thread has set a force since its last pose, and therefore runs a loop that answers poses.
+  /// Returns true if the calling thread has set a force since its last pose.
   bool take_force() {
     const std::lock_guard lock(mutex_);
     return drives_.erase(std::this_thread::get_id()) > 0;

@@ -111,7 +111,7 @@ void Servo::call(const Function& function, std::uint64_t known_interruptions) {
     double force_N[3]{};
     goes_on = function(pose, force_N);
     if (!origin_.is_here()) return;  // the function has forked, and this is the child
-    // A force that is not finite counts as 0. Otherwise, the previous force would stay active until its expiry.
+    // A value that is not finite becomes 0, because the previous force would otherwise remain active.
     for (double& value : force_N)
       if (!std::isfinite(value)) value = 0.0;
     output_(force_N, seen);

@@ -1,4 +1,4 @@
-// Calls a program's servo function at each pose in a separate thread, until poses or force are lost.
+// Calls a program's servo function for each pose in a separate thread. Lost poses or a lost force stop the servo.
 #pragma once
 
 #include <atomic>
@@ -17,10 +17,10 @@ namespace inkwell::library {
 
 class Servo {
  public:
-  /// Writes the force on the hand. The force is preset to 0. The servo stops if the function returns false or throws.
+  /// Writes the force on the hand to `force_N`, which is initially 0. The servo stops if the function returns false or
+  /// throws.
   using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
-  /// Receives each force, and the sequence of the pose to which the force belongs. An exception of this function stops
-  /// the servo.
+  /// Receives each force and the sequence number of its pose. An exception of this function stops the servo.
   using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
 
   /// `let_go` is called when a servo has stopped.
@@ -30,9 +30,9 @@ class Servo {
 
   /// Throws NotNow if a servo is running.
   void start(Function function);
-  /// Requests a stop after the running call, if any.
+  /// Requests a stop after the running servo call.
   void request_end();
-  /// Stops the servo and waits until its last call has returned. The servo itself does not wait.
+  /// Stops the servo and waits until its last call has returned. A call from the servo itself does not wait.
   void stop();
   bool is_running() const;
   /// Throws the error that stopped the last servo: lost poses, lost force, or another driver. Does not throw if the

@@ -7,10 +7,10 @@
 
 namespace inkwell::library {
 
-/// Longest error sentence, including the terminating zero.
+/// Size of the buffer for an error text, with the terminating zero.
 inline constexpr std::size_t sentence_maximum = 2048;
 
-/// Copies the text with a terminating zero, truncated to the size of the array.
+/// Copies a zero-terminated text and truncates the text to the array size.
 template <std::size_t size>
 void copy_text(const char* text, char (&to)[size]) {
   std::strncpy(to, text, size - 1);

@@ -1,4 +1,4 @@
-// libinkwell for Octave and MATLAB, from one source. The .m files in this folder call inkwell_mex(COMMAND, ...).
+// MEX interface of libinkwell for Octave and MATLAB. The .m files in this folder call inkwell_mex(COMMAND, ...).
 //
 // Build commands:
 //   mkoctfile --mex inkwell_mex.cpp -Ihost/bindings/library/include -Lbuild/pc -linkwell     Octave
@@ -86,7 +86,7 @@ mxArray* column(const double* values, std::size_t count) {
   return array;
 }
 
-// ---- commands: arguments after the command name, results in the order of the .m file -------------------------
+// ---- commands ------------------------------------------------------------------------------------------------
 
 using Answers = std::vector<mxArray*>;
 
@@ -177,7 +177,7 @@ Answers pose(const Arguments& arguments) {
   return {struct_of(pose, was_referenced != 0 && is_referenced != 0)};
 }
 
-/// While no poses arrive, returns the last pose and raises no error.
+/// Returns the last pose without an error if no poses arrive.
 Answers last_pose(const Arguments& arguments) {
   inkwell_pose pose{};
   int is_referenced = 0;
@@ -327,8 +327,7 @@ Answers select(const Arguments& arguments) {
   return {};
 }
 
-/// Reads this number of samples of the selected signals. Returns the values, the control periods and the number of
-/// lost samples.
+/// Reads samples of the selected signals. Returns the values, the control periods and the number of lost samples.
 Answers read(const Arguments& arguments) {
   inkwell_arm* arm = find(arguments)->second;
   const auto columns = static_cast<std::size_t>(number(argument(arguments, 1)));
@@ -399,7 +398,7 @@ Answers run(const Arguments& arguments) {
   return command->second(Arguments(arguments.begin() + 1, arguments.end()));
 }
 
-/// Error identifier, by which programs distinguish errors.
+/// Returns the error identifier for a result code.
 const char* identifier_of(inkwell_result result) {
   switch (result) {
     case INKWELL_DISCONNECTED: return "inkwell:disconnected";

@@ -9,7 +9,7 @@
 namespace inkwell::python {
 namespace {
 
-/// True in the thread that calls a servo.
+/// This flag is true in the thread that calls a servo.
 thread_local bool in_servo = false;
 
 /// None means zero force. Any value other than three finite numbers throws an exception, which stops the servo.
@@ -154,7 +154,7 @@ void Arm::enable_force(double timeout_s) {
   call_patiently(
       timeout_s, [](inkwell_arm* arm, double time_s) { return inkwell_enable_force(arm, time_s); },
       [this](inkwell_result result) {
-        // Repeat the call after a time-out or a temporary refusal.
+        // The call is repeated after a time-out or a temporary refusal.
         return result == INKWELL_TIMED_OUT || (result == INKWELL_REFUSED && pose().state != INKWELL_FAULT);
       });
 }
@@ -222,7 +222,7 @@ void Arm::start_servo(py::function servo) {
   if (!servo_is_running()) take_ending().raise_it();
   auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
   call([&] {
-    // The servos must be stored in the order in which the library has started them.
+    // Without the lock, two concurrent calls could store the wrong servo.
     const std::lock_guard lock(servo_mutex_);
     const auto result = inkwell_start_servo(arm, &Arm::call_servo, next.get());
     if (result == INKWELL_OK) servo_.swap(next);  // the previous servo is destroyed with the interpreter's lock
@@ -324,7 +324,7 @@ inkwell_store Arm::store() {
   return store;
 }
 
-// ---- the board's self-test ---------------------------------------------------------------------------------
+// ---- self-test ---------------------------------------------------------------------------------------------
 
 std::vector<inkwell_test_item> Arm::self_test() { return test_items(inkwell_self_test); }
 
@@ -340,7 +340,7 @@ std::vector<inkwell_test_item> Arm::test_items(decltype(&inkwell_self_test) test
   return items;
 }
 
-// ---- the hand of a virtual board ---------------------------------------------------------------------------
+// ---- virtual hand ------------------------------------------------------------------------------------------
 
 void Arm::move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m) {
   const Use arm(*this);

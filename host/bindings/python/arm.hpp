@@ -1,5 +1,4 @@
-// An open arm for the interpreter. Calls wait without the interpreter's lock, react to Ctrl-C, and never use a closed
-// arm.
+// Arm object for the Python interpreter. Calls release the interpreter's lock while they wait, and react to Ctrl-C.
 #pragma once
 
 #include <array>
@@ -68,8 +67,9 @@ class Arm {
   void press_virtual_buttons(bool button_1, bool button_2);
 
   void select_signals(const std::vector<std::string>& names);
-  /// Returns (values, periods, lost): at most `rows` rows with one value for each signal, and no rows after a time-out.
-  /// With `fill` the function returns `rows` rows, or raises TimedOut if no row arrives for `timeout_s`.
+  /// Returns (values, periods, lost) with at most `rows` rows, and one column of values for each signal. Returns no
+  /// rows after a time-out. With `fill`, the function returns exactly `rows` rows, and raises TimedOut if no row
+  /// arrives within `timeout_s`.
   py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
   void start_recording(const std::string& path);
   /// (samples, lost)
@@ -78,8 +78,8 @@ class Arm {
  private:
   std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);
 
-  /// The arm stays open while a Use exists. The constructor raises Refused if the arm is closed or belongs to the
-  /// parent process.
+  /// The arm stays open while a Use object exists. The constructor raises Refused if the arm is closed or belongs to
+  /// the parent process.
   class Use {
    public:
     explicit Use(Arm& arm);
@@ -106,13 +106,12 @@ class Arm {
   };
 
   static int call_servo(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user) noexcept;
-  /// Reason why the stopped servo has ended; each reason is returned once.
+  /// Returns and clears the reason why the servo has ended.
   Ending take_ending();
   /// Calls the library without the interpreter's lock and raises its errors.
   template <class Call>
   void call(Call library_call);
-  /// Repeats short calls of `attempt(arm, time)` while `goes_on` is true, so that Ctrl-C and close() take effect. The
-  /// time-out is the sum of the attempts' durations, which the library may measure in board time.
+  /// Repeats short calls of `attempt(arm, time)` while `goes_on` returns true, so that Ctrl-C and close() take effect.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
   template <class Attempt>
@@ -152,7 +151,7 @@ template <class Attempt, class GoesOn>
 void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
   constexpr double attempt_s = 0.05;
   if (!(timeout_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The time-out is no time. Give seconds, from 0 on.");
-  // The attempts are counted, because the library waits for board time.
+  // The loop counts attempts instead of wall time, because the library waits in board time.
   for (double left_s = timeout_s;; left_s -= attempt_s) {
     const bool is_last = left_s <= attempt_s;
     inkwell_result result;

@@ -1,4 +1,4 @@
-// Converts errors of the library into exceptions; each code has a separate class in inkwell/errors.py.
+// Converts library errors into the exceptions of inkwell/errors.py.
 #pragma once
 
 #include <string>
@@ -11,8 +11,7 @@ namespace inkwell::python {
 
 namespace py = pybind11;
 
-/// Raises the class of inkwell.errors for `result`, with the last pose, if any. The caller holds the interpreter's
-/// lock.
+/// Raises the exception of inkwell.errors for `result`. The caller must hold the interpreter's lock.
 [[noreturn]] void raise(inkwell_result result, const std::string& sentence, const Pose* last_pose = nullptr);
 
 /// Calls the library without the interpreter's lock and raises its errors.

@@ -1,4 +1,4 @@
-// The native module of the Python package: the library's structs with numpy arrays, and an arm.
+// Native module of the Python package.
 #include <string>
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace inkwell::python {
 namespace {
 
-/// A numeric member as a read-only array without a copy. The array keeps the struct alive.
+/// Returns a read-only numpy array that refers to a struct member. The array keeps a reference to the struct.
 template <class Struct, std::size_t size>
 py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_t> shape = {size}) {
   return [member, shape](const py::object& self) {
@@ -20,7 +20,6 @@ py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_
   };
 }
 
-/// A text member, or a flag that is an int in C.
 template <class Struct, std::size_t size>
 py::cpp_function text_of(char (Struct::*member)[size]) {
   return [member](const Struct& self) { return std::string(self.*member); };
@@ -57,7 +56,7 @@ void put(const py::handle& vector, double (&to)[3]) {
   for (std::size_t i = 0; i < 3; ++i) to[i] = values[i];
 }
 
-/// Places shapes from the classes of inkwell/shapes.py.
+/// Places Python shape objects from inkwell/shapes.py.
 void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
   std::vector<Plane> flat;
   for (const auto& plane : planes) {

@@ -1,4 +1,4 @@
-// Scope samples, written by the library directly into numpy arrays.
+// Reads scope samples directly into numpy arrays.
 #include <algorithm>
 
 #include <pybind11/numpy.h>

@@ -8,7 +8,7 @@
 
 constexpr double stiffness_N_per_m = 200, reach_m = 0.010;
 
-/// The force increases linearly up to half of the reach, and then decreases to zero. The force therefore never jumps.
+/// The force increases linearly up to half of `reach_m`, and then decreases linearly to zero.
 double attraction_N(double distance_m) {
   return stiffness_N_per_m * std::fmax(0.0, std::fmin(distance_m, reach_m - distance_m));
 }

@@ -37,13 +37,13 @@ _SECONDS = "seconds, a number"
 _FORCE = "three numbers, the force in N along x, y and z"
 
 _open: "weakref.WeakSet[Arm]" = weakref.WeakSet()
-# An arm object that is the driver stays open, even if no variable refers to it.
+# This set prevents the garbage collection of driving arms.
 _driving: "set[Arm]" = set()
 
 
 @atexit.register
 def _close_all() -> None:
-    # A servo must not be called while the interpreter exits.
+    # Closes all arms, because servos must not run while the interpreter exits.
     for arm in list(_open):
         with contextlib.suppress(Exception):
             arm.close()

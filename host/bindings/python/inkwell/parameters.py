@@ -81,7 +81,7 @@ class Parameters:
         return (row[0] for row in _native.parameters())
 
     def __getattr__(self, name: str) -> float:
-        # Called only for names without a property below: parameters of the arm's force law, or unknown names.
+        # Python calls this function only for names without a property below.
         if name.startswith("_"):  # Python and notebooks read such names of every object
             raise AttributeError(name)
         try:

@@ -29,15 +29,15 @@ using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
 using Vector = std::array<double, 3>;  ///< in the workspace axes
 
-/// Thrown if a function of the library does not return INKWELL_OK. what() returns the error sentence.
+/// Thrown if a library function does not return INKWELL_OK. The function what() returns the error text.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
   inkwell_result result;
 };
 
-/// Thrown if no poses arrive, because the link to the arm is lost or the arm is silent. The library recovers by itself;
-/// see INKWELL_DISCONNECTED.
+/// Thrown if no poses arrive, because the link to the arm is lost or the arm is silent. The library reconnects
+/// automatically; see INKWELL_DISCONNECTED.
 class Disconnected : public Failure {
  public:
   Disconnected() : Failure(INKWELL_DISCONNECTED) {}
@@ -59,14 +59,14 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm, which the destructor closes. Each function calls the C function of the same name. Each C++ function
+/// An open arm. The destructor closes the arm. Each function calls the C function of the same name. Each C++ function
 /// throws Failure if its C function does not return INKWELL_OK, and Disconnected while no poses arrive. Moving an Arm
-/// object also moves its running servo. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Do
-/// not destroy an arm in its own servo, because the library cannot close the arm there.
+/// object also moves its running servo. All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. A
+/// servo function must not destroy its arm.
 class Arm {
  public:
-  /// Returns the force on the hand. An exception stops the servo, and stop_servo() throws it. Any other cause that has
-  /// stopped a servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
+  /// Returns the force on the hand. An exception of the function stops the servo, and stop_servo() throws this
+  /// exception. The next stop_servo(), start_servo() or wait_for_pose() throws any other error that stopped the servo.
   using Servo = std::function<Vector(const Pose&)>;
 
   /// Accepts the addresses of inkwell_open().
@@ -74,7 +74,7 @@ class Arm {
     require(inkwell_open(address.c_str(), &opened_->arm));
   }
 
-  /// The arm for use with the C interface. Do not close the arm with the C interface. Null in a moved-from arm.
+  /// Returns the arm for the C interface, or null for a moved-from arm. Do not call inkwell_close() for this arm.
   inkwell_arm* get() const { return opened_ ? opened_->arm : nullptr; }
 
   Pose pose() const {
@@ -126,13 +126,12 @@ class Arm {
     throw_what_ended_servo();
     if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
     std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
-    // The lock delays the new servo until the new state is stored. Otherwise, the new servo would use the previous
-    // servo's state.
+    // If another thread stops the new servo, stop_servo() must find the new state.
     const std::lock_guard<std::mutex> lock(opened_->mutex);
     require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
     opened_->servo.swap(state);
   }
-  /// Throws the exception or any other cause that stopped the servo.
+  /// Throws the exception or the error that stopped the servo.
   void stop_servo() {
     require(inkwell_stop_servo(get()));
     std::exception_ptr thrown;
@@ -162,7 +161,7 @@ class Arm {
     require(inkwell_get_stored_parameter(get(), name.c_str(), &value));
     return value;
   }
-  /// Returns the items of a new self-test, or with `only_last` the items of the last self-test.
+  /// Runs a self-test and returns its items. With `only_last`, returns the items of the last self-test.
   std::vector<inkwell_test_item> self_test(bool only_last = false) {
     const auto test = only_last ? inkwell_get_self_test : inkwell_self_test;
     std::vector<inkwell_test_item> items(64);
@@ -178,7 +177,7 @@ class Arm {
   }
 
  private:
-  /// Throws Disconnected, or Failure for any other result that is not INKWELL_OK.
+  /// Throws Disconnected for INKWELL_DISCONNECTED, and Failure for other errors.
   void require(inkwell_result result) const {
     if (result != INKWELL_DISCONNECTED) return inkwell::require(result);
     Disconnected lost;
@@ -199,7 +198,7 @@ class Arm {
    public:
     explicit ServoState(Servo servo) : servo_(std::move(servo)) {}
 
-    /// Returns false if the servo has thrown.
+    /// Returns false if the servo function throws an exception.
     bool call(const Pose& pose, double force_N[3]) noexcept {
       try {
         const Vector wanted_N = servo_(pose);
@@ -224,13 +223,13 @@ class Arm {
     std::exception_ptr thrown_;
   };
 
-  /// The arm, and the state that its servo uses until the arm is closed. The address does not change when Arm moves.
+  /// The C arm and the state of its servo. A move of Arm does not change the address of this object.
   struct Opened {
     Opened() = default;
     Opened(const Opened&) = delete;
     Opened& operator=(const Opened&) = delete;
     ~Opened() {
-      // A servo that destroys its own arm keeps running, so its state must stay valid.
+      // inkwell_close() fails in a servo, and the running servo still needs its state.
       if (inkwell_close(arm) != INKWELL_OK) static_cast<void>(servo.release());
     }
 
