@@ -15,7 +15,7 @@ using ADC3 = RegistersOf<AnalogInputs, registers::ADC3>;
 using ADC_COMMON = RegistersOf<AnalogInputs, registers::ADC_COMMON>;
 using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 
-/// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
+/// Values of JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
 /// Sampling time of a channel: code for ADC_SMPRx and number of cycles. The channels of the fast shunt amplifiers use
@@ -29,7 +29,7 @@ struct Sampling {
 /// Potentiometers and supply divider have a high output resistance, but a capacitor at the pin charges the sampling
 /// capacitor.
 constexpr Sampling wiper_sampling{0b011, 56}, supply_sampling = wiper_sampling;
-/// The internal reference needs 10 us (data sheet, "Embedded internal reference voltage").
+/// The internal reference needs a sampling time of 10 us (data sheet, "Embedded internal reference voltage").
 constexpr Sampling reference_sampling{0b111, 480};
 static_assert(reference_sampling.time_s() > 10e-6f);
 
@@ -52,8 +52,8 @@ static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
                   is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// Slow channels in conversion order. The supply is the last channel, because a motor current is sampled next, and both
-/// voltages are near mid-range.
+/// Slow channels in conversion order. The supply is last, because the next sampled signal, a motor current, has a
+/// similar voltage.
 struct SlowChannel {
   std::uint32_t channel;
   Sampling sampling;
@@ -64,8 +64,8 @@ constexpr SlowChannel slow_sequence[slow_channels] = {{board::facts.gimbal[0].ch
                                                       {reference_channel, reference_sampling},
                                                       {board::facts.supply.channel, supply_sampling}};
 
-/// Sampling times of the ten channels from `first` on. SMPR2 contains channels 0 to 9, and SMPR1 contains the higher
-/// channels.
+/// Returns the SMPRx value for the ten channels from `first` on. SMPR2 contains channels 0 to 9, and SMPR1 contains the
+/// higher channels.
 constexpr std::uint32_t sampling_from(std::uint32_t first) {
   std::uint32_t bits = 0;
   for (const auto& [channel, sampling] : slow_sequence)
@@ -79,7 +79,7 @@ constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1)
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
-  // A sequence of one channel, the default after a reset, uses only the last channel field.
+  // By default the sequence has one channel and uses only the field JSQ4.
   Converter::JSQR::write(typename Converter::JSQR::JSQ4(input.channel));
 }
 
@@ -108,7 +108,7 @@ constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFC
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;
 
-/// Sets up the DMA stream so that it starts with the first transfer. The stream must be disabled.
+/// Sets up the DMA stream to start at the first transfer. The stream must be disabled.
 INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
   DMA2::LIFCR::write(flags_of_stream);
@@ -144,8 +144,7 @@ void AnalogInputs::start() {
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
-  // The reference needs 10 us to start (data sheet, "Embedded internal reference voltage"). This time elapses before
-  // arm().
+  // The reference starts within 10 us (data sheet, "Embedded internal reference voltage"), before arm() is called.
   ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
   set_up_injected<ADC1>(board::facts.motor_current[0]);
   set_up_injected<ADC2>(board::facts.motor_current[1]);
@@ -161,8 +160,8 @@ void AnalogInputs::arm() {
   InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
-// All three converters start together, so all converters have finished when ADC1 raises its interrupt. Only a broken
-// converter has no result.
+// All three converters start together, so all converters have finished when ADC1 raises its interrupt. A missing result
+// indicates a broken converter.
 INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
   bool are_new = true;
   const std::array current_A{take_current_A<ADC1>(are_new), take_current_A<ADC2>(are_new),
@@ -196,7 +195,7 @@ INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   ++slow_age_periods_;
   slow_stopped_ = false;
   set_up_memory_access(slow_.data());
-  // If a result stayed unread, the first new result would cause an overrun.
+  // An unread result would cause an overrun at the next result.
   ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }

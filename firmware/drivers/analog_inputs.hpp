@@ -1,11 +1,11 @@
-// Driver of all analog inputs. ADC1 has two roles, so the inputs cannot have separate drivers.
+// Driver of all analog inputs. ADC1 converts motor currents and slow inputs, so there is one driver for all inputs.
 //
 // The update of TIM1 starts the injected conversions of the motor currents in ADC1, ADC2 and ADC3. ADC1 raises an
 // interrupt at the end of these conversions. The regular sequence of ADC1 converts gimbal, supply and internal
 // reference in every control period. DMA2 stream 0 stores the results of the sequence.
 //
-// The middle of the sampling window is at most 0.2 us after the update. In this time, the winding resistance changes a
-// current of 1 A in the smallest motor by 2 mA, one ADC step. The sampling instant therefore needs no correction.
+// The middle of the sampling window is at most 0.2 us after the update. Within 0.2 us, a motor current of 1 A changes
+// by at most 2 mA, one ADC step. The sampling instant therefore needs no correction.
 #pragma once
 
 #include <array>
@@ -32,14 +32,14 @@ class AnalogInputs {
                                      pin(board::facts.gimbal[2]),
                                      pin(board::facts.supply)};
 
-  /// Call this function before TIM1 runs, because the converters miss triggers before the converter clocks run.
+  /// Call this function before TIM1 runs, because the converters miss triggers without clocks.
   void start_clocks();
 
   /// Connects the pins and sets up the sequences.
   void start();
 
   /// Switches the converters on and enables their trigger from TIM1. Call this function well before an update, so that
-  /// all three converters are accurate and respond to the same first update.
+  /// all three converters respond to the same update.
   void arm();
 
   struct Currents {
@@ -56,7 +56,7 @@ class AnalogInputs {
   /// Wiper voltages of the gimbal potentiometers relative to their supply, 0..1.
   std::array<float, 3> gimbal_ratio() const;
   float supply_V() const;
-  /// Converter counts of the bridge supply, for code in which floats are too slow.
+  /// Bridge supply in converter counts.
   std::uint16_t supply_counts() const { return slow_[4]; }
   /// Converter counts of the internal reference, or 0 before the first measurement.
   std::uint16_t reference_counts() const { return slow_[3]; }
@@ -69,8 +69,8 @@ class AnalogInputs {
   void stop_slow();
   void set_up_slow();
 
-  /// Readings of gimbal, internal reference and supply. The DMA controller writes these readings and can access only
-  /// the main RAM.
+  /// Readings of gimbal, internal reference and supply. The DMA controller writes these readings, so the object must be
+  /// in main RAM.
   std::array<volatile std::uint16_t, 5> slow_{};
   std::uint32_t slow_age_periods_ = 0;
   bool slow_stopped_ = true;  ///< stopped, at start-up or after an error; set up in the next period

@@ -17,8 +17,7 @@ struct Wish {
 
 [[gnu::noinit]] Wish wish;
 
-/// Address of the boot loader. The boot loader begins, like every image, with its stack pointer and the address of its
-/// first instruction.
+/// Address of the boot loader. The first two words are the stack pointer and the entry address.
 constexpr std::uint32_t system_memory = 0x1FFF'0000;
 
 }  // namespace

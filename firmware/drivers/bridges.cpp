@@ -19,11 +19,11 @@ using Enable = DigitalOutput<Bridges, board::facts.bridge_enable>;
 using Heartbeat = DigitalOutput<Bridges, board::facts.bridge_heartbeat>;
 using Hold = DigitalInput<Bridges, board::facts.bridge_hold>;
 
-/// Master mode of TIM1: source of its trigger output (RM0090, TIMx_CR2, MMS).
+/// Sources of TIM1's trigger output (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
 constexpr std::uint32_t trigger_on_update = 0b010;
 
-/// Sets up a timer with outputs off and its counter stopped at 0. Compare values are written before the outputs are
+/// Sets up a timer with disabled outputs and a stopped counter. Compare values are written before the outputs are
 /// switched on.
 template <class Timer>
 void set_up() {
@@ -37,13 +37,12 @@ void set_up() {
   Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
   Timer::BDTR::write(outputs_off);
   Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
-  // This event also loads the repetition counter, so updates are counted from this event. The repetition value is odd
-  // and the counter starts upward from 0. The update therefore occurs at every sixth counter reversal, when the counter
-  // is 0 (RM0090, "Repetition counter").
+  // This update event loads the repetition counter. The repetition value is odd and the counter starts upward from 0.
+  // Therefore the update occurs at every sixth counter reversal, when the counter is 0 (RM0090, "Repetition counter").
   Timer::EGR::write(typename Timer::EGR::UG(1));
 }
 
-/// The bridge number is a template argument, so that no channel table is read.
+/// The bridge number is a template argument, so that the compiler resolves the channel.
 template <std::size_t bridge>
 void write_legs(const LegCompares& legs) {
   constexpr unsigned channel_index = board::facts.bridges[bridge].channel - 1u;
@@ -51,7 +50,7 @@ void write_legs(const LegCompares& legs) {
   TIM8::CCR::write(channel_index, legs.leg_b);
 }
 
-/// All legs A are connected to one port and all legs B to another port, so one access reads three legs.
+/// The three pins belong to one port, so one access reads all three levels.
 template <board::Pin first, board::Pin second, board::Pin third>
 bool any_is_high() {
   static_assert(first.port == second.port && first.port == third.port);
@@ -67,8 +66,8 @@ void start_together() {
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
   TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0), TIM8::SMCR::SMS(start_on_trigger));
   TIM1::CR1::modify(TIM1::CR1::CEN(1));
-  // Two reads of TIM1 leave TIM8 enough time to receive the trigger, before the trigger output changes its source.
-  // Later triggers have no effect on the running timer.
+  // Two reads of TIM1 delay the change of the trigger source until TIM8 has received the trigger. Later triggers have
+  // no effect on the running timer.
   static_cast<void>(TIM1::CR1::read());
   static_cast<void>(TIM1::CR1::read());
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
@@ -81,16 +80,16 @@ void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {
-  // PWM at 60 kHz does not need fast edges, and slow edges disturb the shunt amplifiers less. The pull-downs keep the
-  // legs low if the timer does not drive them.
+  // Slow edges disturb the shunt amplifiers less than fast edges. The pull-downs keep the legs low if the timer does
+  // not drive them.
   connect<Bridges, board::facts.bridges[0].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[2].leg_a>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[0].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[1].leg_b>(Pull::down, Speed::medium);
   connect<Bridges, board::facts.bridges[2].leg_b>(Pull::down, Speed::medium);
-  // The open-drain fault wire has a strong pull-up on the board. The pull-up of the chip only prevents a floating wire
-  // if no bridges are connected.
+  // The open-drain fault wire has a strong pull-up on the board. The chip's pull-up prevents a floating wire if no
+  // bridges are connected.
   connect<Bridges, board::facts.bridge_fault_tim1>(Pull::up, Speed::low);
   connect<Bridges, board::facts.bridge_fault_tim8>(Pull::up, Speed::low);
 }
@@ -102,8 +101,8 @@ void Bridges::start() {
   Heartbeat::start();
   Hold::start(Pull::down);  // defines the level if the wire is broken
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
-  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors. A
-  // bench check must show whether the outputs also become idle (README.md of the board, "First power-up").
+  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors.
+  // Whether the outputs become idle must be measured (README.md of the board, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 

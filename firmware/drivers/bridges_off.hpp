@@ -10,8 +10,8 @@ namespace inkwell::drivers {
 using LegsA = RegistersOf<Bridges, registers::TIM1>;
 using LegsB = RegistersOf<Bridges, registers::TIM8>;
 
-/// TIMx_BDTR while the bridges are off. Idle outputs are driven low (OSSI, OSSR), and the break input is active low.
-/// Lock level 1 prevents an erroneous store from disabling the break input.
+/// Value of TIMx_BDTR while the bridges are off. Idle outputs are driven low (OSSI, OSSR), and the break input is
+/// active low. Lock level 1 prevents an erroneous store from disabling the break input.
 inline constexpr std::uint32_t outputs_off =
     LegsA::BDTR::LOCK(1).bits | LegsA::BDTR::OSSI(1).bits | LegsA::BDTR::OSSR(1).bits | LegsA::BDTR::BKE(1).bits;
 

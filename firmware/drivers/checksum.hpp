@@ -1,5 +1,5 @@
-// CRC-32 unit of the chip for words (RM0090, chapter CRC): polynomial 0x04C11DB7, highest bit first, initially all
-// ones.
+// The chip's CRC-32 unit (RM0090, chapter CRC) processes words, highest bit first. The polynomial is 0x04C11DB7, and
+// the initial value is 0xFFFFFFFF.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class Checksum {
   /// Discards the previous words.
   void begin();
   void add(std::uint32_t word);
-  /// Checksum of the words since begin().
+  /// Returns the checksum of all words since begin().
   std::uint32_t value() const;
 };
 

@@ -11,10 +11,11 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-/// Time limit of 0.1 s in cycles of the internal oscillator. This oscillator runs while the crystal and the PLL start.
+/// Time limit of 0.1 s in cycles of the internal oscillator. The internal oscillator runs while the crystal and the PLL
+/// start.
 constexpr std::uint32_t start_cycles = internal_oscillator_Hz / 10;
 
-/// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
+/// Returns the PPREx code for a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR).
 constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
   std::uint32_t code = 0;
   while (divider > 1) {
@@ -25,8 +26,8 @@ constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
 }
 static_assert(bus_divider_code(1) == 0 && bus_divider_code(2) == 0b100 && bus_divider_code(16) == 0b111);
 
-/// Selects the internal oscillator and switches the PLL off, as after a reset. The chip's boot loader starts programs
-/// without a reset, and a running PLL cannot be changed.
+/// Selects the internal oscillator and switches the PLL off. The boot loader may have started the PLL, and a running
+/// PLL cannot be changed.
 bool return_to_internal_oscillator() {
   constexpr std::uint32_t internal = 0b00;
   RCC::CR::modify(RCC::CR::HSION(1));
@@ -42,7 +43,7 @@ bool return_to_internal_oscillator() {
 bool start_clocks() {
   if (!return_to_internal_oscillator()) return false;
 
-  // A frequency of 168 MHz needs voltage scale 1. Scale 1 is the default, but a boot loader may have changed the scale.
+  // Voltage scale 1 is required for 168 MHz. A boot loader may have changed the voltage scale.
   RCC::APB1ENR::modify(RCC::APB1ENR::PWREN(1));
   static_cast<void>(RCC::APB1ENR::read());
   PWR::CR::modify(PWR::CR::VOS(1));
@@ -56,7 +57,7 @@ bool start_clocks() {
   RCC::CR::modify(RCC::CR::PLLON(1));
   if (!wait_for(start_cycles, [] { return RCC::CR::PLLRDY::is_set(); })) return false;
 
-  // Wait states and bus dividers change before the frequency, so that no part of the chip exceeds its frequency limit.
+  // Wait states and bus dividers must change before the frequency increases.
   FLASH::ACR::write(FLASH::ACR::LATENCY(board::flash_wait_states), FLASH::ACR::PRFTEN(1), FLASH::ACR::ICEN(1),
                     FLASH::ACR::DCEN(1));
   if (!wait_for(start_cycles, [] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;

@@ -5,7 +5,7 @@
 
 namespace inkwell::drivers {
 
-/// Processor clock before start_clocks(), and after start_clocks() has failed (RM0090, HSI).
+/// Frequency of the internal oscillator (RM0090, HSI).
 inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 
 /// Switches the processor from the internal 16 MHz oscillator to the board's clocks and enables the flash accelerator.
@@ -13,7 +13,7 @@ inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 /// not start within 0.1 s. In this case the processor clock remains at 16 MHz.
 [[nodiscard]] bool start_clocks();
 
-/// Returns true if the crystal oscillates. After start_clocks() has failed, the chip still tries to start the crystal.
+/// Returns true if the crystal oscillates. After start_clocks() has failed, the crystal may start later.
 bool crystal_oscillates();
 
 }  // namespace inkwell::drivers

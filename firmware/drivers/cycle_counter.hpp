@@ -1,5 +1,5 @@
-// Cycle counter of the processor (ARMv7-M, DWT). The counter is used to measure the stages of the control interrupt,
-// and to limit the waiting times in the drivers.
+// Cycle counter of the processor (ARMv7-M, DWT). The counter measures the stages of the control interrupt and limits
+// waits in the drivers.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class CycleCounter {
   /// Begins the first lap of a control period and returns the present count.
   std::uint32_t begin() { return last_ = now(); }
 
-  /// Cycles since the last lap. The result is correct even if the counter wraps.
+  /// Returns the cycles since the last lap. The result is correct even if the counter wraps.
   std::uint32_t lap() {
     const std::uint32_t present = now();
     const std::uint32_t cycles = present - last_;
@@ -34,7 +34,7 @@ class CycleCounter {
   std::uint32_t last_ = 0;
 };
 
-/// Waits at most `limit_cycles` until a condition is true. Returns whether the condition became true.
+/// Waits at most `limit_cycles` until a condition is true. Returns true if the condition became true.
 template <class Condition>
 [[nodiscard]] bool wait_for(std::uint32_t limit_cycles, Condition condition) {
   const std::uint32_t from = CycleCounter::now();

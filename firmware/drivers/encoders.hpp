@@ -23,7 +23,7 @@ class Encoders {
   /// Timer counts modulo 65536. TIM5 has 32 bits, but read() returns 16 bits for all timers.
   std::array<std::uint16_t, 3> read() const;
 
-  /// Returns true if wire A or B of `encoder`, 0..2, follows the internal pull resistors of the pin. In this case no
+  /// Returns true if an internal pull resistor can change the level of wire A or B of `encoder`, 0..2. In this case no
   /// encoder drives the wire. The check takes 20 us.
   bool wire_a_floats(std::size_t encoder) const;
   bool wire_b_floats(std::size_t encoder) const;

@@ -19,13 +19,12 @@ constexpr std::uint32_t reload =
 bool IndependentWatchdog::start() {
   using Freeze = registers::DBG::DBGMCU_APB1_FZ;
   Freeze::modify(Freeze::DBG_IWDG_STOP(1));
-  // The watchdog is started first, because its start also starts the watchdog oscillator. Without the oscillator, new
-  // register values would never take effect.
+  // The start of the watchdog also starts the watchdog oscillator. Without the oscillator, new register values would
+  // never take effect.
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);
   IWDG::RLR::write(IWDG::RLR::RL(reload));
-  // A register update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains. This
-  // timeout is also safe.
+  // A register update takes five oscillator cycles. If the update fails, the default timeout of 0.5 s remains active.
   const bool is_taken = wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; });
   feed();
   return is_taken && IWDG::RLR::read() == reload;

@@ -16,13 +16,13 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// This function is the last statement of every handler. Without this statement, a handler may return while a store is
-/// in progress. The processor may then clear a newly arrived interrupt and run another interrupt instead (erratum
-/// 838869 of the Cortex-M4).
+/// Every handler calls this function last. Without this call, a handler may return while a store is in progress. The
+/// processor may then clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the
+/// Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
-/// This handler runs after all interrupts have been served and before the program continues (PendSV: ARMv7-M, B1.5.6).
-/// Every interrupt can preempt this handler.
+/// The PendSV handler runs after all interrupts and before the program continues (ARMv7-M, B1.5.6). Every interrupt can
+/// preempt this handler.
 struct CallAfterInterrupts {
   static void start() {
     constexpr std::uint32_t after_all_interrupts = 0xF0;

@@ -1,4 +1,4 @@
-// Conversion of a duty cycle to the compare values of a bridge's two legs, without register access.
+// Converts a duty cycle to the compare values of a bridge's legs.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ struct LegCompares {
   bool operator==(const LegCompares&) const = default;
 };
 
-/// For a duty cycle u, the duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The motor voltage depends on the
-/// difference of the leg duty cycles, so this difference is rounded to steps of 1 / pwm_top. The duty cycle is limited
-/// to the board's limit. A duty cycle that is not a number results in zero voltage.
+/// For a duty cycle u, the duty cycles of the legs are (1 + u) / 2 and (1 - u) / 2. The difference of the leg duty
+/// cycles is rounded to steps of 1 / pwm_top. The duty cycle is limited to the board's limit. A duty cycle that is not
+/// a number results in zero voltage.
 constexpr LegCompares leg_compares(float duty) {
   constexpr float limit = board::duty_limit;
   const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;
   constexpr auto top = static_cast<std::int32_t>(board::pwm_top);
-  // The conversion rounds a positive value down, so adding one half results in rounding to nearest.
+  // Adding one half rounds a positive value to the nearest integer.
   const auto difference = static_cast<std::int32_t>(bounded * top + (top + 0.5f)) - top;
   const std::int32_t leg_a = (top + difference) / 2;
   return {static_cast<std::uint16_t>(leg_a), static_cast<std::uint16_t>(leg_a - difference)};

@@ -1,4 +1,4 @@
-// Monitor of the 3.3 V CPU supply, with the chip's voltage detector (RM0090, "Programmable voltage detector").
+// Monitors the 3.3 V CPU supply with the chip's voltage detector (RM0090, "Programmable voltage detector").
 #pragma once
 
 #include <array>
@@ -32,8 +32,7 @@ class LogicSupply {
   /// voltages of the sensors fall with the supply.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// Call this function in the interrupt. Returns false if the supply is no longer low, for example after an edge that
-  /// the start of the detector caused.
+  /// Call this function in the interrupt. Returns false if the supply is no longer low.
   INKWELL_INTERRUPT static bool has_fallen() {
     Lines::PR::write(detector);
     return is_low();

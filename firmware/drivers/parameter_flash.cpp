@@ -11,8 +11,7 @@ using Flash = RegistersOf<ParameterFlash, registers::FLASH_PROGRAMMING>;
 constexpr std::uint32_t first_key = 0x4567'0123, second_key = 0xCDEF'89AB;
 constexpr std::uint32_t flash_base = 0x0800'0000, sector_bytes = 0x4000;
 constexpr std::uint32_t by_words = 2;  // PSIZE, for a supply of 2.7 V or more
-/// Time limit for flash operations. Even the slowest chip needs less time. The limit is reached only if the flash is
-/// broken.
+/// Time limit for flash operations. The limit is reached only if the flash is broken.
 constexpr std::uint32_t patience_cycles = 2 * board::processor_Hz;
 
 void unlock() {

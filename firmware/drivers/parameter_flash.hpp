@@ -1,7 +1,6 @@
-// Erases and programs the flash sectors for parameters. During programming and erasing, every fetch and every read of
-// the flash waits, including fetches of this code. Programming stops the main loop for 16 us per word, or 100 us on the
-// slowest chip. Erasing stops the main loop for 0.25 s per sector, or 0.5 s on the slowest chip. Interrupts run from
-// RAM and continue.
+// Erases and programs the flash sectors for parameters. Code in flash stops during programming and erasing. Programming
+// stops the main loop for 16 us per word, or 100 us on the slowest chip. Erasing stops the main loop for 0.25 s per
+// sector, or 0.5 s on the slowest chip. Interrupts run from RAM and continue.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 
 namespace inkwell::drivers {
 
-/// A closed contact is true. The contacts bounce, so the caller must debounce them.
+/// A member is true while its contact is closed. The contacts bounce, so the caller must debounce them.
 struct SwitchContacts {
   bool button_1;
   bool button_2;

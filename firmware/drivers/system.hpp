@@ -9,18 +9,17 @@
 
 namespace inkwell::drivers {
 
-/// Flags of RCC_CSR: the cause of the last reset.
+/// Flags of RCC_CSR for the cause of the last reset.
 struct ResetCause {
   std::uint32_t flags;
   bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
-  /// Returns true if the supply fell below the brown-out level and rose again. Power-on also sets this reset flag and
-  /// is excluded.
+  /// Returns true if the supply fell below the brown-out level and rose again. Returns false at power-on, although
+  /// power-on sets the same flag.
   bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 
-/// Reads and clears the flags of the last reset. The flags after the next reset therefore show only the cause of
-/// that reset.
+/// Reads and clears the reset flags, so that the next boot finds only new flags.
 inline ResetCause take_reset_cause() {
   const ResetCause cause{registers::RCC::CSR::read()};
   registers::RCC::CSR::modify(registers::RCC::CSR::RMVF(1));
@@ -28,7 +27,7 @@ inline ResetCause take_reset_cause() {
 }
 
 /// Returns true if the boot pins selected the chip's boot loader and the boot loader started the firmware. After a
-/// reset SYSCFG_MEMRMP contains the selection of the pins (RM0090).
+/// reset, SYSCFG_MEMRMP contains the selection of the boot pins (RM0090).
 inline bool started_by_boot_loader() {
   registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
   static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"

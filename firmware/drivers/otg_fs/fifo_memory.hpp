@@ -1,4 +1,4 @@
-// Layout of the 320 words of FIFO memory, and flushing of FIFOs (RM0090, "Peripheral FIFO architecture").
+// Layout and flush functions of the FIFO memory (RM0090, "Peripheral FIFO architecture").
 //
 //   Words   0 to  55   Receive FIFO.
 //   Words  56 to  71   Endpoint 0 IN, one packet of 64 bytes.
@@ -11,8 +11,7 @@
 // NAK. Two packets of 64 bytes with their status need 2 x 17 words. The completed transfers of two OUT endpoints need
 // 2 x 4 words.
 //
-// The eight scope packets last 0.4 ms on the bus. The core counts the packets in a FIFO with three bits, so the core
-// would not count a ninth packet.
+// The eight scope packets last 0.4 ms on the bus. With its three-bit counter, the core would not count a ninth packet.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +27,8 @@ inline constexpr std::uint32_t hid_words = 16;
 inline constexpr std::uint32_t control_start = receive_words;
 inline constexpr std::uint32_t hid_start = control_start + control_words;
 inline constexpr std::uint32_t scope_start = hid_start + hid_words;
-/// Largest number of packets in a FIFO (RM0090, section 34.17.6). Only the last packet of a transfer may be short, and
-/// a transfer starts after the previous transfer has left the FIFO. The bound on words is therefore also a bound on
+/// Largest number of packets in a FIFO (RM0090, section 34.17.6). Only the last packet of a transfer may be short. A
+/// transfer starts after the previous transfer has left the FIFO. Therefore the number of words limits the number of
 /// packets.
 inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
 inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;

@@ -16,8 +16,7 @@ constexpr std::uint32_t cycles_per_count = board::processor_Hz / board::timer_ap
 static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
 
 constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
-/// Ten times the allowed frequency difference between host and board (USB 2.0, section 7.1.11). The crystal of the
-/// board is more accurate.
+/// Ten times the allowed frequency difference between host and board (USB 2.0, section 7.1.11).
 constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
 /// The bus counts as silent after 3 ms without a start of frame, as for a USB suspend.
 constexpr std::uint32_t silence = 3 * nominal_length;

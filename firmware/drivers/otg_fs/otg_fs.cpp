@@ -22,11 +22,11 @@ constexpr unsigned number_of(std::uint8_t endpoint_address) { return endpoint_ad
 constexpr bool is_in(std::uint8_t endpoint_address) { return (endpoint_address & 0x80u) != 0; }
 constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 
-/// PKTSTS of a word in the receive FIFO.
+/// PKTSTS values of words in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// No other access to the core may occur between the words of a packet. An access between the words was observed to
-/// corrupt the packet and its endpoint. No interrupt handler accesses the core.
+/// No other access to the core may occur between the words of a packet. In tests, an access between two words corrupted
+/// the packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
   std::size_t left = packet.size();
@@ -42,8 +42,8 @@ void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   }
 }
 
-/// Reads a packet of `size` bytes from the receive FIFO into `target`. If `target` is shorter, the remaining bytes are
-/// discarded.
+/// Reads a packet of `size` bytes from the receive FIFO into `target`. If `target` is shorter than the packet, the
+/// remaining bytes are discarded.
 void read_packet(std::span<std::byte> target, std::size_t size) {
   for (std::size_t i = 0; i < size; i += 4) {
     const std::uint32_t word = Fifo::DFIFO::read(0);
@@ -77,9 +77,8 @@ bool OtgFs::next_event(Event& event) {
     event.length = 0;
     return true;
   }
-  // The end of a bus reset (ENUMDNE) needs no action. The device has only one speed, and after a reset the core accepts
-  // packets of 64 bytes on endpoint 0. Sent packets are reported before received packets, because the host continues a
-  // request only after it has received the sent packet.
+  // The end of a bus reset (ENUMDNE) needs no action. After a reset, the core accepts packets of 64 bytes on endpoint
+  // 0. The host continues a request only after the sent packet, so sent packets are reported before received packets.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event)) return true;
   answer_control();
   return false;
@@ -148,7 +147,7 @@ bool OtgFs::take_received_word(Event& event) {
       pass_on_setup(event);
       return true;
     case setup_done:
-      // After the setup-done word, no other SETUP packet follows, and NAK may be cleared again.
+      // After the setup-done word, NAK may be cleared again.
       if (!setup_waits_) return false;
       pass_on_setup(event);
       return true;
@@ -180,7 +179,7 @@ void OtgFs::pass_on_setup(Event& event) {
   std::copy(setup_.begin(), setup_.end(), event.data.begin());
 }
 
-// An unplugged cable is handled as a silent bus.
+// An unplugged cable is handled like a silent bus.
 bool OtgFs::next_suspend_or_resume(Event& event) {
   const bool silent = !pulled_up_ || Device::DSTS::SUSPSTS::is_set();
   if (silent == suspended_) return false;
@@ -193,7 +192,7 @@ bool OtgFs::next_suspend_or_resume(Event& event) {
 
 // ---- transfers ---------------------------------------------------------------------------------------
 
-// DAD was observed to read back incorrectly, so the whole register is written.
+// The field DAD may read back incorrectly, so the whole register is written.
 void OtgFs::set_address(std::uint8_t address) {
   constexpr std::uint32_t full_speed_internal_phy = 3;
   Device::DCFG::write(Device::DCFG::DSPD(full_speed_internal_phy), Device::DCFG::DAD(address));
@@ -221,7 +220,7 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   }
 }
 
-// A SETUP packet makes the pending answer stale. Endpoint 0 is not changed until the end of the SETUP stage. If NAK is
+// A SETUP packet invalidates the pending answer. Endpoint 0 is not changed until the end of the SETUP stage. If NAK is
 // cleared before the setup-done word is read, this word is lost. Any word in the receive FIFO may belong to a SETUP
 // packet.
 void OtgFs::answer_control() {
@@ -232,11 +231,10 @@ void OtgFs::answer_control() {
 // A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. The write then opens
 // the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check and
 // write short. A second check detects a packet that arrived between the first check and the write. NAK is set again
-// before the end of the host's next token, at least 4 us after the SETUP packet.
+// within 4 us after the SETUP packet, before the host's next token ends.
 //
-// Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. If the packet
-// arrived before the write, the write has removed its setup-done word. If the packet arrived after the write, its
-// setup-done word follows as usual.
+// Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. A write after
+// the packet removes the setup-done word. A packet after the write is followed by its setup-done word.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;
@@ -286,14 +284,13 @@ void OtgFs::begin_receive(unsigned endpoint) {
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     return;  // the packet is in the receive FIFO; receive() is called again after the packet has been read
   }
-  // If the endpoint was stalled or reopened, its size register is still set.
+  // The size register of a stalled or reopened endpoint is still set.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// When this function is called, NAK is set on every OUT endpoint. When the words are removed, the transfers complete
-// and their packets are lost.
+// The caller has set NAK on every OUT endpoint. The function completes all transfers and discards their packets.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());

@@ -67,7 +67,7 @@ class OtgFs final : public usb::Port {
   void pass_on_setup(usb::Event& event);
   bool next_suspend_or_resume(usb::Event& event);
   void answer_control();
-  /// Returns false if a SETUP packet has made, or may have made, the answer stale.
+  /// Returns false if a SETUP packet may have invalidated the answer.
   bool arm_control();
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);

@@ -24,7 +24,7 @@ bool reset_core() {
   if (!wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;
   Core::GRSTCTL::modify(Core::GRSTCTL::CSRST(1));
   if (!wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::CSRST::is_set(); })) return false;
-  // Before the next access, the PHY clock domain needs three PHY clocks, 11 processor cycles.
+  // The PHY clock domain needs three PHY clocks (11 processor cycles) before the next access.
   wait(32);
   return wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); });
 }
@@ -44,9 +44,8 @@ bool OtgFs::start() {
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
   wait(mode_change_cycles);
 
-  // PA9 drives a bridge, so the core cannot sense VBUS at this pin and is configured to assume VBUS. The soft
-  // disconnect is set first, because the core would otherwise pull up D+. The function follow_cable() clears the soft
-  // disconnect.
+  // PA9 drives a bridge, so the core cannot sense VBUS and must assume that VBUS is present. The soft disconnect is set
+  // first, because the core would otherwise pull up D+. The function follow_cable() clears the soft disconnect.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
   // If a suspend in the boot loader stopped the PHY clock, a core reset does not restart this clock (RM0090, GRSTCTL:
