@@ -1,4 +1,4 @@
-// DMA controller, stream 0 (RM0090, chapter DMA): the only stream in use.
+// Stream 0 of the DMA controller (RM0090, chapter DMA). No other stream is used.
 #pragma once
 
 #include "firmware/registers/register.hpp"

@@ -1,5 +1,4 @@
-// Register maps and base addresses of the peripherals that the firmware uses (RM0090, "Memory map"; core: ARMv7-M
-// Architecture Reference Manual).
+// Register maps and base addresses of the peripherals (RM0090, "Memory map"; ARMv7-M Architecture Reference Manual).
 #pragma once
 
 // To add a peripheral, write its register map in a header in this folder and add a row to one of the tables below.
@@ -16,7 +15,7 @@
 #include "firmware/registers/timer.hpp"
 #include "firmware/registers/watchdog.hpp"
 
-/// X(name, map, base). Each of these peripherals belongs to the driver that claims it (drivers::RegistersOf).
+/// X(name, map, base). Only the claiming driver may use these peripherals (drivers::RegistersOf).
 #define INKWELL_CLAIMABLE_PERIPHERALS(X)             \
   X(TIM2, CaptureTimer, 0x40000000)                  \
   X(TIM3, EncoderTimer, 0x40000400)                  \
@@ -60,7 +59,7 @@
 
 namespace inkwell::registers {
 
-/// Names a peripheral and provides no access to its registers.
+/// Identifies a peripheral without access to its registers.
 template <template <std::uint32_t> class Map, std::uint32_t base>
 struct Claimable {};
 

@@ -3,7 +3,7 @@
 // Headers in this folder have a fixed form. The tool tools/check/check_registers.py compares the compiled headers with
 // the manufacturer's description of the chip. The header registers/watchdog.hpp is a short example.
 //
-// Register and field names are those of the reference manual.
+// The reference manual defines the register and field names.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@ struct Field {
 
   static std::uint32_t read() { return from(Owner::read()); }
   static bool is_set() { return read() != 0; }
-  /// Extracts the field from a word that was read from the register.
+  /// Extracts the field from a register value.
   static constexpr std::uint32_t from(std::uint32_t word) { return (word & mask) >> position; }
 };
 
-/// A register of 32 bits, or of the width of `Value` if the manual requires narrow accesses.
+/// Register of 32 bits. `Value` selects a narrower access if the manual requires this access.
 template <std::uint32_t address_, class Value = std::uint32_t>
 struct Register {
   static constexpr std::uint32_t address = address_;

@@ -32,7 +32,7 @@ constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, ve
 
 constexpr std::uint16_t controller_value = static_cast<std::uint16_t>(protocol::ReportKind::input) << 8;  // no id
 
-/// Returns the report for wValue of GET_REPORT or SET_REPORT, or null.
+/// Returns the report that wValue selects in GET_REPORT or SET_REPORT, or null.
 const protocol::ReportInfo* report_in(const SetupPacket& setup) {
   return protocol::find_report(static_cast<protocol::ReportKind>(setup.value_high()),
                                static_cast<ReportId>(setup.value_low()));
@@ -119,7 +119,7 @@ Answer Device::get_controller_report(const SetupPacket& setup) {
 }
 
 // GET_REPORT of an input report is mandatory (HID 1.11, section 7.2.1), so the device must answer before the first
-// period.
+// control period.
 protocol::PoseReport Device::newest_pose() {
   protocol::PoseReport pose{};
   if (!link_.poses.read(pose)) pose.state = link_.status.state();
@@ -153,8 +153,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
 }
 
 bool Device::force_is_on() const {
-  // The queue must be checked before the state. Otherwise the interrupt could execute the command between the two
-  // checks.
+  // The queue must be checked first, because the interrupt may execute a queued command between the checks.
   return link_.commands.waiting(protocol::Command::enable_force) || protocol::force_is_on(link_.status.state());
 }
 
@@ -166,9 +165,8 @@ bool Device::may_store() const {
 }
 
 // Detach request (DFU 1.1, section 5.1 and appendix A.2). The state changes from idle to detaching after the status
-// stage. A detach request is refused while the force is on, because detaching would remove the force without the user's
-// consent. The status stage of a refused request succeeds, and GETSTATUS reports errVENDOR (section 6.1.2) until a
-// request is accepted.
+// stage. A detach request is refused while the force is on, because a detach removes the force. After a refusal,
+// GETSTATUS reports errVENDOR (section 6.1.2) until a request is accepted.
 Answer Device::firmware_update_request(const SetupPacket& setup) {
   constexpr std::byte application_idle{0}, application_detach{1};
   constexpr std::byte no_error{0}, vendor_error{0x0B};

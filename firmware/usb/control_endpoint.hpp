@@ -49,8 +49,8 @@ struct Answer {
 class ControlRequests {
  public:
   virtual Answer request(const SetupPacket& setup) = 0;
-  /// Handles the data of an OUT data stage, up to ControlEndpoint::buffer_size. The status stage is stalled if the
-  /// result is false.
+  /// Handles the data of an OUT data stage, up to ControlEndpoint::buffer_size. The endpoint stalls the status stage if
+  /// the function returns false.
   virtual bool data_received(const SetupPacket& setup, std::span<const std::byte> data) = 0;
 
  protected:
@@ -59,7 +59,7 @@ class ControlRequests {
 
 class ControlEndpoint {
  public:
-  /// Size of the longest report whose bytes are all used by the device.
+  /// Size of the longest report without padding.
   static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
   /// A host may pad a written report to the longest feature report. Bytes beyond the buffer are discarded.
   static constexpr std::size_t receive_maximum = protocol::longest_report(protocol::ReportKind::feature);
@@ -72,7 +72,7 @@ class ControlEndpoint {
   void received(std::span<const std::byte> packet);
   void sent();
 
-  /// Buffer for an answer, valid until the next SETUP.
+  /// Buffer for an answer until the next SETUP packet.
   std::span<std::byte, buffer_size> buffer() { return buffer_; }
 
  private:

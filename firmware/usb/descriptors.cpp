@@ -224,8 +224,8 @@ constexpr auto microsoft_set = []() {
 
 // ---- Binary object store (USB 2.0 ECN "Link Power Management", USB 3.2 section 9.6.2) ------------------
 
-/// This capability is mandatory for a device of version 2.01. No attribute is set, because the device does not support
-/// link power management.
+/// This capability is mandatory for a device with USB version 2.01. No attribute is set, because the device does not
+/// support link power management.
 constexpr auto usb_2_0_extension = bytes(7, type(DescriptorType::device_capability), 2, 0, 0, 0, 0);
 
 /// Platform capability with the UUID of the Microsoft OS 2.0 descriptors.

@@ -33,13 +33,13 @@ enum class StringIndex : std::uint8_t {
 
 inline constexpr std::uint8_t configuration_value = 1;
 
-/// bRequest value with which Windows requests the Microsoft OS 2.0 descriptor set. The device may choose this value.
+/// Windows requests the Microsoft OS 2.0 descriptor set with this bRequest value. The device may choose this value.
 inline constexpr std::uint8_t microsoft_request = 0x20;
 /// wIndex of that request.
 inline constexpr std::uint16_t microsoft_descriptor_index = 7;
 
 /// Writes the descriptor to `buffer`. The field bcdDevice is the firmware version, for example 0x0123 for 1.2.3. A
-/// minor or patch number above 9 becomes 9. Hosts cache the properties of a device per bcdDevice.
+/// minor or patch number above 9 becomes 9. Hosts cache device properties for each bcdDevice value.
 std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
                                              const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();

@@ -17,21 +17,20 @@ constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // indices in endpoints_
 
-/// Time to cancel a report on its endpoint and to load a newer report. A replacement needs this time before the next
-/// control interrupt and before the next start of frame. Otherwise the host might poll while no report is loaded.
+/// Time for the replacement of a loaded report by a newer report. A replacement needs this time before the next control
+/// interrupt and before the next start of frame. While a report is replaced, the host cannot read a report.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// In this time the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
-/// shortly before the start of frame. The interval between sampling and start of frame is at most the sum of a control
-/// period, the longest interrupt and this time. A pose of the next period would be too late.
+/// Time in which the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
+/// shortly before the start of frame.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// Additional lead of the spare pose over the final pose. The host reads the spare pose if the main loop prepares the
-/// final pose too late. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
+/// Time between the loading of the spare pose and the loading of the final pose. The host reads the spare pose if the
+/// main loop is late. A transaction of all parameters causes the longest delay, 0.3 ms including control interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
-/// After this number of consecutive unread reports (0.1 s), the host counts as not polling. In this case unread reports
-/// do not count as dropped.
+/// After this number of consecutive unread reports (0.1 s), the device assumes that the host does not poll. In this
+/// case unread reports do not count as dropped.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
 
 constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
@@ -191,8 +190,8 @@ void Device::restart(Endpoint& endpoint) {
 }
 
 // The host may poll directly after each start of frame. The pose is therefore loaded once per bus frame, near the end
-// of the frame. The loaded pose is the first pose whose successor would be too late. A spare pose is loaded earlier, in
-// case the main loop is delayed.
+// of the frame. The loaded pose is the last pose that can be loaded in time. A spare pose is loaded earlier, in case
+// the main loop is delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> bus_frame = port_.bus_frame();
   Endpoint& endpoint = endpoints_[hid_in];
@@ -228,8 +227,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// Starting with the bus frame before the next poll, the controller report is replaced in every bus frame. The
-// controller report is then as recent as the pose.
+// When the next poll is due, the controller report is replaced in every bus frame. The controller report is then as
+// recent as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;
@@ -311,12 +310,12 @@ bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
     link_.request_results.note_dropped(*command, protocol::RequestResult::not_the_driver);
     return true;
   }
-  // While there is a driver, only the driver's sign of life keeps the force on.
+  // A heartbeat is ignored if another program is the driver.
   if (command->command == protocol::Command::heartbeat && !note_heard(command->claim)) return true;
   if (!link_.commands.has_room()) return false;
-  // The signals are selected before the command is queued, so that the acknowledgment is not early.
+  // The signals are selected first, because the queued command causes the acknowledgment.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
-  // The command is counted before it is queued, so that the count is not later than the acknowledgment.
+  // The command is counted first, because the queued command causes the acknowledgment.
   if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
     link_.stored.ask(command->command, may_store());
   const bool was_pushed = link_.commands.push(*command);

@@ -17,7 +17,7 @@
 
 namespace inkwell::usb {
 
-/// Identity of the device, in addition to the protocol tables.
+/// Identity data that the protocol tables do not contain.
 struct Identity {
   std::array<char, 24> serial_number;            ///< hexadecimal digits of the chip's unique id
   std::array<std::uint8_t, 3> firmware_version;  ///< major, minor, patch
@@ -31,13 +31,13 @@ class Device final : private ControlRequests {
   /// The arguments must outlive the device. The device is inactive on the bus before the first poll().
   Device(Port& port, link::Link& link, const Identity& identity);
 
-  /// Handles bus events and refills the endpoints. The main loop calls this function at least every 50 us. The duration
-  /// is bounded, and is longest for a transaction of all parameters.
+  /// Handles bus events and refills the endpoints. The main loop calls this function at least every 50 us. A
+  /// transaction of all parameters has the longest duration.
   void poll();
 
   bool configured() const { return configuration_ != 0; }
   bool suspended() const { return suspended_; }
-  /// True after the host has requested the boot loader and has received the answer.
+  /// Returns true after the host has requested the boot loader and has received the answer.
   bool leaves_for_update() const { return leaves_for_update_; }
 
  private:
@@ -62,10 +62,10 @@ class Device final : private ControlRequests {
   Answer vendor_request(const SetupPacket& setup);
 
   bool force_is_on() const;
-  /// True if the force is off and no queued command can switch it on.
+  /// Returns true if the force is off and no queued command can switch the force on.
   bool may_store() const;
-  /// True if a request with this claim is permitted. The program with this claim must be the driver, or there must be
-  /// no driver. Renews the claim of the driver, and counts refusals.
+  /// Returns true if a request with this claim is permitted. The program with this claim must be the driver, or there
+  /// must be no driver. Renews the claim of the driver, and counts refusals.
   bool is_permitted(std::uint32_t claim);
   /// Like is_permitted(), but does not count refusals.
   bool note_heard(std::uint32_t claim);
@@ -112,7 +112,7 @@ class Device final : private ControlRequests {
   /// Restarts the endpoint with data toggle 0 and without halt. An interrupted report or frame is sent again from its
   /// first byte.
   void restart(Endpoint& endpoint);
-  /// Cancels the transfer, because its data is out of date.
+  /// Cancels an outdated transfer.
   void forget(Endpoint& endpoint);
   /// `report` must not change while the endpoint is busy.
   template <class Report>

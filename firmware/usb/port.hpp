@@ -1,4 +1,4 @@
-// Hardware interface of the USB device: one full-speed port with its endpoints.
+// Hardware interface of a USB device with one full-speed port.
 #pragma once
 
 #include <array>
@@ -45,7 +45,8 @@ struct BusFrame {
 /// receive() and stall() have no effect on endpoint 0. These calls would answer an older request.
 class Port {
  public:
-  /// Writes the next event to `event`. Returns false if there is no event. Also continues the transfers in progress.
+  /// Writes the next event to `event`. Returns false if there is no event. The call also continues the transfers in
+  /// progress.
   virtual bool next_event(Event& event) = 0;
 
   /// The device calls this function when SET_ADDRESS arrives, before the status stage. The port applies the address at
@@ -59,7 +60,7 @@ class Port {
   /// Closes an endpoint. A transfer in progress is canceled without a `sent` event.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
-  /// The endpoint answers STALL from now on. Endpoint 0 answers STALL in both directions until the next SETUP.
+  /// The endpoint answers STALL from this call on. Endpoint 0 answers STALL in both directions until the next SETUP.
   virtual void stall(std::uint8_t endpoint_address) = 0;
 
   /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
@@ -70,8 +71,8 @@ class Port {
   /// endpoint 0 a transfer is at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
 
-  /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was no transfer or the host had
-  /// already read the transfer.
+  /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was no transfer, or if the host
+  /// had already read the transfer.
   virtual bool cancel(std::uint8_t endpoint_address) = 0;
 
   /// Accepts one OUT packet on the endpoint.
