@@ -15,10 +15,9 @@ bool BackgroundCheck::start() {
   return memory_intact;
 }
 
-// The memory check runs one small step in every round of the main loop. All other checks run in every third round,
-// every 0.15 ms. If these checks ran in every round, they would use a tenth of the main loop's time and displace main
-// loop code from the flash cache. Each result is stored for three rounds, so the control interrupt always reads the
-// result.
+// The memory check runs one small step in every round of the main loop. All other checks run every 0.15 ms, in every
+// third round of the main loop. More frequent checks would displace main loop code from the flash cache. Each result is
+// stored for three rounds, so that the control interrupt cannot miss a result.
 void BackgroundCheck::run() {
   const bool memory_intact = memory_check_.step();
   if (++rounds_ < rounds_per_check) return;
@@ -65,8 +64,7 @@ protocol::Conditions BackgroundCheck::bridge_faults() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
                                  bridges.hold_is_high(), bridges.a_leg_is_high()};
-  // The levels are ignored if a control interrupt occurred while they were read, because the interrupt may have
-  // switched the bridges.
+  // If a control interrupt occurred during the reads, the levels are ignored.
   if (completed_periods.load() == periods_before) update_wire_check(bridge_wire_, pins);
   return condition(Fault::bridge_wire, is_shorted(bridge_wire_));
 }

@@ -109,8 +109,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   drivers::finish_stores();
 }
 
-// The supply interrupt and the control interrupt do not preempt each other. The bridges are switched off in the next
-// control period. The main loop also polls the CPU supply and reports the fault while the supply is low.
+// The supply interrupt and the control interrupt do not preempt each other. After this interrupt, the next control
+// period switches the bridges off. The main loop polls the CPU supply and reports the fault while the supply is low.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
   drivers::finish_stores();

@@ -1,5 +1,5 @@
-// Handling of CPU faults: bridges off, crash record, restart. This file also records the code location at which the
-// main loop hangs.
+// Handles CPU faults: switches the bridges off, writes a crash record and restarts. Records the code location of a main
+// loop hang.
 #include <algorithm>
 #include <iterator>
 
@@ -34,7 +34,7 @@ struct ExceptionFrame {
 
 std::uint32_t address_of(const void* pointer) { return reinterpret_cast<std::uint32_t>(pointer); }
 
-/// Stack pointer before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
+/// Returns the stack pointer before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
 std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_return) {
   constexpr std::uint32_t no_floats = 1u << 4, was_aligned = 1u << 9, bytes_of_floats = 72;
   return address_of(frame + 1) + ((exception_return & no_floats) != 0 ? 0 : bytes_of_floats) +
@@ -54,8 +54,7 @@ bool is_after_call(std::uint32_t address) {
          (after_call[-1] & 0xFF87) == 0x4780;
 }
 
-/// Without frame pointers, valid return addresses on the stack cannot be distinguished from old return addresses. The
-/// record therefore contains all possible return addresses.
+/// The record contains all possible return addresses on the stack, because the code has no frame pointers.
 void note_callers(CrashFacts& crash) {
   std::size_t count = 0;
   const auto consider = [&](std::uint32_t word) {
@@ -66,7 +65,7 @@ void note_callers(CrashFacts& crash) {
   for (; word < stack_top && count < std::size(crash.callers); ++word) consider(*word);
 }
 
-/// Collects the facts of the exception that is being handled.
+/// Collects the facts of the current exception.
 CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
   using registers::SCB;
   CrashFacts crash{};
@@ -92,11 +91,11 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 }  // namespace
 
-/// The handler first switches the motors off with three stores that need no stack, because the stack may be damaged.
-/// The handler then uses the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless
-/// the stack has overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A
-/// second CPU fault in this function restarts the function as a hard fault handler. A CPU fault in the hard fault
-/// handler locks up the processor until the watchdog expires.
+/// The handler first switches the motors off without the stack, because the stack may be damaged. The handler then uses
+/// the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless the stack has
+/// overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A second CPU fault
+/// in this function restarts the function as a hard fault handler. A CPU fault in the hard fault handler locks up the
+/// processor until the watchdog expires.
 extern "C" [[gnu::naked]] void cpu_fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
@@ -123,8 +122,8 @@ extern "C" [[noreturn, gnu::used]] void record_cpu_fault(const ExceptionFrame* f
   drivers::reset_chip();
 }
 
-/// The control interrupt requests this exception and can preempt this handler. The handler itself preempts only the
-/// main loop, so the stack contains the state of the main loop. The main loop continues after the handler, if possible.
+/// The control interrupt requests this exception and can preempt this handler. The handler preempts only the main loop,
+/// so the stack contains the state of the main loop. After the handler, the main loop may continue.
 extern "C" [[gnu::naked]] void hang_handler() {
   asm volatile(
       "mov r0, sp \n"

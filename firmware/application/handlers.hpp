@@ -4,11 +4,11 @@
 namespace inkwell::application {
 
 extern "C" {
-/// First instruction after a reset.
+/// Contains the first instruction after a reset.
 [[noreturn]] void reset_handler();
 /// Handles all CPU faults, the non-maskable interrupt and all unexpected interrupts.
 [[noreturn]] void cpu_fault_handler();
-/// PendSV handler. After all other interrupts, this handler records the code location of the main loop. The function
+/// PendSV handler. Records the code location of the main loop after all other interrupts. The function
 /// drivers::CallAfterInterrupts::request() requests this handler.
 void hang_handler();
 /// Runs once per control period, at the end of the injected conversions.

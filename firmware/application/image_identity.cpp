@@ -12,7 +12,7 @@ static_assert(protocol::image_identity_offset == 512,
               "the linker script, boards/facts/stm32f405.ld, has the same number");
 static_assert(protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS).board_name() == board::facts.name);
 
-/// The sizes of the identity and of the entire image are multiples of a word.
+/// The identity and the image must consist of whole words.
 struct alignas(4) PlacedIdentity {
   protocol::ImageIdentity identity;
 };

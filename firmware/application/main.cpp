@@ -20,8 +20,7 @@
 namespace inkwell::application {
 namespace {
 
-/// Blinks the status LED ten times per second while `lasts` returns true. While the LED blinks, the board does not work
-/// and the bridges are off.
+/// Blinks the status LED ten times per second while `lasts` returns true. The bridges are off while the LED blinks.
 template <class Condition>
 void blink_while(std::uint32_t processor_Hz, Condition lasts) {
   for (bool on = true; lasts(); on = !on) {
@@ -33,8 +32,8 @@ void stop_forever() {
   blink_while(board::processor_Hz, [] { return true; });
 }
 
-/// Returns false if the first attempt to start the clocks failed. USB needs the clocks, so only the LED and the console
-/// can report this failure.
+/// Returns false if the first attempt to start the clocks failed. The LED and the console report the failure, because
+/// USB needs the clocks.
 bool start_clocks() {
   if (drivers::start_clocks()) return true;
   if (!drivers::crystal_oscillates()) report_no_crystal();
@@ -50,7 +49,7 @@ std::optional<protocol::CrashFacts> read_crash(const drivers::ResetCause& cause)
   return crash;
 }
 
-/// Returns the fault that reports the cause of the last reset.
+/// Returns the fault for the cause of the last reset.
 protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
@@ -115,7 +114,7 @@ int main() {
   BackgroundCheck background_check;
   host_link.self_test.note(protocol::SelfTestItem::flash, background_check.start());
 
-  // Directly after an update event, nearly a whole period is available to arm all three converters.
+  // After the update event, the three converters can be armed before the next update.
   if (!bridges.wait_for_update()) stop_forever();
   analog_inputs.arm();
   logic_supply.arm();

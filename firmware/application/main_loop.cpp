@@ -37,9 +37,9 @@ void take_motor_heat(bool after_power_on) {
   if (const auto warmth = motor_heat_keeper.start(after_power_on)) controller.start_warm(*warmth);
 }
 
-// The motor heat is stored only when it changes. Storing the heat in every round would use a third of the main loop's
-// sleep time. If a control interrupt occurs during the copy, the housing heat of a motor may be one update newer than
-// the total heat of this motor.
+// The motor heat is stored only after a change. Storing the heat in every round would use a third of the main loop's
+// sleep time. A control interrupt during the copy may cause a difference of one update between housing heat and total
+// heat.
 void keep_motor_heat() {
   static std::uint32_t kept_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();

@@ -1,4 +1,4 @@
-// In each round, the main loop runs these tasks in addition to USB.
+// Functions that the main loop calls in each round.
 #pragma once
 
 #include "firmware/application/background_check.hpp"
@@ -8,9 +8,9 @@ namespace inkwell::application {
 /// If the main loop completes no round within this time, the control interrupt raises a fault.
 inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
-/// Call this function once per round of the main loop. This function feeds the watchdog only if the control interrupt
-/// has also run since the previous call. The watchdog therefore expires if the main loop or the control interrupt
-/// hangs. The control interrupt detects missing rounds sooner than the watchdog.
+/// Call this function once per round of the main loop. This function feeds the watchdog if the control interrupt has
+/// run since the previous call. The watchdog therefore expires if the main loop or the control interrupt hangs. The
+/// control interrupt detects a main loop hang before the watchdog expires.
 void feed_watchdogs();
 
 /// Continues a self-test that is in progress.

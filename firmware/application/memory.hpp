@@ -1,14 +1,13 @@
-// Memory locations. The linker script (boards/facts/stm32f405.ld) defines the symbols.
+// Memory locations. The linker script (boards/facts/stm32f405.ld) defines the symbols of this file.
 #pragma once
 
 #include <cstdint>
 
-/// Places an object in the core-coupled memory. The object is zero-initialized or has a constructor, which runs at
-/// start-up.
+/// Places an object in the core-coupled memory. The object must be zero-initialized or have a constructor.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
-/// Places an object without a constructor in the part of the main memory that start-up does not clear. The object
-/// survives a reset. The contents are undefined after power-on.
+/// Places an object without a constructor in main memory that survives a reset. The contents are undefined after
+/// power-on.
 #define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
 
 extern "C" {

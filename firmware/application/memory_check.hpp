@@ -1,4 +1,4 @@
-// Background check for changed bits in the firmware and in its parameters.
+// Background check of firmware and parameters for changed bits.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,12 @@
 
 namespace inkwell::application {
 
-/// One round takes about 0.2 s.
-/// The image in flash is compared with the checksum that the build appends (tools/generate/seal_image.py).
-/// The copies from which interrupts run are compared with the image.
-/// The settings of the control interrupt and the parameters are compared with their checksums.
+/// One round takes about 0.2 s. The image in flash is compared with the checksum that the build appends
+/// (tools/generate/seal_image.py). The interrupt code and tables in RAM are compared with the flash. The settings of
+/// the control interrupt and the parameters are compared with their checksums.
 class MemoryCheck {
  public:
-  /// Runs the whole first round, because no motor may be driven with damaged memory. Returns false if a memory bit is
-  /// wrong.
+  /// Checks the whole memory once before a motor is driven. Returns false if a memory bit is wrong.
   [[nodiscard]] bool start();
 
   /// Checks a few words. Call this function in each round of the main loop. Returns false as soon as a wrong bit has

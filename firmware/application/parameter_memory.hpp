@@ -1,4 +1,4 @@
-// Memory of the record log (flash_log.hpp): the two flash sectors for parameters.
+// Flash memory for the record log of parameters (flash_log.hpp).
 #pragma once
 
 #include "firmware/store/flash_log.hpp"

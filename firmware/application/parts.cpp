@@ -11,8 +11,8 @@ using BlackBoxMemory = link::BlackBoxMemory<protocol::black_box_rows_before, pro
 extern link::ScopeFrames scope_frames;
 extern BlackBoxMemory black_box_memory;
 
-/// Returns true if a current at this limit is measurable. The current loops overshoot by at most 5 % (see the current
-/// loop tests), and the amplifier offsets add to the overshoot.
+/// Returns true if a current at this limit is measurable. The current loops overshoot the limit by at most 5 %, and
+/// amplifier offsets add to the overshoot.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
   return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A <
          board::facts.current_measurable_A();
@@ -36,8 +36,7 @@ INKWELL_CORE_COUPLED control::Controller controller{
     first_period};
 INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
 
-// These objects are in main memory, because the DMA controller writes analog_inputs and because the other objects are
-// large.
+// These objects are in main memory, because they are large or need DMA.
 Part<drivers::AnalogInputs> analog_inputs;
 link::ScopeFrames scope_frames;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;

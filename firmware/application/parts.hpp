@@ -1,4 +1,4 @@
-// Parts of the firmware: drivers, controller, and the data that main loop and control interrupt exchange.
+// Global objects of the firmware: drivers, controller, and shared data.
 #pragma once
 
 #include <array>
@@ -29,8 +29,7 @@ using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::A
 template <class Driver>
 requires(Parts::has<Driver>) using Part = Driver;
 
-/// The function main() sets up these drivers. After the setup, only the interrupts use these drivers. The main loop
-/// also reads logic_supply.
+/// The function main() sets up these drivers for the control interrupt.
 extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;
@@ -38,7 +37,7 @@ extern Part<drivers::Switches> switches;
 extern Part<drivers::LogicSupply> logic_supply;
 extern control::Controller controller;
 
-/// Owned by the main loop.
+/// The main loop owns these drivers.
 extern Part<drivers::StatusLed> status_led;
 extern Part<drivers::Console> console;
 extern Part<drivers::IndependentWatchdog> watchdog;
@@ -56,9 +55,9 @@ extern link::Link host_link;
 #endif
 inline constexpr std::uint32_t first_period = INKWELL_FIRST_PERIOD;
 
-/// Completed control periods, for the main loop.
+/// Number of completed control periods. The main loop reads this counter.
 extern link::Shared<std::uint32_t> completed_periods;
-/// Completed control periods at the last round of the main loop, for the control interrupt.
+/// Value of `completed_periods` in the last round of the main loop. The control interrupt reads this value.
 extern link::Shared<std::uint32_t> main_loop_periods;
 
 }  // namespace inkwell::application

@@ -10,7 +10,7 @@
 namespace inkwell::application {
 namespace {
 
-/// Stack space below `room`, for other local variables and the march test.
+/// Reserved stack space below `room`.
 constexpr std::ptrdiff_t words_of_callees = 64;
 
 std::span<volatile std::uint32_t> between(std::uint32_t* begin, std::uint32_t* end) {

@@ -30,7 +30,7 @@ constexpr CrashWord crash_words[] = {
 
 }  // namespace
 
-/// The virtual board reads this board name from the ELF file and connects its simulated wires accordingly.
+/// The virtual board reads the board name from the ELF file to select the wiring.
 extern "C" {
 extern const std::array<char, board::facts.name.size() + 1> inkwell_board_name;
 const std::array<char, board::facts.name.size() + 1> inkwell_board_name = board_name();

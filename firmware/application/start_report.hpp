@@ -7,10 +7,10 @@
 
 namespace inkwell::application {
 
-/// Starts the console and writes the version, the reset cause and, after a crash, the crash location.
+/// Starts the console and writes the version, the reset cause and the location of a crash.
 void report_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash);
 
-/// Reports on the console why USB is not available. The console then uses the internal oscillator.
+/// Reports on the console why USB is not available. In this case the console runs from the internal oscillator.
 void report_no_crystal();
 
 }  // namespace inkwell::application

@@ -19,9 +19,9 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 
 }  // namespace
 
-/// The stack is in the core-coupled memory, whose clock runs after a reset. The chip's boot loader leaves RCC_AHB1ENR
-/// at 0 (AN2606), so this clock must be enabled if the boot loader started the program. Both the boot loader and a
-/// reset load the stack pointer.
+/// The stack is in the core-coupled memory, whose clock runs after a reset. The chip's boot loader leaves this clock
+/// disabled (RCC_AHB1ENR is 0, AN2606), so the handler enables the clock. Both the boot loader and a reset load the
+/// stack pointer.
 extern "C" [[gnu::naked]] void reset_handler() {
   asm volatile(
       "ldr r0, =%c[clocks] \n"
@@ -39,7 +39,7 @@ extern "C" [[noreturn, gnu::used]] void start() {
   using registers::SCB;
   if (drivers::take_boot_loader_wish()) drivers::enter_boot_loader();
   // The floating-point unit must be enabled before any floating-point instruction and before any interrupt. Lazy saving
-  // is the processor's default (FPCCR) and remains enabled.
+  // of floating-point registers is enabled by default (FPCCR).
   constexpr std::uint32_t full_access_to_both = 0b1111;
   FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
   asm volatile("dsb\n isb" ::: "memory");
@@ -50,13 +50,13 @@ extern "C" [[noreturn, gnu::used]] void start() {
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
-  // From here on the processor reads the vector table from RAM, even if a boot loader had set another vector table.
+  // From here on, the processor reads the vector table from RAM.
   std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();
-  // Separate CPU fault handlers are enabled before any interrupt. A CPU fault whose frame cannot be stacked then
-  // becomes a hard fault and is not lost. A hard fault whose frame cannot be stacked would lock up the processor.
+  // Separate CPU fault handlers are enabled before any interrupt. Without separate handlers, a CPU fault on a damaged
+  // stack would lock up the processor.
   SCB::SHCSR::modify(SCB::SHCSR::MEMFAULTENA(1), SCB::SHCSR::BUSFAULTENA(1), SCB::SHCSR::USGFAULTENA(1));
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 

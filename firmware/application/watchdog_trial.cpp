@@ -17,12 +17,11 @@ struct Course {
 };
 
 [[gnu::section(".noinit")]] drivers::KeptOverReset<Course> kept_course;
-/// Time since the start of the watchdog. The time is a separate variable, because the reset can occur between any two
-/// instructions.
+/// Time since the start of the watchdog. A single variable stays valid if the reset occurs between two instructions.
 [[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
 
-/// The timeout is 20 ms at the nominal 32 kHz of the watchdog oscillator (17 to 47 kHz), plus some oscillator cycles.
-/// The internal oscillator measures this timeout with an error of at most 4 % from -10 to 85 C (data sheet).
+/// The timeout is 20 ms at the nominal oscillator frequency of 32 kHz, which may be 17 to 47 kHz. The internal
+/// oscillator measures this timeout with an error of at most 4 % from -10 to 85 C (data sheet).
 constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
 
 /// Returns only if the watchdog does not expire.
@@ -38,7 +37,7 @@ void wait_for_reset() {
 }  // namespace
 
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
-  // If BOOT0 is still high, a watchdog reset starts the boot loader instead of the firmware.
+  // While BOOT0 is high, a watchdog reset starts the boot loader instead of the firmware.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
     kept_course.store({cause.flags, Outcome::open});
     wait_for_reset();
@@ -51,8 +50,8 @@ WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
     trial.cause = {course->reset_flags};
     course->outcome = Outcome::expired;
   }
-  // A reset with another cause leaves the trial undecided. In this case nothing is stored, because the next watchdog
-  // reset does not belong to the trial.
+  // The trial is undecided if another cause has reset the chip. The next watchdog reset does not belong to the trial,
+  // so nothing is stored.
   if (course->outcome == Outcome::open) return trial;
   if (course->outcome == Outcome::expired) {
     trial.is_passed = waited_us > earliest_us && waited_us < latest_us;

@@ -1,4 +1,4 @@
-// Long-lived values of the main loop have a checksum that detects flipped bits.
+// A checksum detects flipped bits in long-lived values of the main loop.
 #pragma once
 
 #include <bit>
@@ -38,7 +38,7 @@ class Guarded {
   void seal() { sum_ = sum_of(value_); }
 
   const T& value() const { return value_; }
-  /// True if the value has not changed since put() or seal().
+  /// Returns true if the value is unchanged since put() or seal().
   bool is_intact() const { return sum_of(value_) == sum_; }
 
  private:

@@ -9,7 +9,7 @@
 namespace inkwell::link {
 
 /// Double buffer. The interrupt uses one slot while the main loop prepares the next value in the other slot. Only the
-/// interrupt swaps the slots, so that it never reads an incomplete value.
+/// interrupt swaps the slots, so that the interrupt never reads an incomplete value.
 template <class T>
 class Handover {
  public:
@@ -20,7 +20,8 @@ class Handover {
 
   /// Returns the slot for the next value, or null while the interrupt has not accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &slots_[used_ ^ 1u]; }
-  /// True if a value has been offered but not yet accepted. While this function returns false, used() does not change.
+  /// Returns true if a value has been offered but not accepted. While this function returns false, used() does not
+  /// change.
   bool is_offered() const { return offered_.load(); }
   /// Offers the value in next() to the interrupt.
   void offer() { offered_.store(true); }

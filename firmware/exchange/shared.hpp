@@ -5,7 +5,7 @@
 
 namespace inkwell::link {
 
-/// A word has one writer and one reader, or one side sets the word and the other side clears the word.
+/// Either a word has one writer, or one side sets the word and the other side clears the word.
 ///
 /// The chip has one core. The interrupt preempts the main loop, but the main loop cannot preempt the interrupt. The
 /// processor therefore maintains the order of accesses, and only the compiler needs fences. Accesses before `store` are

@@ -1,4 +1,4 @@
-// The paper's box: six walls with a spring and a damper (sections 3.2 and 3.3). The box is the default force law.
+// Box of six walls with spring and damper (sections 3.2 and 3.3 of the paper). The box is the default force law.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -8,8 +8,7 @@ namespace inkwell::force_laws {
 struct box {
   static constexpr std::string_view help = "The walls of the box, and nothing else.";
 
-  // The box parameters (bounds, sphere, stiffness, damping) belong to the arm and are in the parameter table of every
-  // image.
+  // The parameter table of every image contains the box parameters.
   struct Parameters {};
   struct Signals {};
   struct State {};

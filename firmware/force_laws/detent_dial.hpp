@@ -1,5 +1,5 @@
-// Dial with detents around an axis of the workspace. The probe turns about the axis and snaps from notch to notch. The
-// notch changes only well beyond its boundary, so that the dial does not chatter between two notches.
+// Dial with detents around an axis of the workspace. The probe turns about the axis and snaps from notch to notch. A
+// hysteresis prevents chatter between two notches.
 #pragma once
 
 #include <control/force_law.hpp>

@@ -1,4 +1,4 @@
-// This force law runs a C step function with structs. MATLAB Coder, Simulink and Octave users write step functions in
+// This force law calls a C step function with structs. MATLAB Coder, Simulink and Octave users write step functions in
 // this form. This file passes the probe to the step function and adds rows for the parameters and outputs of the
 // function. The file generated_code/virtual_mass.c needs no changes.
 #pragma once

@@ -31,8 +31,8 @@ struct viscous_sphere {
 
   struct State {};
 
-  /// F = -c v. In a surface layer of one fifth of the radius, the damping rises from zero, so that the force has no
-  /// step at the surface.
+  /// F = -c v. In the outer fifth of the radius, the damping decreases to zero, so that the force has no step at the
+  /// surface.
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State&, Signals& signals) {
     const Vector3 from_centre_m = probe.position_m - Vector3{parameters.x_m, parameters.y_m, parameters.z_m};
     const float depth_m = parameters.radius_m - __builtin_sqrtf(dot(from_centre_m, from_centre_m));
