@@ -1,5 +1,5 @@
-// Facts of a hand-wired board that consists of purchased modules. README.md describes the modules, the wires and the
-// sources of the values.
+// Facts of a hand-wired board with purchased modules. README.md describes the modules, the wires and the sources of the
+// values.
 #pragma once
 
 #include "boards/facts/checks.hpp"

@@ -1,14 +1,15 @@
-// Description of a board, and constants that are common to all boards: clocks, rates, limits.
+// Structure of board facts, and the constants of all boards.
 //
 // This file defines no registers. The firmware configures the chip from the facts of a board. The virtual board
 // connects its simulated arm according to the same facts. board/checks.hpp rejects invalid facts. Section titles refer
 // to RM0090 (reference manual) and to the STM32F405 data sheet (tables of alternate functions).
 #pragma once
 
-// To add a board:
-// 1. Copy boards/bench_modules to boards/NAME. Change the facts in include/NAME/facts.hpp and the wiring in README.md.
-// 2. Add the expected scales to tests/boards/NAME. Tests compare the facts with the wiring table of README.md.
-// 3. Add the images to tests/installation/kinds.py and the folder to docs/architecture.md.
+// The following steps add a board.
+//
+// (1) Copy boards/bench_modules to boards/NAME. Change the facts in facts.hpp and the wiring in README.md.
+// (2) Add the expected scales to tests/boards/NAME. Tests compare the facts with the wiring table of README.md.
+// (3) Add the images to tests/installation/kinds.py and the folder to docs/architecture.md.
 //
 // The build then creates inkwell-NAME.elf. `virtual-board --board NAME` simulates the board, and
 // tests/system/boards_test.cpp tests the board. Another chip or another assignment of peripherals requires changes in
@@ -50,7 +51,7 @@ struct AnalogInput {
   std::uint8_t channel;  ///< ADC channel number
 };
 
-/// Use of a pin, with the name of its board fact.
+/// Name of a board fact and its pin.
 struct PinUse {
   constexpr PinUse(std::string_view fact, Pin plain) : name(fact), pin(plain), function("-") {}
   constexpr PinUse(std::string_view fact, PeripheralPin peripheral)
@@ -100,8 +101,8 @@ inline constexpr float encoder_filter_s =
 
 // Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
 // u) / 2 and (1 - u) / 2. The motor voltage is a sequence of pulses at twice pwm_Hz, all with the same sign. In the
-// middle of each zero vector, the current equals its mean. At this time the timers reverse and the ADCs sample. Locked
-// antiphase PWM at the control rate would have 12 times larger ripple.
+// middle of each zero vector, the current equals its mean. In the middle of each zero vector, the timers reverse and
+// the ADCs sample. Locked antiphase PWM at the control rate would cause 12 times more ripple.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
@@ -146,8 +147,8 @@ static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(dut
 
 // ---- a board -------------------------------------------------------------------------------------------
 
-/// Wiring and components that differ between boards. Each board folder defines a constant of this type with the name of
-/// the folder. README.md in this folder describes the wiring and the components for assembly.
+/// Wiring and components of one board. Each board folder defines one constant of this type. README.md in this folder
+/// describes the wiring and the components for assembly.
 struct Facts {
   std::string_view name;  ///< name of the folder
 
@@ -157,17 +158,17 @@ struct Facts {
   /// stops with this pin high, a monostable disables the bridges. A pull-down on the board keeps the bridges off during
   /// reset and while the boot loader runs. The boot loader must not pull up or drive this pin (AN2606).
   Pin bridge_enable;
-  /// The heartbeat rises with each control interrupt while the bridges are on, and falls before the end of the
-  /// interrupt. The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
+  /// While the bridges are on, the heartbeat rises with each control interrupt and falls before the interrupt returns.
+  /// The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
   /// Output of the monostable, connected to the bridge enable inputs. The bridges can switch only while this output is
   /// high.
   Pin bridge_hold;
-  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. Each pin switches
-  /// off the outputs of its timer in hardware (RM0090, "Using the break function").
+  /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. A low level switches
+  /// off the outputs of the pin's timer in hardware (RM0090, "Using the break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
   AnalogInput motor_current[3];  ///< ADC n converts the current of motor n; all ADCs convert simultaneously
-  /// Gimbal potentiometers (yaw, pitch, roll) and supply: regular sequence of ADC1.
+  /// The regular sequence of ADC1 converts the gimbal potentiometers (yaw, pitch, roll) and the supply.
   AnalogInput gimbal[3];
   AnalogInput supply;
   Pin button_1, button_2, inkwell_switch;  ///< switches to ground; the pins have pull-ups
@@ -180,11 +181,11 @@ struct Facts {
 
   std::uint32_t crystal_Hz;
   float bridge_hold_s;  ///< pulse width of the monostable
-  /// Dead time that the bridge inserts; the firmware adds no dead time.
+  /// Dead time of the bridge. The firmware adds no dead time.
   float bridge_dead_time_s;
   float shunt_ohm, shunt_amplifier_gain;
-  /// Smallest distance between the output voltage of a shunt amplifier and its rails. Closer to a rail, the output may
-  /// not follow the current. The rails are ground and the 3.3 V supply of the converters.
+  /// Smallest voltage between the output of a shunt amplifier and its supply rails. With a smaller voltage, the output
+  /// may saturate. The rails are ground and the 3.3 V supply of the converters.
   float shunt_amplifier_headroom_V;
   float supply_upper_ohm, supply_lower_ohm;  ///< voltage divider at the bridge supply
   /// Filters at the analog pins. The filters must tolerate the charge that the previous channel leaves in the sampling
@@ -194,7 +195,7 @@ struct Facts {
   /// can change.
   float current_pull_down_ohm;
 
-  /// Limits of the hold time. The sum of the tolerances of monostable, resistor and capacitor is one sixth.
+  /// Limits of the hold time. The tolerances of monostable, resistor and capacitor add up to one sixth.
   constexpr float bridge_hold_shortest_s() const { return bridge_hold_s * 5 / 6; }
   constexpr float bridge_hold_longest_s() const { return bridge_hold_s * 7 / 6; }
 
@@ -215,7 +216,7 @@ struct Facts {
   constexpr float supply_step_V() const { return adc_step_V * supply_divider(); }
 
   constexpr bool is_usb_data(Pin pin) const { return pin == usb_minus.pin || pin == usb_plus.pin; }
-  /// All pin uses, with the same names and order on every board.
+  /// Returns all pins in the same order for every board.
   constexpr std::array<PinUse, 35> pin_uses() const {
 #define INKWELL_USE(fact) \
   PinUse { #fact, fact }

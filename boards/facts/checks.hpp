@@ -14,14 +14,15 @@ constexpr bool pins_are_distinct(const Facts& facts) {
   return true;
 }
 
-/// The LQFP64 package has ports A, B and C, pin 2 of port D, and pins 0 and 1 of port H. Boards may use A, B and C.
+/// The LQFP64 package has ports A, B and C, pin 2 of port D, and pins 0 and 1 of port H. Boards may use the ports A, B
+/// and C.
 constexpr bool package_has_pins(const Facts& facts) {
   for (const auto& use : facts.pin_uses())
     if (use.pin.port < 'A' || use.pin.port > 'C' || use.pin.number > 15) return false;
   return true;
 }
 
-/// True if the pin of an analog input has the given ADC channel (data sheet, pin definitions, "ADC123_INx" and
+/// Returns true if the pin of an analog input has the given ADC channel (data sheet, pin definitions, "ADC123_INx" and
 /// "ADC12_INx").
 constexpr bool is_at_pin(const AnalogInput& input) {
   const auto [port, number] = input.pin;
@@ -38,8 +39,8 @@ constexpr bool third_converter_reaches(const AnalogInput& input) {
   return input.channel <= 3 || (input.channel >= 10 && input.channel <= 13);
 }
 
-/// True if the bridge legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of alternate
-/// functions).
+/// Returns true if the bridge legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of
+/// alternate functions).
 constexpr bool legs_are_at_their_pins(const Facts& facts) {
   unsigned channels = 0;
   for (const auto& [channel, leg_a, leg_b] : facts.bridges) {
