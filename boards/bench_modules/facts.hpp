@@ -16,7 +16,7 @@ inline constexpr Facts bench_modules{
     .bridges = {{3, {{'A', 10}, 1}, {{'C', 8}, 3}},
                 {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
                 {1, {{'A', 8}, 1}, {{'C', 6}, 3}}},
-    // BOOT1 must be low for the boot loader. The pull-down of the monostable also keeps BOOT1 low.
+    // BOOT1 must be low for the boot loader. The pull-down of the monostable keeps BOOT1 low.
     .bridge_enable = {'B', 2},
     .bridge_heartbeat = {'B', 1},
     .bridge_hold = {'B', 0},

@@ -1,8 +1,8 @@
 // Structure of board facts, and the constants of all boards.
 //
-// This file defines no registers. The firmware configures the chip from the facts of a board. The virtual board
-// connects its simulated arm according to the same facts. board/checks.hpp rejects invalid facts. Section titles refer
-// to RM0090 (reference manual) and to the STM32F405 data sheet (tables of alternate functions).
+// This file defines no registers. The firmware configures the chip from the facts of a board. The virtual board uses
+// the same facts. The header board/checks.hpp rejects invalid facts. Section titles refer to RM0090 (reference manual)
+// and to the STM32F405 data sheet (tables of alternate functions).
 #pragma once
 
 // The following steps add a board.
@@ -11,7 +11,7 @@
 // (2) Add the expected scales to tests/boards/NAME. Tests compare the facts with the wiring table of README.md.
 // (3) Add the images to tests/installation/kinds.py and the folder to docs/architecture.md.
 //
-// The build then creates inkwell-NAME.elf. `virtual-board --board NAME` simulates the board, and
+// The build creates inkwell-NAME.elf for the new board. `virtual-board --board NAME` simulates the board, and
 // tests/system/boards_test.cpp tests the board. Another chip or another assignment of peripherals requires changes in
 // the drivers.
 
@@ -89,7 +89,7 @@ static_assert(adc_Hz <= 36'000'000, "limit of the ADC");
 
 // ---- encoders ----------------------------------------------------------------------------------------
 
-// The motors' switching edges couple into the encoder wires. An input filter therefore accepts a level only after
+// The motors' switching edges couple into the encoder wires. An input filter accepts a level after
 // `encoder_filter_samples` equal samples. The filter samples once per `encoder_filter_divider` timer cycles (RM0090,
 // TIMx_CCMR1, ICxF). For each arm, the time between two encoder edges must be longer than the filter time.
 
@@ -123,8 +123,8 @@ constexpr float current_ripple_A(float inductance_H) { return supply_nominal_V /
 /// Tolerated current ripple. The continuous motor current should be at least six times the ripple.
 inline constexpr float current_ripple_maximum_A = 0.2f;
 
-/// A bridge leg is never on for a whole PWM period. Bridges with a charge pump need the off time. The off time also
-/// allows the ADCs to sample the currents before the next edge.
+/// A bridge leg is never on for a whole PWM period. Bridges with a charge pump need the off time. The off time allows
+/// the ADCs to sample the currents before the next edge.
 inline constexpr float duty_limit = 0.92f;
 /// Shortest time from a timer update to the next edge of a bridge leg.
 constexpr float time_to_next_edge_s(float duty) { return (1.0f - duty) / (4.0f * pwm_Hz); }

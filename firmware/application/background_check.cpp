@@ -15,9 +15,9 @@ bool BackgroundCheck::start() {
   return memory_intact;
 }
 
-// The memory check runs one small step in every round of the main loop. All other checks run every 0.15 ms, in every
-// third round of the main loop. More frequent checks would displace main loop code from the flash cache. Each result is
-// stored for three rounds, so that the control interrupt cannot miss a result.
+// The memory check runs one small step in every round of the main loop. Checks of supplies and wires run every 0.15 ms,
+// in every third round of the main loop. More frequent checks would displace main loop code from the flash cache. Each
+// result is stored for three rounds, so that the control interrupt cannot miss a result.
 void BackgroundCheck::run() {
   const bool memory_intact = memory_check_.step();
   if (++rounds_ < rounds_per_check) return;

@@ -1,4 +1,4 @@
-// Handles CPU faults: switches the bridges off, writes a crash record and restarts. Records the code location of a main
+// Switches the bridges off after a CPU fault, writes a crash record and restarts. Records the code location of a main
 // loop hang.
 #include <algorithm>
 #include <iterator>

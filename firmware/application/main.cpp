@@ -32,8 +32,8 @@ void stop_forever() {
   blink_while(board::processor_Hz, [] { return true; });
 }
 
-/// Returns false if the first attempt to start the clocks failed. The LED and the console report the failure, because
-/// USB needs the clocks.
+/// Returns false if the first attempt to start the clocks failed. USB needs the clocks, so the LED and the console
+/// report the failure.
 bool start_clocks() {
   if (drivers::start_clocks()) return true;
   if (!drivers::crystal_oscillates()) report_no_crystal();
@@ -49,7 +49,7 @@ std::optional<protocol::CrashFacts> read_crash(const drivers::ResetCause& cause)
   return crash;
 }
 
-/// Returns the fault for the cause of the last reset.
+/// Returns the fault that matches the cause of the last reset.
 protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
@@ -114,7 +114,7 @@ int main() {
   BackgroundCheck background_check;
   host_link.self_test.note(protocol::SelfTestItem::flash, background_check.start());
 
-  // After the update event, the three converters can be armed before the next update.
+  // The wait leaves enough time to arm all converters before the next update.
   if (!bridges.wait_for_update()) stop_forever();
   analog_inputs.arm();
   logic_supply.arm();

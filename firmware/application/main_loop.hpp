@@ -9,8 +9,8 @@ namespace inkwell::application {
 inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
 /// Call this function once per round of the main loop. This function feeds the watchdog if the control interrupt has
-/// run since the previous call. The watchdog therefore expires if the main loop or the control interrupt hangs. The
-/// control interrupt detects a main loop hang before the watchdog expires.
+/// run since the previous call. The watchdog expires if the main loop or the control interrupt hangs. The control
+/// interrupt detects a main loop hang before the watchdog expires.
 void feed_watchdogs();
 
 /// Continues a self-test that is in progress.

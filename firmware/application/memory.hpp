@@ -6,8 +6,8 @@
 /// Places an object in the core-coupled memory. The object must be zero-initialized or have a constructor.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
-/// Places an object without a constructor in main memory that survives a reset. The contents are undefined after
-/// power-on.
+/// Places an object in main memory that start-up does not clear. The object must not have a constructor. The contents
+/// are undefined after power-on.
 #define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
 
 extern "C" {

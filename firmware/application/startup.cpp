@@ -19,9 +19,9 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 
 }  // namespace
 
-/// The stack is in the core-coupled memory, whose clock runs after a reset. The chip's boot loader leaves this clock
-/// disabled (RCC_AHB1ENR is 0, AN2606), so the handler enables the clock. Both the boot loader and a reset load the
-/// stack pointer.
+/// The stack is in the core-coupled memory, whose clock runs after a reset. The chip's boot loader leaves the memory
+/// clock disabled (RCC_AHB1ENR is 0, AN2606), so the handler enables the clock. Both the boot loader and a reset load
+/// the stack pointer.
 extern "C" [[gnu::naked]] void reset_handler() {
   asm volatile(
       "ldr r0, =%c[clocks] \n"

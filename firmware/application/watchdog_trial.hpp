@@ -12,10 +12,10 @@ struct WatchdogTrial {
   float expired_after_ms;     ///< 0 if the watchdog did not expire
 };
 
-/// At power-on, this function waits until the watchdog resets the chip, and the next call returns the result. After
-/// other resets the function returns the result of the last power-on. Call this function first, because no bridge,
-/// clock or interrupt may be active during the trial. The cycle counter must count at the frequency of the internal
-/// oscillator.
+/// At power-on, this function waits until the watchdog resets the chip. The call after this reset returns the result.
+/// After other resets the function returns the result of the last power-on. Call this function first, because no
+/// bridge, clock or interrupt may be active during the trial. The cycle counter must count at the frequency of the
+/// internal oscillator.
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause);
 
 }  // namespace inkwell::application

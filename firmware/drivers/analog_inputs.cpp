@@ -41,9 +41,9 @@ static_assert(static_cast<float>(3 * wiper_sampling.whole_cycles() + supply_samp
                   0.8f / board::servo_rate_Hz,
               "the slow conversions must be over when the next injected ones come");
 
-/// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may still have the
-/// voltage of the previous channel. The resulting charge must change the voltage at the pin by less than half a
-/// converter step. Sampling must last ten time constants of the sampling switch.
+/// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may have the voltage of
+/// the previous channel. The resulting charge must change the voltage at the pin by less than half a converter step.
+/// Sampling must last ten time constants of the sampling switch.
 constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
 constexpr bool is_settled(const Sampling& sampling, float filter_F) {
   return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
@@ -102,8 +102,7 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-/// These flags of the previous transfer must be clear before the next transfer (RM0090, DMA stream configuration
-/// procedure).
+/// These flags must be clear before a transfer (RM0090, DMA stream configuration procedure).
 constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
                                           DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
                                           DMA2::LIFCR::CTCIF0::mask;
@@ -172,8 +171,8 @@ INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   if (slow_stopped_) return set_up_slow();
   if (!DMA2::LISR::TCIF0::is_set()) {
-    // After a late control interrupt the sequence may still be running. A restart in the middle of a sequence would
-    // shift all later results by one position. A converter overrun or a transfer error stops the sequence permanently.
+    // After a late control interrupt the sequence may be incomplete. A restart in the middle of a sequence would shift
+    // all later results by one position. A converter overrun or a transfer error stops the sequence permanently.
     if (++slow_age_periods_ % patience_periods == 0) stop_slow();
     return;
   }
@@ -183,7 +182,7 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
 }
 
 // Stops the conversions as RM0090 describes under "Overrun detection". The recovery takes two periods, so that the
-// interrupt does not have to wait. A stream finishes its current transfer before it is disabled. DMA requests are also
+// interrupt does not have to wait. A stream finishes its current transfer before it is disabled. DMA requests are
 // disabled, so that no old request remains when the stream restarts.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);

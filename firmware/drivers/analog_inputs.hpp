@@ -5,7 +5,7 @@
 // reference in every control period. DMA2 stream 0 stores the results of the sequence.
 //
 // The middle of the sampling window is at most 0.2 us after the update. Within 0.2 us, a motor current of 1 A changes
-// by at most 2 mA, one ADC step. The sampling instant therefore needs no correction.
+// by at most 2 mA, one ADC step. The sampling instant needs no correction.
 #pragma once
 
 #include <array>

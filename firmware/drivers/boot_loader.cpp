@@ -17,7 +17,7 @@ struct Wish {
 
 [[gnu::noinit]] Wish wish;
 
-/// Address of the boot loader. The first two words are the stack pointer and the entry address.
+/// Address of the boot loader. The first two words of the boot loader are its stack pointer and entry address.
 constexpr std::uint32_t system_memory = 0x1FFF'0000;
 
 }  // namespace

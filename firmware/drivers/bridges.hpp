@@ -59,7 +59,7 @@ class Bridges {
   /// interrupt could interpret the low level as a fault.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
-  /// Levels at the chip's pins. External circuits may also drive these pins.
+  /// Levels at the chip's pins. External circuits may drive these pins.
   bool enable_is_high() const;
   bool heartbeat_is_high() const;
   bool hold_is_high() const;

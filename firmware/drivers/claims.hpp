@@ -1,8 +1,8 @@
 // A driver claims resources: peripherals, pins, DMA streams and interrupt lines.
 //
 // A driver lists its resources in the array `claims`. A driver can access a peripheral and start its clock only if the
-// driver claims this peripheral. A driver must also claim the pins that it sets up and the interrupts that it enables.
-// The application's PartsList does not compile if two drivers claim the same resource.
+// driver claims this peripheral. A driver must claim the pins that it sets up and the interrupts that it enables. The
+// application's PartsList does not compile if two drivers claim the same resource.
 #pragma once
 
 // The following steps add a driver.

@@ -64,8 +64,8 @@ void Encoders::start() {
   set_up<TIM4>();
 }
 
-// After a reset TIM5 counts with 32 bits and the other timers with 16 bits. The lower 16 bits of all timers wrap in the
-// same way.
+// After a reset, TIM5 counts with 32 bits, and the other timers count with 16 bits. The lower 16 bits of all timers
+// wrap in the same way.
 INKWELL_INTERRUPT std::array<std::uint16_t, 3> Encoders::read() const {
   return {static_cast<std::uint16_t>(TIM5::CNT::read()), static_cast<std::uint16_t>(TIM3::CNT::read()),
           static_cast<std::uint16_t>(TIM4::CNT::read())};

@@ -17,8 +17,7 @@ class InterruptsHeld {
 };
 
 /// Every handler calls this function last. Without this call, a handler may return while a store is in progress. The
-/// processor may then clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the
-/// Cortex-M4).
+/// processor may clear a newly arrived interrupt and run another interrupt instead (erratum 838869 of the Cortex-M4).
 inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
 
 /// The PendSV handler runs after all interrupts and before the program continues (ARMv7-M, B1.5.6). Every interrupt can

@@ -53,7 +53,7 @@ inline std::array<char, 24> unique_identifier() {
 
 /// Sleeps until an interrupt has been served. Returns without a sleep if work is already pending. Interrupts are
 /// disabled during the check, and a pending interrupt ends the sleep immediately. An interrupt between check and sleep
-/// therefore cannot be missed.
+/// cannot be missed.
 template <class Question>
 void sleep_unless(Question has_work) {
   const InterruptsHeld held;

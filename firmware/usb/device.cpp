@@ -189,9 +189,9 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may poll directly after each start of frame. The pose is therefore loaded once per bus frame, near the end
-// of the frame. The loaded pose is the last pose that can be loaded in time. A spare pose is loaded earlier, in case
-// the main loop is delayed.
+// The host may poll directly after each start of frame. The pose is loaded once per bus frame, near the end of the
+// frame. The loaded pose is the last pose that can be loaded in time. A spare pose is loaded earlier, in case the main
+// loop is delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> bus_frame = port_.bus_frame();
   Endpoint& endpoint = endpoints_[hid_in];
@@ -227,8 +227,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// When the next poll is due, the controller report is replaced in every bus frame. The controller report is then as
-// recent as the pose.
+// When the next poll is due, the controller report is replaced in every bus frame. The controller report is as recent
+// as the pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;

@@ -1,5 +1,5 @@
 // The board as a USB device. The board has a HID interface for poses, commands and parameters, and a vendor interface
-// for the scope. The board also has a controller interface and a firmware update interface.
+// for the scope. The board has a controller interface and a firmware update interface.
 #pragma once
 
 #include <array>

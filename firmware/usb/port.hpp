@@ -45,7 +45,7 @@ struct BusFrame {
 /// receive() and stall() have no effect on endpoint 0. These calls would answer an older request.
 class Port {
  public:
-  /// Writes the next event to `event`. Returns false if there is no event. The call also continues the transfers in
+  /// Writes the next event to `event`. Returns false if there is no event. The call continues the transfers in
   /// progress.
   virtual bool next_event(Event& event) = 0;
 
@@ -66,9 +66,9 @@ class Port {
   /// Cancels a transfer in progress, ends a stall, and sets the data toggle to 0.
   virtual void clear_stall(std::uint8_t endpoint_address) = 0;
 
-  /// Starts an IN transfer. `data` may be empty, and must not change until `sent` or cancel(). The port sends full
-  /// packets and a shorter last packet, without an additional empty packet. Only one transfer may be in progress. On
-  /// endpoint 0 a transfer is at most one packet.
+  /// Starts an IN transfer. `data` may be empty, and must not change until `sent` or cancel(). The port sends no
+  /// additional empty packet after the last full packet. Only one transfer may be in progress. On endpoint 0 a transfer
+  /// is at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
 
   /// Cancels an IN transfer in progress, without a `sent` event. Returns false if there was no transfer, or if the host

@@ -18,7 +18,7 @@ static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
 constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
 /// Ten times the allowed frequency difference between host and board (USB 2.0, section 7.1.11).
 constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
-/// The bus counts as silent after 3 ms without a start of frame, as for a USB suspend.
+/// The driver considers the bus silent after 3 ms without a start of frame.
 constexpr std::uint32_t silence = 3 * nominal_length;
 
 }  // namespace
@@ -47,7 +47,7 @@ void FrameClock::note_capture() {
 std::optional<usb::BusFrame> FrameClock::newest() {
   if (TIM2::SR::CC1IF::is_set()) note_capture();
   if (!is_known_) return std::nullopt;
-  // The two reads are repeated if an interrupt occurs between them. The control interrupt cannot occur between the
+  // The two reads are repeated if an interrupt occurs between the reads. The control interrupt cannot occur between the
   // reads twice in succession.
   constexpr std::uint32_t both_reads_cycles = 60;
   constexpr int tries = 4;

@@ -78,7 +78,7 @@ bool OtgFs::next_event(Event& event) {
     return true;
   }
   // The end of a bus reset (ENUMDNE) needs no action. After a reset, the core accepts packets of 64 bytes on endpoint
-  // 0. The host continues a request only after the sent packet, so sent packets are reported before received packets.
+  // 0. The host continues a request after it has received the sent packet, so sent packets are reported first.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event)) return true;
   answer_control();
   return false;
@@ -228,9 +228,9 @@ void OtgFs::answer_control() {
   if ((sends || control_receive_waits_ || control_stall_waits_) && arm_control() && sends) fill(0);
 }
 
-// A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. The write then opens
-// the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check and
-// write short. A second check detects a packet that arrived between the first check and the write. NAK is set again
+// A SETUP packet may arrive between the check of the receive FIFO and the write that clears NAK. In this case the write
+// opens the endpoint for the data stage of the wrong request. Interrupts are disabled to keep the time between check
+// and write short. A second check detects a packet that arrived between the first check and the write. NAK is set again
 // within 4 us after the SETUP packet, before the host's next token ends.
 //
 // Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. A write after

@@ -70,8 +70,8 @@ Device::Device(Handle handle, std::string name, const std::string& address)
   care_thread_ = std::thread([this] { care(); });
 }
 
-/// HDAPI reserves a device for one program, and the force of a new device is off. A force or a fault of a previous
-/// program must not affect this program.
+/// HDAPI reserves a device for one program. The force of a new device is off. A force or a fault of a previous program
+/// must not affect this program.
 void Device::claim() {
   const double none_N[3]{};
   require(inkwell_set_force(arm(), none_N));  // reports another driver now instead of with the first force
@@ -270,7 +270,7 @@ void Device::care() {
     // inkwell_wait_for_pose() returns a time-out if the board is silent, and INKWELL_DISCONNECTED if the link is lost.
     const bool is_link_lost = is_lost && inkwell_wait_for_pose(arm(), 0.0, &pose) == INKWELL_DISCONNECTED;
     std::string off_problem = is_link_lost ? inkwell_error_text() : "";
-    // If another program, a lasting fault or a lost link has switched the force off, the force stays off. The program
+    // If another program, a permanent fault or a lost link has switched the force off, the force stays off. The program
     // must request the force again.
     const bool was_on = is_on;
     if (!is_lost || is_link_lost) is_on = !is_lost && pose.state == INKWELL_ACTIVE;

@@ -116,7 +116,7 @@ class Device {
   Vector send(const Command& command, const inkwell_pose& pose);
   std::optional<Vector> demanded_force(const Command& command, const inkwell_pose& pose) const;
   bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
-  /// Function of the thread for calls that wait for the board.
+  /// Thread function for calls that wait for the board.
   void care();
 
   const Handle handle_;
@@ -143,8 +143,8 @@ class Device {
   std::condition_variable care_changed_, off_known_;
   bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
   bool force_is_requested_ = false;  ///< since the last loss
-  /// Error text of the last attempt to switch the force off; empty after a success. Not set until an attempt is
-  /// complete.
+  /// Error text of the last attempt to switch the force off; empty after a success. The text is not set before an
+  /// attempt is complete.
   std::optional<std::string> off_problem_;
   std::thread care_thread_;
 };

@@ -13,7 +13,7 @@
 
 namespace inkwell::dropins {
 
-/// A forked child's information about the devices of its parent.
+/// Information for a forked child about its parent's devices.
 struct ParentsDevices {
   int process = 0;
   Handle handles = 0;  ///< lower handles may belong to the parent

@@ -1,4 +1,4 @@
-// Library libhdPhantom.so for CHAI3D 3. The library calls libHD.so with one frame per tick and open device.
+// Library libhdPhantom.so for CHAI3D 3. For each open device, the library executes one libHD.so frame per tick.
 //
 // CHAI3D axes: x to the user, y to the right, z up. The axes x, y, z of CHAI3D are the axes z, x, y of HDAPI. CHAI3D's
 // units are meters and newtons.

@@ -21,7 +21,7 @@ namespace inkwell::dropins {
 class Scheduler {
  public:
   /// Waits for the next tick, which is due after `poses` poses of the device. Returns early if `ends` returns true.
-  /// Returns the time between the ticks in seconds, or 0 if it is unknown.
+  /// Returns the time between the ticks in seconds, or 0 if the time is unknown.
   using Pace = std::function<double(std::uint32_t poses, const std::function<bool()>& ends)>;
 
   /// The servo thread calls `end_tick` after the callbacks of each tick.

@@ -7,8 +7,8 @@
 //   ScopeStream reads the samples of the selected signals in a thread.
 //   Servo calls the servo function in a thread.
 //
-// Any thread may call any part. While a part holds its mutex, the part may call only PoseFeed. With its mutex locked,
-// PoseFeed may call only Turns. In lock step, the pose thread also runs ForceOutput and ScopeStream.
+// Any thread may call any part. While a part holds its mutex, the part may call only PoseFeed. While PoseFeed holds its
+// mutex, PoseFeed may call only Turns. In lock step, the pose thread runs ForceOutput and ScopeStream.
 #pragma once
 
 #include <atomic>

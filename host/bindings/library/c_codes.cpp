@@ -92,7 +92,7 @@ static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_limits_from)
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
 static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
 
-// Existing programs cannot handle new states; pose_reader.cpp maps each new state to one of these states.
+// pose_reader.cpp maps each new state to one of these states, because existing programs cannot handle new states.
 constexpr Code states[] = {CODE(STARTING), CODE(UNREFERENCED), CODE(READY), CODE(ACTIVE), CODE(FAULT)};
 static_assert(std::ranges::all_of(states, [](const Code& c) {
   return is_capital_of(c.name, "", info(static_cast<protocol::State>(c.value)).name);

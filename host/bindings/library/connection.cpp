@@ -21,7 +21,7 @@ constexpr auto read_timeout = 2ms;
 constexpr auto search_interval = 200ms;
 constexpr auto silence_limit = 2s;
 static_assert(Turns::patience.servo < silence_limit);
-/// A longer wait counts as this time, because the process may have been suspended.
+/// A longer loop period counts as this time, because the process may have been suspended.
 constexpr auto longest_wait = 50ms;
 
 constexpr char silent[] = "No pose has arrived for 2 s. Reset the board, or let a paused virtual board run.";

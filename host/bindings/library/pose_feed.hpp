@@ -130,7 +130,7 @@ class PoseFeed final : public device::LockStep {
   /// Returns the number of lost links, silences and lost forces. Each of these losses stops the running servo.
   std::uint64_t interruptions() const;
   /// Waits until `condition` is true and returns the newest pose. Throws the newest interruption if interruptions()
-  /// differs from `known`. Only for servos. In lock step, board time then stops until the servo's next wait.
+  /// differs from `known`. Only for servos. In lock step, board time stops from the return to the servo's next wait.
   template <class Condition>
   inkwell_pose wait_uninterrupted(std::uint64_t known, Condition condition) const {
     const std::function<bool()> is_over = [&] { return interruptions_ != known || condition(seen_.pose); };

@@ -58,7 +58,7 @@ class Turns {
     void end();
     /// Removes the board from the group after a lost link. The board rejoins the group in its next turn.
     void pause();
-    /// Removes the board from the group. Another thread may call this function. Waiting functions of this board then
+    /// Removes the board from the group. Another thread may call this function. All waiting functions of this board
     /// return.
     void leave();
 

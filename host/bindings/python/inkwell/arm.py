@@ -276,7 +276,7 @@ class Arm:
             raise TypeError("A value of a shape has a wrong type. Give three numbers for a point, a normal or a center, "
                             "and one number for each other value.") from None
 
-    # ---- scope and recording ---------------------------------------------------------------------------------
+    # ---- scope, recording ----------------------------------------------------------------------------------
 
     def select_signals(self, *names: str) -> None:
         """Starts to stream these signals at every control period; inkwell.signals() lists them. Without names it stops the

@@ -1,4 +1,4 @@
-// libinkwell for C++: the C interface with objects that release their resources, and with errors as exceptions.
+// C++ interface of libinkwell with RAII and exceptions.
 //
 // Example:
 //   inkwell::Arm arm;                                  // the only arm on USB, or the arm that INKWELL_DEVICE names
