@@ -99,10 +99,10 @@ inline constexpr float encoder_filter_s =
 
 // ---- bridges -----------------------------------------------------------------------------------------
 
-// Both legs of a bridge switch at pwm_Hz, center-aligned. For a relative motor voltage u, the leg duty cycles are (1 +
-// u) / 2 and (1 - u) / 2. The motor voltage is a sequence of pulses at twice pwm_Hz, all with the same sign. In the
-// middle of each zero vector, the current equals its mean. In the middle of each zero vector, the timers reverse and
-// the ADCs sample. Locked antiphase PWM at the control rate would cause 12 times more ripple.
+// Both legs of a bridge switch at pwm_Hz with center-aligned PWM. For a relative motor voltage u, the leg duty cycles
+// are (1 + u) / 2 and (1 - u) / 2. The motor voltage consists of pulses at twice pwm_Hz, and all pulses have the same
+// sign. In the middle of each zero vector, the current equals its mean. In the middle of each zero vector, the timers
+// reverse and the ADCs sample. Locked antiphase PWM at the control rate would cause 12 times more ripple.
 
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
@@ -200,7 +200,7 @@ struct Facts {
   constexpr float bridge_hold_longest_s() const { return bridge_hold_s * 7 / 6; }
 
   constexpr std::uint32_t pll_m() const { return crystal_Hz / pll_input_Hz; }
-  /// Voltage loss due to dead time, as a fraction of the supply voltage. Each leg inserts one dead time per PWM period.
+  /// Voltage loss due to dead time, relative to the supply voltage. Each leg inserts one dead time per PWM period.
   constexpr float bridge_dead_time_part() const { return 2.0f * pwm_Hz * bridge_dead_time_s; }
   constexpr float shunt_V_per_A() const { return shunt_ohm * shunt_amplifier_gain; }
   /// Positive current flows from leg A through the motor to leg B and increases the reading.

@@ -1,6 +1,6 @@
-// Checks in the main loop: memory, supplies and wires. The control interrupt has no spare cycles for these checks. The
-// results of these checks may be two control periods late. The CPU supply needs a faster reaction and has a separate
-// interrupt.
+// Checks of memory, supplies and wires in the main loop. The control interrupt has no spare cycles for these checks.
+// The results of these checks may be two control periods late. The CPU supply needs a faster reaction and has a
+// separate interrupt.
 #pragma once
 
 #include <array>

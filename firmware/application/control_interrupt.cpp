@@ -75,7 +75,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t last_round_periods = main_loop_periods.load();
   const std::uint32_t missed_periods = period - last_round_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  // The hang record is requested once per stall of the main loop, but not during start-up.
+  // Each stall of the main loop causes one hang record, except during start-up.
   if (missed_periods == main_loop_stalled_periods + 1 && last_round_periods != first_period) [[unlikely]]
     drivers::CallAfterInterrupts::request();  // calls hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | condition(Fault::main_loop_stalled, main_loop_stalls) |

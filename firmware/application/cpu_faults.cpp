@@ -19,7 +19,7 @@ namespace {
 
 using protocol::CrashFacts;
 
-/// Saved registers: r4 to r11 and the return value of the exception (EXC_RETURN).
+/// Registers r4 to r11, and the return value of the exception (EXC_RETURN).
 struct SavedRegisters {
   std::uint32_t r4_to_r11[8];
   std::uint32_t exception_return;
@@ -41,8 +41,8 @@ std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_
          ((frame->program_status & was_aligned) != 0 ? 4 : 0);
 }
 
-/// Returns true if the address directly follows a call instruction in firmware code. Call instructions are BL, and BLX
-/// with a register (ARMv7-M, A7.7.18 and A7.7.19).
+/// Returns true if the address directly follows a call instruction in firmware code. The call instructions are BL and
+/// BLX (ARMv7-M, A7.7.18 and A7.7.19).
 bool is_after_call(std::uint32_t address) {
   const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
     return address >= address_of(begin) + 4 && address < address_of(end);
@@ -91,10 +91,10 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 }  // namespace
 
-/// The handler first switches the motors off without the stack, because the stack may be damaged. The handler then uses
-/// the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless the stack has
-/// overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A second CPU fault
-/// in this function restarts the function as a hard fault handler. A CPU fault in the hard fault handler locks up the
+/// The handler first switches the motors off. This code does not use the stack, because the stack may be damaged. The
+/// handler then uses the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless the
+/// stack has overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A second CPU
+/// fault in this function restarts the function as a hard fault handler. A CPU fault in the hard fault handler locks up the
 /// processor until the watchdog expires.
 extern "C" [[gnu::naked]] void cpu_fault_handler() {
   asm volatile(

@@ -13,7 +13,7 @@ extern "C" {
 void hang_handler();
 /// Runs once per control period, at the end of the injected conversions.
 void control_interrupt();
-/// Runs when the CPU supply has become too low.
+/// Runs when the CPU supply falls below its limit.
 void logic_supply_interrupt();
 }
 

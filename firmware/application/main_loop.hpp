@@ -1,4 +1,4 @@
-// Functions that the main loop calls in each round.
+// The main loop calls these functions in each round.
 #pragma once
 
 #include "firmware/application/background_check.hpp"

@@ -13,7 +13,7 @@ namespace {
 /// Each step checks only a few words, so that the main loop is not slowed down.
 constexpr std::ptrdiff_t words_per_step = 4;
 
-/// Memory range that start-up copies from the flash.
+/// Start-up copies this memory range from the flash.
 struct Copy {
   const std::uint32_t* begin;
   const std::uint32_t* end;

@@ -6,7 +6,7 @@
 
 namespace inkwell::application {
 
-/// One round takes about 0.2 s. The image in flash is compared with the checksum that the build appends
+/// One round takes about 0.2 s. The image in flash is compared with the checksum at its end
 /// (tools/generate/seal_image.py). The interrupt code and tables in RAM are compared with the flash. The settings of
 /// the control interrupt and the parameters are compared with their checksums.
 class MemoryCheck {

@@ -18,16 +18,15 @@ using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 /// Values of JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
-/// Sampling time of a channel: code for ADC_SMPRx and number of cycles. The channels of the fast shunt amplifiers use
-/// the reset value of 3 cycles.
+/// Sampling time of a channel. The channels of the fast shunt amplifiers use the reset value of 3 cycles.
 struct Sampling {
   std::uint32_t code, cycles;
   constexpr float time_s() const { return static_cast<float>(cycles) / board::adc_Hz; }
   /// Cycles including the conversion.
   constexpr std::uint32_t whole_cycles() const { return cycles + 12; }
 };
-/// Potentiometers and supply divider have a high output resistance, but a capacitor at the pin charges the sampling
-/// capacitor.
+/// A capacitor at the pin charges the sampling capacitor, because potentiometers and supply divider have a high
+/// resistance.
 constexpr Sampling wiper_sampling{0b011, 56}, supply_sampling = wiper_sampling;
 /// The internal reference needs a sampling time of 10 us (data sheet, "Embedded internal reference voltage").
 constexpr Sampling reference_sampling{0b111, 480};
@@ -43,7 +42,7 @@ static_assert(static_cast<float>(3 * wiper_sampling.whole_cycles() + supply_samp
 
 /// Worst-case values of the converter (data sheet, ADC characteristics). The sampling capacitor may have the voltage of
 /// the previous channel. The resulting charge must change the voltage at the pin by less than half a converter step.
-/// Sampling must last ten time constants of the sampling switch.
+/// The sampling time must be at least ten time constants of the sampling switch.
 constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
 constexpr bool is_settled(const Sampling& sampling, float filter_F) {
   return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
@@ -181,9 +180,9 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
-// Stops the conversions as RM0090 describes under "Overrun detection". The recovery takes two periods, so that the
-// interrupt does not have to wait. A stream finishes its current transfer before it is disabled. DMA requests are
-// disabled, so that no old request remains when the stream restarts.
+// Stops the conversions according to RM0090, "Overrun detection". The recovery takes two periods, so that the interrupt
+// does not have to wait. A stream finishes its current transfer before it is disabled. DMA requests are disabled, so
+// that no old request remains when the stream restarts.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);
   DMA2::S0CR::write(0);

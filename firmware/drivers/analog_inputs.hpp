@@ -4,8 +4,8 @@
 // interrupt at the end of these conversions. The regular sequence of ADC1 converts gimbal, supply and internal
 // reference in every control period. DMA2 stream 0 stores the results of the sequence.
 //
-// The middle of the sampling window is at most 0.2 us after the update. Within 0.2 us, a motor current of 1 A changes
-// by at most 2 mA, one ADC step. The sampling instant needs no correction.
+// The ADCs sample at most 0.2 us after the update. In this time a motor current of 1 A changes by at most one ADC step
+// of 2 mA. The sampling instant needs no correction.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ class AnalogInputs {
     std::array<float, 3> current_A;  ///< from leg A to leg B of each bridge; includes the amplifier offsets
     bool are_new;                    ///< each converter has measured since the previous call
   };
-  /// Currents at the last update. Acknowledges the interrupt.
+  /// Returns the currents at the last update. Acknowledges the interrupt.
   Currents take_currents();
 
   /// Starts the conversion of gimbal, supply and reference. The conversion takes 36 us. Call this function once per

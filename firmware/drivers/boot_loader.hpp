@@ -6,7 +6,7 @@ namespace inkwell::drivers {
 /// Resets the chip. After the reset, the boot loader runs until power-off or another reset.
 [[noreturn]] void start_boot_loader();
 
-/// Returns true if a call of start_boot_loader() ended the previous run. Only the first call returns true.
+/// Returns true if start_boot_loader() has caused the last reset. Only the first call returns true.
 bool take_boot_loader_wish();
 
 /// Enters the boot loader. Call this function during start-up, while clocks and peripherals are in their reset state.

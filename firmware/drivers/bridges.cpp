@@ -101,8 +101,8 @@ void Bridges::start() {
   Heartbeat::start();
   Hold::start(Pull::down);  // defines the level if the wire is broken
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
-  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors.
-  // Whether the outputs become idle must be measured (README.md of the board, "First power-up").
+  // The timers stop while a debugger halts the processor, because the last duty cycle must not remain on the motors. A
+  // measurement must show that the outputs become idle (README.md of the board, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 

@@ -39,19 +39,19 @@ class Bridges {
   /// time.
   void write_neutral();
 
-  /// Preloads duty cycles of -1..1, which become active at the next update.
+  /// Preloads duty cycles of -1..1 for the next update.
   void write(const std::array<float, 3>& duty);
 
   /// Preloads the brake state, in which all low sides are on.
   void write_brake();
 
-  /// Switches the bridges on. A call while the bridges are on does not clear a fault.
+  /// Switches the bridges on. If the bridges are already on, a call does not clear a fault.
   void enable();
 
   /// Sets all six legs and the enable wire of the bridges low immediately.
   void disable();
 
-  /// Returns true if the fault wire is low, or has been low since the bridges were enabled.
+  /// Returns true if the fault wire is low, or was low after the bridges had been enabled.
   bool fault() const;
 
   /// Returns true if the internal pull resistors can change the level of the fault wire. In this case the pin is
@@ -67,8 +67,8 @@ class Bridges {
   /// Returns true if the control interrupt has switched the bridges on.
   bool are_on() const { return enabled_; }
 
-  /// Returns true if an update occurred after the last begin_period(). A result of true at the end of the control
-  /// interrupt indicates an overrun.
+  /// Returns true if an update occurred after the last begin_period(). If the result is true at the end of the control
+  /// interrupt, the interrupt has taken longer than one period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   /// Raises the heartbeat if the bridges are on. Each heartbeat permits the bridges to stay on for `bridge_hold_s`.
   /// Returns true if the monostable has switched the bridges off. The cause is a late heartbeat or a broken heartbeat

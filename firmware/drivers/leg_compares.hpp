@@ -7,7 +7,7 @@
 
 namespace inkwell::drivers {
 
-/// Timer counts at which the legs of one bridge switch.
+/// Compare values of a bridge's legs.
 struct LegCompares {
   std::uint16_t leg_a;
   std::uint16_t leg_b;

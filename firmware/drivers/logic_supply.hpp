@@ -21,7 +21,7 @@ class LogicSupply {
     PWR::CR::modify(PWR::CR::PLS(falls_at_2_92_V), PWR::CR::PVDE(1));
   }
 
-  /// Enables the interrupt that occurs when the supply becomes too low.
+  /// Enables the interrupt for a low supply.
   static void arm() {
     Lines::RTSR::write(detector);  // the detector output is high while the supply is low
     Lines::IMR::write(detector);

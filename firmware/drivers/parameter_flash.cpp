@@ -27,8 +27,8 @@ bool finish() {
   return ended;
 }
 
-/// Old contents may be in the data cache (RM0090, "Flash memory erase sequences"). The cache can be reset only while it
-/// is off.
+/// The data cache may contain old data (RM0090, "Flash memory erase sequences"). The cache must be disabled during its
+/// reset.
 void forget_cached_data() {
   using ACR = registers::FLASH::ACR;
   ACR::modify(ACR::DCEN(0));

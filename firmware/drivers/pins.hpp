@@ -1,5 +1,5 @@
-// Pins of the chip, configured from the facts of the board (RM0090, chapter GPIO). A pin is a template argument, so
-// that its setup compiles to a few stores. Only the driver that claims a pin can set it up.
+// Configures the chip's pins from the facts of the board (RM0090, chapter GPIO). A pin is a template argument, so that
+// its setup compiles to a few stores. Only the driver that claims a pin can set it up.
 #pragma once
 
 #include <type_traits>
@@ -92,7 +92,7 @@ bool follows_pulls(std::uint32_t settle_cycles) {
 template <class Driver, board::Pin pin>
 struct DigitalInput {
   static void start(Pull pull) { detail::configure<Driver, pin>(detail::Mode::input, pull, Speed::low); }
-  /// Levels of all pins of the port, one bit per pin.
+  /// Returns the levels of all pins of the port.
   static std::uint32_t read_port() { return detail::Registers<pin>::IDR::read(); }
   static bool is_high() { return (read_port() >> pin.number & 1u) != 0; }
 };

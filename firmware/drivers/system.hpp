@@ -1,4 +1,4 @@
-// Chip functions: reset, reset cause, sleep, identity.
+// Functions for reset, reset cause, sleep and identity of the chip.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ std::uint32_t sum_of(const T& value) {
   return sum;
 }
 
-/// A value with its checksum. A copy has the same checksum, so a damaged value remains detectable.
+/// A value with its checksum. A copy of a damaged value is detected, because the checksum is copied.
 template <class T>
 class Guarded {
  public:

@@ -18,7 +18,7 @@ class Handover {
 
   // ---- main loop ----
 
-  /// Returns the slot for the next value, or null while the interrupt has not accepted the previous value.
+  /// Returns the slot for the next value. Returns null until the interrupt has accepted the previous value.
   T* next() { return offered_.load() ? nullptr : &slots_[used_ ^ 1u]; }
   /// Returns true if a value has been offered but not accepted. While this function returns false, used() does not
   /// change.

@@ -8,8 +8,8 @@ namespace inkwell::link {
 /// Either a word has one writer, or one side sets the word and the other side clears the word.
 ///
 /// The chip has one core. The interrupt preempts the main loop, but the main loop cannot preempt the interrupt. The
-/// processor maintains the order of accesses, so only the compiler needs fences. Earlier accesses are complete before
-/// `store`. Later accesses start after `store` or `load`.
+/// processor maintains the order of accesses, so only the compiler needs fences. All earlier accesses are complete
+/// before `store` writes the word. Accesses after `store` or `load` start when the call has returned.
 ///
 /// No barrier instruction or lock is necessary. `load` followed by `store` is not atomic, so a word must have only one
 /// writer at a time.

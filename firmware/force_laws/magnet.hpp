@@ -1,4 +1,4 @@
-// Magnet in the workspace. The magnet attracts the probe from a distance and acts like a spring near its center.
+// Magnet in the workspace. The magnet attracts the probe. Near its center, the magnet acts like a spring.
 #pragma once
 
 #include <control/force_law.hpp>

@@ -78,7 +78,7 @@ struct EncoderTimer {
   struct ARR : Register<base + 0x2C> {};
 };
 
-/// Timer that captures its count at a trigger.
+/// Timer with a capture register.
 template <std::uint32_t base>
 struct CaptureTimer {
   struct CR1 : Register<base + 0x00> {

@@ -49,8 +49,7 @@ struct Answer {
 class ControlRequests {
  public:
   virtual Answer request(const SetupPacket& setup) = 0;
-  /// Handles the data of an OUT data stage, up to ControlEndpoint::buffer_size. The endpoint stalls the status stage if
-  /// the function returns false.
+  /// Handles the data of an OUT data stage. The endpoint stalls the status stage if the function returns false.
   virtual bool data_received(const SetupPacket& setup, std::span<const std::byte> data) = 0;
 
  protected:

@@ -100,7 +100,7 @@ constexpr auto three_axes(std::uint8_t first_usage, std::uint8_t unit, std::uint
 
 constexpr std::uint8_t usage_x = 0x30, usage_rx = 0x33;
 constexpr std::uint8_t centimetre = 0x11, radian = 0x12;
-// Exponents for centimeters and radians. The protocol states the steps in meters and radians.
+// Unit exponents of the axes. The descriptor uses centimeters, and the protocol uses meters.
 constexpr std::uint8_t thousandths = 0xFD, ten_thousandths = 0xFC;
 static_assert(protocol::controller_position_step_m == 1e-5f && protocol::controller_angle_step_rad == 1e-4f);
 

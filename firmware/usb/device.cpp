@@ -21,7 +21,7 @@ constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3; 
 /// interrupt and before the next start of frame. While a report is replaced, the host cannot read a report.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// Time in which the main loop detects a new pose, fills the scope FIFO and loads the pose. The final pose is sampled
+/// The main loop needs this time to detect a new pose, fill the scope FIFO and load the pose. The final pose is sampled
 /// shortly before the start of frame.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
@@ -189,9 +189,9 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
-// The host may poll directly after each start of frame. The pose is loaded once per bus frame, near the end of the
-// frame. The loaded pose is the last pose that can be loaded in time. A spare pose is loaded earlier, in case the main
-// loop is delayed.
+// The host may poll directly after each start of frame. The pose is loaded near the end of each bus frame. The loaded
+// pose is the last pose that can be loaded in time. A spare pose is loaded earlier, because the main loop may be
+// delayed.
 void Device::send_pose() {
   const std::optional<BusFrame> bus_frame = port_.bus_frame();
   Endpoint& endpoint = endpoints_[hid_in];
@@ -227,8 +227,8 @@ void Device::send_pose() {
   if (!is_spare) offer_controller_report();
 }
 
-// When the next poll is due, the controller report is replaced in every bus frame. The controller report is as recent
-// as the pose.
+// If the next poll is due, every bus frame replaces the controller report. The controller report is as recent as the
+// pose.
 void Device::offer_controller_report() {
   Endpoint& endpoint = endpoints_[controller_in];
   const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;

@@ -17,7 +17,7 @@
 
 namespace inkwell::usb {
 
-/// Identity data that the protocol tables do not contain.
+/// Identity of the device.
 struct Identity {
   std::array<char, 24> serial_number;            ///< hexadecimal digits of the chip's unique id
   std::array<std::uint8_t, 3> firmware_version;  ///< major, minor, patch
@@ -56,7 +56,8 @@ class Device final : private ControlRequests {
   Answer hid_request(const SetupPacket& setup);
   Answer firmware_update_request(const SetupPacket& setup);
   Answer get_report(const SetupPacket& setup);
-  /// Returns a report in the buffer of endpoint 0 or in flash. The report may be shorter than its declared size.
+  /// Returns a report. The report is in the buffer of endpoint 0 or in flash. The report may be shorter than its
+  /// declared size.
   std::span<const std::byte> compose(protocol::ReportId id);
   Answer get_controller_report(const SetupPacket& setup);
   Answer vendor_request(const SetupPacket& setup);

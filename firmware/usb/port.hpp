@@ -49,8 +49,8 @@ class Port {
   /// progress.
   virtual bool next_event(Event& event) = 0;
 
-  /// The device calls this function when SET_ADDRESS arrives, before the status stage. The port applies the address at
-  /// the time that its hardware requires.
+  /// The device calls this function when SET_ADDRESS arrives, before the status stage. The hardware determines when the
+  /// port applies the address.
   virtual void set_address(std::uint8_t address) = 0;
 
   /// Opens an endpoint with data toggle 0, without halt and without a transfer. A transfer in progress is canceled

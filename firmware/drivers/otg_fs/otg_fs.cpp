@@ -25,7 +25,7 @@ constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 /// PKTSTS values of words in the receive FIFO.
 enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
 
-/// No other access to the core may occur between the words of a packet. In tests, an access between two words corrupted
+/// No other access to the core may occur between the words of a packet. In tests, other accesses to the core corrupted
 /// the packet and its endpoint. No interrupt handler accesses the core.
 void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
   const std::byte* from = packet.data();
@@ -234,7 +234,7 @@ void OtgFs::answer_control() {
 // within 4 us after the SETUP packet, before the host's next token ends.
 //
 // Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. A write after
-// the packet removes the setup-done word. A packet after the write is followed by its setup-done word.
+// the packet removes the setup-done word. The core reports the setup-done word of a packet after the write.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;
@@ -284,13 +284,13 @@ void OtgFs::begin_receive(unsigned endpoint) {
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     return;  // the packet is in the receive FIFO; receive() is called again after the packet has been read
   }
-  // The size register of a stalled or reopened endpoint is still set.
+  // The size register keeps its value if the endpoint is stalled or reopened.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
-// The caller has set NAK on every OUT endpoint. The function completes all transfers and discards their packets.
+// The caller has set NAK on every OUT endpoint. The function completes the transfers and discards their packets.
 void OtgFs::empty_receive_fifo() {
   for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
     read_packet({}, Core::GRXSTSP::BCNT::read());

@@ -1,4 +1,4 @@
-// Start-up of the core and the FIFO memory (RM0090, "OTG_FS programming model": core and device initialization).
+// Start-up of the core and the FIFO memory (RM0090, "OTG_FS programming model").
 #include <board/board.hpp>
 #include "firmware/drivers/cycle_counter.hpp"
 #include "firmware/drivers/otg_fs/otg_fs.hpp"
@@ -13,7 +13,7 @@ namespace inkwell::drivers {
 
 namespace {
 
-/// Turnaround time in PHY clocks, for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
+/// Turnaround time for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
 constexpr std::uint32_t turnaround_clocks = 6;
 static_assert(board::processor_Hz >= 32'000'000);
 
@@ -48,7 +48,7 @@ bool OtgFs::start() {
   // first, because the core would otherwise pull up D+. The function follow_cable() clears the soft disconnect.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
-  // If a suspend in the boot loader stopped the PHY clock, a core reset does not restart this clock (RM0090, GRSTCTL:
+  // The boot loader may have stopped the PHY clock, and a core reset does not restart this clock (RM0090, GRSTCTL:
   // CSRST).
   Power::PCGCCTL::write(0);
   set_address(0);

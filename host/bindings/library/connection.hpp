@@ -1,4 +1,4 @@
-// Thread that opens the arm, reads poses, and reopens the arm after a lost link.
+// A thread opens the arm, reads poses, and reopens the arm after a lost link.
 #pragma once
 
 #include <condition_variable>

@@ -37,7 +37,7 @@ enum class Loss : std::uint8_t {
   link,     ///< the link is lost, and the connection searches for the board
 };
 
-/// Functions that the pose thread calls in each turn of lock step.
+/// The pose thread calls these functions in each turn of lock step.
 class TurnPart {
  public:
   virtual ~TurnPart() = default;
@@ -69,7 +69,7 @@ class PoseFeed final : public device::LockStep {
   void publish(const inkwell_pose& pose, bool is_referenced);
   /// Reports a loss. `cause` is a sentence with the remedy. The newest cause replaces the previous cause.
   void lose(Loss kind, const std::string& cause);
-  /// Reports that this program is no longer the driver.
+  /// Reports the loss of this program's claim.
   void lose_claim(const std::string& cause);
 
   // ---- poses ---------------------------------------------------------------------------------------------------

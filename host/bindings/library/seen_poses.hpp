@@ -24,7 +24,7 @@ class SeenPoses {
     sequences_[std::this_thread::get_id()] = sequence;
   }
 
-  /// Notes that the calling thread has set a force.
+  /// Records a force of the calling thread.
   void note_force() {
     const std::lock_guard lock(mutex_);
     if (sequences_.contains(std::this_thread::get_id())) drives_.insert(std::this_thread::get_id());

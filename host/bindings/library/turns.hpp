@@ -84,7 +84,7 @@ class Turns {
   /// Registers an answer until this thread calls begin_waiting() or end_answer().
   void begin_answer(std::thread::id thread, Answer answer);
   void end_answer(std::thread::id thread);
-  /// Registers that this thread waits for board time. Returns the previous answer of the thread.
+  /// Registers a wait of this thread for board time. Returns the previous answer of the thread.
   Answer begin_waiting(std::thread::id thread);
   /// The wait is over. If `answer` is not none, the thread now answers the newest pose.
   void end_waiting(std::thread::id thread, Answer answer);
