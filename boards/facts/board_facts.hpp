@@ -161,7 +161,7 @@ struct Facts {
   /// While the bridges are on, the heartbeat rises with each control interrupt and falls before the interrupt returns.
   /// The pin must not be adjacent to a leg pin, because a coupled edge would count as a heartbeat.
   Pin bridge_heartbeat;
-  /// Output of the monostable, connected to the bridge enable inputs. The bridges can switch only while this output is
+  /// The monostable output is connected to the bridge enable inputs. The bridges can switch only while this output is
   /// high.
   Pin bridge_hold;
   /// Open-drain fault output of the bridges, active low. The fault wire is connected to both pins. A low level switches

@@ -39,8 +39,7 @@ constexpr bool third_converter_reaches(const AnalogInput& input) {
   return input.channel <= 3 || (input.channel >= 10 && input.channel <= 13);
 }
 
-/// Returns true if the bridge legs use the pins of the first three channels of TIM1 and TIM8 (data sheet, table of
-/// alternate functions).
+/// Returns true if the bridge legs use channels 1 to 3 of TIM1 and TIM8 (data sheet, table of alternate functions).
 constexpr bool legs_are_at_their_pins(const Facts& facts) {
   unsigned channels = 0;
   for (const auto& [channel, leg_a, leg_b] : facts.bridges) {

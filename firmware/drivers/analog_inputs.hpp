@@ -50,7 +50,7 @@ class AnalogInputs {
   Currents take_currents();
 
   /// Starts the conversion of gimbal, supply and reference. The conversion takes 36 us. Call this function once per
-  /// control period. If conversions no longer complete, the function sets up converter and stream again.
+  /// control period. After a failure of the conversions, the function sets up converter and stream again.
   void start_slow_conversions();
 
   /// Wiper voltages of the gimbal potentiometers relative to their supply, 0..1.

@@ -1,4 +1,4 @@
-// The three quadrature encoders, counted by TIM5, TIM3 and TIM4 in encoder mode (RM0090, "Encoder interface mode").
+// TIM5, TIM3 and TIM4 count the three quadrature encoders in encoder mode (RM0090, "Encoder interface mode").
 #pragma once
 
 #include <array>

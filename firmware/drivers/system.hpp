@@ -52,7 +52,7 @@ inline std::array<char, 24> unique_identifier() {
 }
 
 /// Sleeps until an interrupt has been served. Returns without a sleep if work is already pending. Interrupts are
-/// disabled during the check, and a pending interrupt ends the sleep immediately. An interrupt between check and sleep
+/// disabled during the check. A pending interrupt ends the sleep immediately. An interrupt between check and sleep
 /// cannot be missed.
 template <class Question>
 void sleep_unless(Question has_work) {

@@ -11,7 +11,8 @@
 // NAK. Two packets of 64 bytes with their status need 2 x 17 words. The completed transfers of two OUT endpoints need
 // 2 x 4 words.
 //
-// The eight scope packets last 0.4 ms on the bus. With its three-bit counter, the core would not count a ninth packet.
+// The eight scope packets last 0.4 ms on the bus. The core has a three-bit packet counter and would not count a ninth
+// packet.
 #pragma once
 
 #include <cstdint>

@@ -234,7 +234,8 @@ void OtgFs::answer_control() {
 // within 4 us after the SETUP packet, before the host's next token ends.
 //
 // Each SETUP packet sets NAK. NAK therefore shows whether the packet arrived before or after the write. A write after
-// the packet removes the setup-done word. The core reports the setup-done word of a packet after the write.
+// the arrival of the packet removes the setup-done word. The core reports the setup-done word of a packet after the
+// write.
 bool OtgFs::arm_control() {
   const InterruptsHeld held;
   const bool receives = control_receive_waits_;

@@ -1,8 +1,8 @@
 // USB device port that uses the OTG_FS core in device mode (RM0090, chapter OTG_FS).
 //
-// All work is done in poll(), and the driver uses no USB interrupt. The control interrupt wakes the main loop every 50
-// us, the duration of one packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 %
-// of the time.
+// All work is done in poll(). The driver uses no USB interrupt. The control interrupt wakes the main loop every 50 us,
+// the duration of one packet. A scope transfer takes 5 ms, so the bus is idle between two transfers for at most 1 % of
+// the time.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ namespace inkwell::dropins {
 namespace {
 
 constexpr std::size_t stack_maximum = 256;
-/// Maximum number of stored texts, because stored texts are never freed.
+/// Stored texts are never freed, so this number limits the stored texts.
 constexpr std::size_t kept_maximum = 1024;
 
 struct Text {
