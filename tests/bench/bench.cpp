@@ -17,7 +17,6 @@ using namespace inkwell;
 using namespace std::chrono_literals;
 using protocol::Signal;
 
-/// The host of this board reads every pose and 14 signals.
 class BusyBoard {
  public:
   explicit BusyBoard(device::SimulationMode mode)

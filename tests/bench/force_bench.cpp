@@ -1,4 +1,4 @@
-// Measures the duration of the board's force law on a PC. Published durations of CHAI3D serve for comparison.
+// Measures the duration of the board's force law on a PC. Prints published durations of CHAI3D for comparison.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ using control::Vector3;
 constexpr control::Box box{{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
 constexpr control::Wall wall{800.0f, 2.0f};
 
-/// Moves a probe into and out of walls, edges and corners, so that each branch alternates.
+/// Moves a probe into and out of walls, edges and corners.
 struct Path {
   struct Moment {
     Vector3 position_m, velocity_m_per_s;

@@ -25,7 +25,7 @@ constexpr std::size_t selected = 31;
 constexpr auto first_stage = static_cast<std::size_t>(Signal::servo_cycles);
 constexpr std::size_t stage_count = static_cast<std::size_t>(Signal::stage_report_cycles) - first_stage + 1;
 
-/// A hand presses the stylus of this board. Board time advances only in run() and while the device answers a request.
+/// Board time advances in run() and during requests to the device.
 class PressedBoard {
  public:
   /// `profile`: see VirtualBoardOptions.

@@ -2,9 +2,9 @@
 
 namespace inkwell::bench {
 
-/// Presses the arm into three walls with 31 signals on the scope and prints the largest duration of each stage.
-/// Measures with the likely and with the conservative instruction costs. Writes the longest interrupt with the
-/// conservative costs to `interrupt.profile` next to this program, for tools/docs/flame-graph.
+/// Presses the arm into three walls, records 31 signals and prints the largest duration of each stage. Each stage is
+/// measured with the likely and with the conservative instruction costs. Writes `interrupt.profile`, the input of
+/// tools/docs/flame-graph, next to this program.
 void print_interrupt_stages();
 
 }  // namespace inkwell::bench

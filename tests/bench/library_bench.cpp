@@ -1,5 +1,5 @@
-// Measures the time that the calling thread needs for a call of libinkwell and for a frame of HDAPI. Each measured call
-// runs once per pose of a virtual board. Another thread performs the USB transfers.
+// Measures how long a call of libinkwell and a frame of HDAPI occupy the calling thread. Each call is measured once per
+// pose.
 #include <algorithm>
 #include <atomic>
 #include <chrono>

@@ -1,5 +1,4 @@
-// usb-trial: runs the flashed firmware with a USB host for any duration. The tests run the firmware for a few seconds
-// only.
+// Runs the flashed firmware with a USB host for a given duration.
 #include <cstdlib>
 #include <exception>
 #include <filesystem>

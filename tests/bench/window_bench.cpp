@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto measured_for = 10s;
 
-/// Processor time of all threads of a process (proc(5), /proc/PID/stat, utime and stime).
+/// Returns the processor time of the process and its threads: utime plus stime in /proc/PID/stat.
 double processor_time_s(int process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string text;
@@ -67,7 +67,7 @@ void measure(const std::string& layout, const std::string& width, const std::str
 
 }  // namespace
 
-/// Measures the layouts that are named in the arguments; the default is all layouts.
+/// Measures the layouts in the arguments, or all layouts by default.
 int main(int argument_count, char** arguments) {
   const std::vector<std::string> wanted(arguments + 1, arguments + argument_count);
   const auto is_wanted = [&wanted](const std::string& layout) {

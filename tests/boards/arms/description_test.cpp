@@ -20,7 +20,7 @@ std::string omni() {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Returns the Omni's description with one part of the text replaced.
+/// Returns the Omni's description with a replaced part.
 std::string omni_with(const std::string& piece, const std::string& instead) {
   std::string text = omni();
   const auto at = text.find(piece);
@@ -115,7 +115,7 @@ TEST_CASE("an unknown key gets the nearest known one, its line and its section")
   CHECK_SAYS(complaint(omni_with("inductance_H", "inductanse_H")), "did you mean inductance_H?");
   CHECK_SAYS(complaint(omni_with("gear_ratio_1 = ", "zzz = ")), "omni.toml");
   CHECK_SAYS(complaint(omni_with("\n[motor]\n", "\n[motor]\nzzz = 1\n")), "known here: inductance_H");
-  // A parameter that does not belong to the arm is not a valid key of an arm description.
+  // An arm description cannot set wall parameters.
   CHECK_SAYS(complaint(omni_with("\n[parameters]\n", "\n[parameters]\nwall_stiffness_N_per_m = 3\n")), "has no key");
 }
 

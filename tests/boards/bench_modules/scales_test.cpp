@@ -1,5 +1,4 @@
-// Checks the board's scale factors against values that are derived separately from the components and wiring in
-// README.md.
+// Compares the board's scale factors with values that this test computes from the components and wiring in README.md.
 #include "boards/bench_modules/facts.hpp"
 
 #include <doctest/doctest.h>

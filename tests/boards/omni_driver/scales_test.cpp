@@ -1,6 +1,6 @@
-// Checks the board's scale factors against values that are derived separately from the components and wiring in
-// README.md. Firmware and simulation use the same board facts, so a comparison between firmware and simulation would
-// not reveal a wrong fact.
+// Compares the board's scale factors with values that this test computes from the components and wiring in README.md.
+// Firmware and simulation use the same board facts, so a comparison between firmware and simulation would not reveal a
+// wrong fact.
 #include "boards/omni_driver/facts.hpp"
 
 #include <numbers>

@@ -64,8 +64,8 @@ inline std::string firmware_path(const std::string& name) {
   return std::string(INKWELL_BUILD_DIRECTORY) + "/chip-firmware/" + name + ".elf";
 }
 
-/// A chip with a circuit. The chip runs a test firmware from reset. A violated hardware rule fails the test, unless the
-/// test expects violations.
+/// The simulated chip runs a test firmware from reset. A violated hardware rule fails the test, unless the test expects
+/// violations.
 struct ChipUnderTest {
   explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact, Pricing pricing = Pricing::likely)
       : chip(circuit, options(mode, pricing)) {

@@ -1,4 +1,4 @@
-// Compares the cycle counts of the running chip with the manuals, in both modes.
+// Compares the cycle counts of exact and fast mode with the manuals.
 #include <doctest/doctest.h>
 
 #include "tests/boards/stm32f405/chip_fixture.hpp"
@@ -22,7 +22,7 @@ TEST_SUITE("virtual chip: cycles") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       const Measured test(mode);
-      // In exact mode a time slice may end between two loads that would otherwise be pipelined.
+      // In exact mode a time slice may end between two loads and prevent their pipelining.
       const auto about = [](double cycles) { return doctest::Approx(cycles).epsilon(0.02); };
       CHECK(test.result(1) == about(32));      // additions
       CHECK(test.result(2) == about(32));      // 32-bit instructions: one word per cycle equals the fetch rate of the
@@ -44,7 +44,7 @@ TEST_SUITE("virtual chip: cycles") {
       const double ahb = test.result(18), apb_at_full_rate = test.result(19), apb_at_a_quarter = test.result(20);
       CHECK(ahb == doctest::Approx(32 * 4).epsilon(0.02));
       CHECK(apb_at_full_rate == doctest::Approx(32 * (3 + 1 + 2)).epsilon(0.02));
-      // 3 + 1 + 2 * 4 cycles. Exact mode adds no alignment cycles, because 12 is a multiple of 4.
+      // An access takes 3 + 1 + 2 * 4 = 12 cycles, a multiple of 4, so exact mode needs no alignment cycles.
       CHECK(apb_at_a_quarter >= 32 * 12);
       CHECK(apb_at_a_quarter <= 32 * (12 + 3));
     }
@@ -82,7 +82,7 @@ TEST_SUITE("virtual chip: cycles") {
     const Measured likely(Mode::fast), conservative(Mode::fast, Pricing::conservative);
     for (unsigned i = 1; i < 24; ++i) {
       CAPTURE(i);
-      // In a single loop, the unspecified cache behavior can increase or reduce the cycle count.
+      // Assumptions about unspecified cache behavior can change the cycle count of a loop in either direction.
       CHECK(conservative.result(i) >= 0.99 * likely.result(i));
     }
   }

@@ -1,5 +1,4 @@
-// Tests of firmware drivers on the virtual chip. The disturbances of these tests are not possible with the complete
-// firmware.
+// Tests of firmware drivers on the virtual chip.
 #include <doctest/doctest.h>
 
 #include "tests/boards/stm32f405/chip_fixture.hpp"

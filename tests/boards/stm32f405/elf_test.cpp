@@ -87,7 +87,7 @@ TEST_SUITE("virtual chip: ELF") {
     covered[vectors] = '\x3A';
     CHECK(contains(complaint(covered), "no vector table"));
 
-    // A stack pointer beyond the RAM is only a warning, because firmware may set its stack pointer itself.
+    // A stack pointer beyond the RAM is a warning, because firmware can change the stack pointer.
     const inkwell::tests::TemporaryDirectory directory;
     const auto path = directory / "other_chip.elf";
     std::ofstream(path, std::ios::binary) << with_word(vectors, 0x2003'0000);

@@ -38,7 +38,7 @@ struct Encoder {
   void drive(unsigned pin, bool high, Ticks since) {
     test.chip.input_pins().drive('B', pin, high ? PinLevel::high : PinLevel::low, since);
   }
-  /// Steps through the quadrature sequence with `pause` from edge to edge; positive counts are forward.
+  /// Generates quadrature edges with the interval `pause`; positive counts are forward.
   void turn(int counts, Ticks pause) {
     constexpr bool a[] = {false, true, true, false}, b[] = {false, false, true, true};
     Ticks when = test.chip.now();
@@ -51,8 +51,8 @@ struct Encoder {
       drive(5, b[phase], when);
     }
   }
-  /// Applies a pulse of this length to B4, starting `phase_of_sampling` after a sample. True if a rising edge passed
-  /// the filter.
+  /// Applies a pulse of this length to B4; the pulse starts `phase_of_sampling` after a sample. Returns true if a
+  /// rising edge passed the filter.
   bool passes(Ticks length, Ticks sampling, std::int64_t phase_of_sampling) {
     test.chip.run_until(test.chip.now() + 2 * length + 3 * sampling);
     write(sr, 0);
@@ -88,7 +88,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("modes 1 and 2 count the edges of one input alone") {
-    // In the forward direction, starting with both inputs low, the edges are on B4, B5, B4, B5.
+    // From two low inputs, forward edges occur on B4, B5, B4, B5.
     struct Row {
       std::uint32_t mode;
       int of_first_edge, of_four;
@@ -133,7 +133,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
   }
 
   TEST_CASE("what no sample sees does not count, and what one sees does, without a filter too") {
-    // Both inputs are sampled once per timer clock; the counter misses faster edges.
+    // Without a filter, the timer misses edges that are closer together than its clock period.
     Encoder slow, fast;
     slow.turn(2000, timer_clock);
     CHECK(slow.count() == 2000);
@@ -147,8 +147,8 @@ TEST_SUITE("virtual chip: encoder inputs") {
       Ticks sampling;  ///< in timer clocks
       unsigned samples;
     };
-    // Filter codes 1 to 3 sample with the timer clock. Filter codes above 3 sample with tDTS, which CKD prolongs
-    // (RM0090, TIMx_CCMR1).
+    // Filter codes 1 to 3 sample with the timer clock. Filter codes above 3 sample with the period tDTS, which depends
+    // on CKD (RM0090, TIMx_CCMR1).
     for (const Row row : {Row{0, 0, 1, 1}, {0, 2, 4, 1},   {1, 0, 1, 2},   {2, 0, 1, 4},   {3, 0, 1, 8},
                           {3, 2, 1, 8},    {4, 0, 2, 6},   {5, 0, 2, 8},   {6, 0, 4, 6},   {7, 0, 4, 8},
                           {7, 1, 8, 8},    {8, 0, 8, 6},   {9, 0, 8, 8},   {10, 0, 16, 5}, {11, 0, 16, 6},
@@ -164,7 +164,7 @@ TEST_SUITE("virtual chip: encoder inputs") {
         CAPTURE(phase);
         CHECK(encoder.passes(whole, sampling, phase));
         if (row.samples > 1) CHECK_FALSE(encoder.passes(whole - sampling, sampling, phase));
-        // A pulse of intermediate length passes only at some sampling phases.
+        // Whether a pulse of this length passes depends on the phase of the samples.
         CHECK(encoder.passes(whole - sampling + 2, sampling, phase) == (phase <= 0));
       }
       CHECK(encoder.count() == 0);  // each pulse was counted in both directions or not at all

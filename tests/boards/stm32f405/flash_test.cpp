@@ -1,4 +1,4 @@
-// Tests erasing and programming of the flash: duration, waiting accesses, and the effect of a power cut.
+// Tests the duration of flash operations, delayed flash accesses, and power cuts during flash operations.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -54,7 +54,7 @@ TEST_SUITE("virtual board: chip") {
       CHECK(test.result(5) / cycles_per_us == doctest::Approx(32).epsilon(0.05));
       CHECK(test.result(6) == 0x0F0F'0000);
       CHECK(test.result(7) == 0x1234'5678);
-      // The interrupt reads the flash when 230 ms of the second erase remain.
+      // The interrupt reads the flash and waits 230 ms for the end of the erase.
       CHECK(test.result(9) == 0xFFFF'FFFF);
       CHECK(test.result(10) / cycles_per_us == doctest::Approx(230'000).epsilon(0.01));
     }
@@ -77,7 +77,7 @@ TEST_SUITE("virtual board: chip") {
         CHECK(cause == ResetCause::power_on);
         if (++resets == 1) test.chip.request_stop();
       };
-      // Operations before the power cut: an erase, three words, another erase, 99 words.
+      // The power is cut while the firmware writes the hundredth word after the second erase.
       test.chip.cut_power_at_flash_operation(5 + 100);
       test.run_for(0.6);
       REQUIRE(resets == 1);

@@ -23,7 +23,7 @@ TEST_CASE("an exception comes as late as it was told to, in each period, and in 
     CAPTURE(static_cast<int>(mode));
     ChipUnderTest test("converters", mode);
     test.run_for(0.003);
-    // Counts of TIM2 at 84 MHz from the conversion trigger to the handler's read.
+    // Delay between conversion trigger and the handler's read, in TIM2 counts at 84 MHz.
     const std::uint32_t in_time = test.result(5);
     test.chip.delay_exception(converters_interrupt, 840);
     test.run_for(0.001);

@@ -11,7 +11,6 @@ namespace {
 constexpr std::uint32_t passes = 0, refused = 0x82, refused_instruction = 0x01, unaligned = 1u << 24,
                         no_answer = 0x8200, as_hard_fault = 1u << 30;
 
-/// The comments of the test firmware contain the indices of these results.
 void check_results(const ChipUnderTest& test, unsigned first, const std::vector<std::uint32_t>& expected) {
   for (unsigned i = 0; i < expected.size(); ++i) {
     const unsigned number = first + i;
@@ -33,7 +32,7 @@ TEST_SUITE("virtual chip: memory protection") {
       // bytes in another page.
       check_results(test, 1,
                     {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});
-      // A 32-bit instruction extends into 32 non-executable bytes, and another instruction starts in these bytes.
+      // Executes an instruction that crosses into a non-executable region, and an instruction inside this region.
       check_results(test, 12,
                     {passes, passes, refused_instruction, 0x3E, refused_instruction, 0x40, passes, refused_instruction,
                      0x40, refused_instruction});
@@ -42,7 +41,7 @@ TEST_SUITE("virtual chip: memory protection") {
       check_results(test, 30, {passes, refused, refused, passes, no_answer, 0x800});
       check_results(test, 36, {refused, passes, refused, refused | as_hard_fault, 1, refused | as_hard_fault});
       check_results(test, 42, {passes, unaligned, passes});
-      // nPRIV of CONTROL is also readable in a handler. SPSEL is readable only in thread mode.
+      // nPRIV of CONTROL is readable in thread mode and in handlers. SPSEL is readable only in thread mode.
       check_results(test, 45, {passes, 1, static_cast<std::uint32_t>(-32), 3, 0});
       CHECK(stop == Stop::locked_up);
       CHECK(test.chip.lockup_reason().find("the memory protection unit refuses 0x20010000") != std::string::npos);

@@ -24,8 +24,8 @@ TEST_SUITE("virtual chip: peripherals") {
     REQUIRE(first.size() > 60);
     REQUIRE(second.size() > 60);
 
-    // In PWM mode 1 the output is high within 400 cycles of the counter's bottom, and low at other times. The last
-    // edges have the new duty of 250.
+    // In center-aligned PWM mode 1 a pulse lasts twice the duty value. The firmware changes the duty value from 400 to
+    // 250.
     std::vector<Ticks> high_times;
     for (std::size_t i = 2; i + 1 < first.size(); ++i) {
       CHECK(first[i].level != first[i - 1].level);
@@ -33,7 +33,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
     CHECK(high_times.front() == 800 * cycle);
     CHECK(high_times.back() == 500 * cycle);
-    // The new duty becomes active at the bottom of the counter, in the middle of one pulse.
+    // The duty value changes at the bottom of the counter, in the middle of a pulse.
     unsigned mixed = 0;
     for (const Ticks t : high_times) {
       CHECK((t == 800 * cycle || t == 500 * cycle || t == 650 * cycle));
@@ -41,7 +41,7 @@ TEST_SUITE("virtual chip: peripherals") {
     }
     CHECK(mixed == 1);
 
-    // Both timers reverse at the same times, so the centers of their pulses coincide.
+    // The pulses of the two timers have the same centers.
     const auto rising = [](const std::vector<Edge>& edges, std::size_t from) {
       while (edges[from].level != PinLevel::high) ++from;
       return from;
@@ -96,7 +96,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(1) == 1);
     CHECK(test.result(2) == 0);
 
-    // MOE cannot be set while the input is active.
+    // MOE cannot be set while the break input is active.
     pins.drive('A', 0, PinLevel::high);
     CHECK(edges_in(0.001).empty());
     pins.drive('A', 6, PinLevel::high);
@@ -118,8 +118,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(2) == 1024);
     CHECK(test.result(3) == 2048);
     CHECK(test.result(4) == 3072);
-    // 15 cycles at 21 MHz are 60 counts of TIM2, followed by exception entry and the first instructions with their wait
-    // states.
+    // A conversion of 15 cycles at 21 MHz lasts 60 counts of TIM2; exception entry and the first instructions follow.
     CHECK(test.result(5) >= 60);
     CHECK(test.result(5) < 100);
     REQUIRE(sequences.size() > 50);
@@ -141,8 +140,8 @@ TEST_SUITE("virtual chip: peripherals") {
     for (unsigned i = 0; i < 4; ++i) CHECK(test.result(8 + i) == (channel_13 | channel_14 << 16));
     const std::uint32_t before = test.result(6);
     test.run_for(0.01);
-    // A conversion lasts 96 cycles at 21 MHz, and a round has 8 conversions. Each injected group adds its duration and
-    // a repeated sampling of 84 cycles.
+    // A conversion lasts 96 cycles at 21 MHz, and a round has 8 conversions. An injected group interrupts a conversion,
+    // and the sampling of 84 cycles is repeated.
     const double undisturbed = 0.01 * 21e6 / (96 * 8);
     CHECK(test.result(6) - before < undisturbed);
     CHECK(test.result(6) - before > 0.7 * undisturbed);
@@ -173,14 +172,14 @@ TEST_SUITE("virtual chip: peripherals") {
       return both >> 16;
     };
     CHECK(read({}) == std::floor(counts(3.0)));
-    // Through 1 Mohm, the sampling capacitor charges for about one time constant.
+    // With a source of 1 Mohm, the sampling lasts about one time constant.
     const double constant_s = (1e6 + switch_ohm) * sampling_F;
     const double reached_V = 3.0 - 2.0 * std::exp(-84 / adc_Hz / constant_s);
     CHECK(read({1e6, 0.0}) == doctest::Approx(counts(reached_V)).epsilon(0.001));
-    // A capacitor at the pin transfers its charge immediately: the missing voltage is 2 V times 4 pF / 1 nF.
+    // A capacitor at the pin charges the sampling capacitor immediately and loses 4 pF / 1 nF of the 2 V step.
     CHECK(read({1e6, 1e-9}) == doctest::Approx(counts(3.0 - 2.0 * 0.004)).epsilon(0.0003));
     CHECK(read({1e6, 100e-9}) == std::floor(counts(3.0 - 2.0 * 0.00004)));
-    // Three cycles are six time constants of the switch resistance alone.
+    // A sampling time of three cycles is six time constants of the sampling switch.
     ChipUnderTest test("converters");
     test.circuit.voltages = {{{'C', 0}, 0.5}, {{'C', 3}, 3.0}, {{'C', 4}, 3.0}};
     test.run_for(0.003);
@@ -221,7 +220,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(sent == "chip\n");
     constexpr Ticks frame = 10 * 365 * 4 * cycle;  // ten bits of 365 cycles of PCLK1
     CHECK(times[2] - times[1] == frame);
-    // The crystal and the PLL start in 0.6 ms, and the firmware then sends its text immediately.
+    // After 0.6 ms crystal and PLL are stable, and the firmware sends its text.
     CHECK(times[0] < ticks(0.66e-3) + frame);
     CHECK(test.circuit.edges_of('C', 10).back().level == PinLevel::high);
     CHECK(test.result(2) == 1u << 5);
@@ -279,7 +278,7 @@ TEST_SUITE("virtual chip: peripherals") {
       for (unsigned i = 0; i < 3; ++i) CHECK(test.result(9 + i) == (one_volt << 16 | one_volt));
       CHECK(test.result(7) == 0);
       // At 4 MHz the conversions of the first run are five cycles apart. In the second run the conversions are 17
-      // cycles apart: 15 cycles of sampling plus two cycles.
+      // cycles apart, which includes 15 cycles of sampling.
       const auto& samples = test.circuit.samples;
       constexpr Ticks cycle = ticks_per_s / 4'000'000;
       REQUIRE(samples.size() > 18);

@@ -50,7 +50,7 @@ TEST_SUITE("virtual chip: processor") {
     ChipUnderTest test("cpu_faults");
     CHECK(test.chip.run_until(ticks(0.01)) == Stop::locked_up);
     REQUIRE(test.result(0) == finished);
-    // A precise bus fault with its address. The fault escalates because BusFault is disabled.
+    // The bus fault escalates because BusFault is disabled.
     CHECK(test.result(4) == 0x8200);
     CHECK(test.result(5) == 1u << 30);
     CHECK(test.result(6) == 0x60000000);
@@ -126,7 +126,7 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(100) == 7);
       CHECK(record(11, 0) == refused_code);
       CHECK(test.result(101) == 8);
-      // The third of four instructions in an IT block faults, and the block then continues normally.
+      // The third of four instructions in an IT block faults, and the rest of the block is executed normally.
       CHECK(record(12, 0) == no_answer);
       CHECK(record(12, 2) == 0);
       CHECK(record(12, 3) != 0);
@@ -169,7 +169,6 @@ TEST_SUITE("virtual chip: processor") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional", mode);
-      // Most steps of 22 cycles stop outside an interrupt.
       for (int step = 0; step < 60'000 && test.result(0) != finished; ++step) test.run_for(1.375e-6);
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (1 + 256 + 4096));
@@ -188,7 +187,7 @@ TEST_SUITE("virtual chip: processor") {
       REQUIRE(test.result(0) == finished);
       CHECK(test.result(1) == 10'000u * (3 + 256));
       CHECK(test.result(2) > 1000);
-      // A few interrupts occur before the start or after the end of the counting.
+      // A few interrupts occur before or after the counting.
       const auto entries = test.chip.counters().exceptions[15].count;
       CHECK(entries - test.result(2) <= 4);
       CHECK(test.log.empty());
@@ -204,8 +203,8 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(1) == 0);
       CHECK(test.result(2) == 7 + 1 + 16);
       CHECK(test.result(3) == 7 + 1 + 32);
-      // In the second function, a push of twelve registers replaces the addition. In fast mode the cycle counter
-      // advances by whole blocks.
+      // The two functions differ in one instruction: a push of twelve registers replaces an addition. In fast mode the
+      // cycle counter advances by whole blocks.
       if (mode == Mode::exact) CHECK(test.result(5) == test.result(4) + 12);
       CHECK(test.result(5) > test.result(4));
       CHECK(test.log.empty());
@@ -235,7 +234,7 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.result(1) == (1u << 29 | 1u << 26));  // IWDGRSTF and PINRSTF
     REQUIRE(resets.size() == 1);
     CHECK(resets[0].first == ResetCause::independent_watchdog);
-    // The watchdog expires after 500 counts of 4 cycles at 32 kHz and a few instructions.
+    // The watchdog expires after 62.5 ms: 500 counts of 4 cycles at 32 kHz.
     CHECK(seconds(resets[0].second) == doctest::Approx(0.0625).scale(0).epsilon(0.01));
     CHECK(test.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)] == 1);
   }

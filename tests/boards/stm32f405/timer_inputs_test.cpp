@@ -1,5 +1,5 @@
-// Tests captures, external clocks and triggers of other timers (RM0090, "Input capture mode", "Clock selection",
-// TIMx_SMCR, TIMx_CCMR1).
+// Tests input captures, external clocks and triggers from other timers (RM0090, "Input capture mode", "Clock
+// selection", TIMx_SMCR, TIMx_CCMR1).
 #include <doctest/doctest.h>
 
 #include <array>
@@ -21,8 +21,7 @@ constexpr std::uint32_t cen = 1 << 0, ug = 1 << 0, cc1if = 1 << 1, cc1e = 1 << 0
 constexpr std::uint32_t etp = 1 << 15, ece = 1 << 14, external_clock_mode_1 = 7, gated = 5, behind_etr = 7 << 4;
 constexpr Ticks timer_clock = ticks_per_s / 16'000'000;  ///< the firmware keeps the reset clock
 
-/// TIM3 with the first channel on B4 and the external trigger on D2. Both pins are initially low, and no mode is
-/// selected.
+/// TIM3 uses B4 for its first channel and D2 for the external trigger. Both pins are initially low.
 struct Inputs {
   Inputs() : test("encoder", Mode::fast) {
     test.chip.input_pins().drive('B', 4, PinLevel::low);
@@ -62,7 +61,7 @@ struct Inputs {
   void pulses(char port, unsigned pin, int count) {
     for (int i = 0; i < count; ++i) pulse(port, pin);
   }
-  /// Returns the number of each pulse on B4 that the first channel captured; the first pulse is number 1.
+  /// Returns the numbers of the pulses on B4 that the first channel captured, starting at 1.
   std::vector<int> captures(int count) {
     std::vector<int> at;
     for (int i = 1; i <= count; ++i) {

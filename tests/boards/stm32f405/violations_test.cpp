@@ -1,4 +1,4 @@
-// A test firmware violates one rule at a time, and the virtual chip reports the violation.
+// The test firmware violates one rule, and the virtual chip reports the violation.
 #include <doctest/doctest.h>
 
 #include "boards/stm32f405/otg_fs/otg_fs_device.hpp"
@@ -52,7 +52,7 @@ constexpr Case cases[] = {
     {35, Rule::reference_hurried},
 };
 
-/// A test firmware with one violation, and the USB core. The host resets the bus when a device connects.
+/// The host resets the bus when a device connects.
 struct Planted {
   explicit Planted(unsigned violation, Mode mode = Mode::exact) : test("rules", mode), core(test.chip.connections()) {
     test.breaks_rules = violation != 0;

@@ -23,7 +23,7 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(Symbols().name(reset).empty());
     CHECK(Symbols("/nowhere/at/all.elf").name(reset).empty());
 
-    // A file that is truncated at any position yields either all symbols or no symbols.
+    // If a file is truncated at any position, the reader returns all symbols or no symbols.
     std::ifstream whole(firmware_path("lock_up"), std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(whole), {}};
     const inkwell::tests::TemporaryDirectory directory;

@@ -9,8 +9,7 @@ using namespace inkwell::virtual_board::gdb;
 
 namespace {
 
-/// Returns the answer to a packet that needs no chip. If the answer needs the chip, the function returns a text that is
-/// never sent to GDB.
+/// Returns the answer to the packet, or a placeholder if the answer depends on the chip.
 std::string answer_to(std::string_view packet) {
   const Request request = request_of(packet);
   const auto* const answered = std::get_if<Answered>(&request);

@@ -9,7 +9,6 @@ using namespace inkwell::virtual_board::test;
 
 namespace {
 
-/// A GDB session without a connection, on a chip in exact mode.
 struct Debugger {
   explicit Debugger(const std::string& firmware) : test(firmware), session(test.chip) {
     session.attach();
@@ -65,10 +64,10 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(gdb.ask("vCont;s:1").empty());
     CHECK(gdb.run() == "T05thread:1;");
     CHECK((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
-    // With GDB, the handler's breakpoint is a normal stop.
+    // With GDB, a breakpoint in the handler stops the program normally.
     CHECK(gdb.ask("c").empty());
     CHECK(gdb.run() == "T05thread:1;");
-    // Without GDB, the handler's breakpoint is a second fault.
+    // Without GDB, a breakpoint in the handler is a second fault.
     CHECK(gdb.session.receive(gdb_packet("D")) == gdb_packet("OK"));
     CHECK(gdb.test.chip.run_until(gdb.test.chip.now() + ticks(0.001)) == Stop::locked_up);
   }

@@ -84,7 +84,7 @@ def main():
         if sys.stdout.isatty():
             print(f"\r{first + count} programs", end="", flush=True)
     print(f"{arguments.programs} programs, {differing} differ, interrupted {interrupts} times")
-    # The comparison requires a sufficient number of interrupts.
+    # The run fails if too few interrupts occurred.
     return 0 if differing == 0 and interrupts > arguments.programs else 1
 
 

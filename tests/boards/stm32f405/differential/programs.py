@@ -58,7 +58,7 @@ class Program:
             return f"{self.general()}, rrx"
         return self.general() + (f", {kind} #{self.random.randrange(1, 32)}" if kind else "")
 
-    # Each of these functions returns one instruction, which `c` makes conditional.
+    # In the following methods, `c` is the condition of the returned instruction.
     def arithmetic(self, c, flags):
         r = self.random
         s = self.one_of(["", "s"]) if flags else ""
@@ -143,7 +143,7 @@ class Program:
             return self.access(c)
         return self.float_one(c)
 
-    # Each of these functions returns a group of lines.
+    # The following methods return several lines of assembly.
     def if_then(self):
         condition = self.one_of(CONDITIONS)
         pattern = [True] + [self.random.random() < 0.5 for _ in range(self.random.randrange(4))]
@@ -191,7 +191,7 @@ class Program:
                                   f"{self.one_of(['vldmia', 'vstmia'])} {base}{back}, {{s{first}-s{first + self.random.randrange(1, 12)}}}",
                                   f"{self.one_of(['ldr', 'str'])} {chosen[0]}, [{base}, #{4 * self.random.randrange(-9, 9)}]!",
                                   f"{self.one_of(['ldrb', 'strh'])} {chosen[0]}, [{base}], #{self.random.randrange(-99, 99)}"]))
-        # The base register contains an address. The EOR makes this register random.
+        # The EOR replaces the address in the base register by a random value.
         return lines + [f"eor {base}, {base}, {chosen[0]}"]
 
     def indexed(self):
@@ -226,7 +226,7 @@ class Program:
         for _ in range(self.random.randrange(10, 30)):
             body += self.one_of(groups)() if self.random.random() < 0.5 else [self.any_one()]
         again = self.label()
-        # Half of the programs start at an odd half word, so that page boundaries divide all kinds of instructions.
+        # A NOP before half of the programs shifts all instructions by a half word relative to the page boundaries.
         start = ["nop"] if self.random.random() < 0.5 else []
         end = ["sub r10, #1", "cmp r10, #0", f"beq.w {again}_ends", f"b.w {again}", f"{again}_ends: bx lr"]
         return start + [f"{again}:"] + body + end + self.subroutines + [".ltorg"]

@@ -20,7 +20,7 @@ using Handler = void (*)();
 void set_handler(unsigned exception, Handler handler);
 inline constexpr unsigned interrupt(unsigned position) { return 16 + position; }
 void enable_interrupt(unsigned position, unsigned priority);
-/// 168 MHz from the 8 MHz crystal; HCLK, PCLK1 and PCLK2 are 168, 42 and 84 MHz.
+/// Sets HCLK to 168 MHz, PCLK1 to 42 MHz and PCLK2 to 84 MHz, from the 8 MHz crystal.
 void run_at_168_MHz();
 
 inline void wait_for_interrupt() { asm volatile("wfi" ::: "memory"); }
@@ -47,7 +47,8 @@ namespace adc {
 inline constexpr std::uint32_t adc1 = 0x40012000, adc2 = 0x40012100, adc3 = 0x40012200, ccr = 0x40012304;
 inline constexpr std::uint32_t sr = 0x00, cr1 = 0x04, cr2 = 0x08, smpr1 = 0x0C, sqr1 = 0x2C, sqr2 = 0x30, sqr3 = 0x34,
                                jsqr = 0x38, jdr1 = 0x3C, dr = 0x4C;
-/// Sets up stream 0 of DMA2 to copy `items` values of the common data register to `to`. `size`: 1 halfword, 2 word.
+/// Sets up stream 0 of DMA2 to copy `items` values of the common data register to `to`. `size` is 1 for half words and
+/// 2 for words.
 void collect_common_data(std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to);
 std::uint32_t items_left();
 /// Waits for the last item, with a time limit.

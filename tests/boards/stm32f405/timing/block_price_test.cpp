@@ -105,8 +105,8 @@ TEST_CASE("a divide costs by the bits of its quotient, between 2 and 12 cycles")
 }
 
 TEST_CASE("a block tells which lines of flash it runs through, and when") {
-  // Nine 16-bit instructions start at 0x...E. The first instruction is in the first line, the next eight instructions
-  // are in the second line.
+  // Nine 16-bit instructions start at 0x...E. The first instruction is in one flash line, and the next eight
+  // instructions are in the next flash line.
   const auto block = price_of({add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0, add_r0}, start + 14);
   REQUIRE(block.requests.size() == 2);
   CHECK(block.requests[0].address == start);
@@ -120,7 +120,7 @@ TEST_CASE("a block tells which data it reads: literals, and tables by their base
   REQUIRE(literal.requests.size() == 2);
   CHECK(literal.requests[1].is_data);
   CHECK(literal.requests[1].address == start + 8);
-  // add r1, #1; ldrb r0, [r2, r1]: the block changes the index but not the base.
+  // add r1, #1; ldrb r0, [r2, r1]: only the index register changes.
   const auto table = price_of({add_r1, 0x5C50});
   REQUIRE(table.reads.size() == 1);
   CHECK(table.reads[0].base_at_entry);

@@ -17,7 +17,7 @@ using protocol::InjectedFault;
 
 namespace {
 
-/// A chip with a control load on the driver board; the firmware does not enable the bridges.
+/// The chip runs a control load, and the firmware does not enable the bridges.
 struct Rig {
   explicit Rig(const std::string& firmware = "servo")
       : plant(test::omni(), board::omni_driver),
@@ -349,7 +349,7 @@ TEST_CASE("supplies") {
   rig.run(0.0005);
   CHECK(rig.instructions_in(0.0005) > 0);
 
-  // A new amount does not interrupt an active fault: the supply remains low.
+  // A new amount leaves the fault active, so the supply remains low.
   const auto brown_outs = [&] { return rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)]; };
   const auto before = brown_outs();
   for (const char* fault : {"logic_sag=2", "logic_sag=1.9"}) {

@@ -82,7 +82,7 @@ TEST_CASE("Coulomb friction holds a torque below its cone at rest and lets a lar
 
   run(arm, 0.1, {0.012, 0.0, 0.0});
   CHECK(arm.joints_rad()[0] > 0.105);
-  // Without torque the arm comes to rest permanently.
+  // Without torque the arm comes to rest and remains at rest.
   run(arm, 1.0, no_torque);
   const Vector3 rest = arm.joints_rad();
   run(arm, 1.0, no_torque);
@@ -100,7 +100,7 @@ TEST_CASE("a steady hand brings the arm to rest, at any stiffness it may have") 
     const Vector3 rest = arm.joints_rad();
     run(arm, 1.0, no_torque, hand);
     CHECK((arm.joints_rad() - rest).norm() < 1e-9);
-    // The remaining force of the spring is at most the force of friction and gravity, about 1.3 N.
+    // At rest, the spring force is at most the sum of friction and gravity, about 1.3 N.
     CHECK((position_m(arm) - target).norm() < 1.3 / stiffness + 1e-4);
   }
 }
@@ -127,7 +127,7 @@ TEST_CASE("the stops bear the falling arm, the elbow's one between the links") {
     run(arm, 3.0, {0.2, 0.0, 0.0});
     CHECK(arm.joint_speeds_rad_s().norm() < 1e-9);
     const double torque_Nm = 0.2;
-    // Joint 1 presses against its stop with the torque that friction does not balance.
+    // Friction balances part of the torque, and the stop of joint 1 balances the rest.
     const double beyond_rad = arm.joints_rad()[0] - p[Parameter::joint_1_maximum_rad];
     CHECK(beyond_rad > (torque_Nm - 0.011) / 20.0);
     CHECK(beyond_rad < (torque_Nm + 0.011) / 20.0);

@@ -18,7 +18,7 @@ using namespace inkwell::virtual_board;
 inline constexpr Ticks servo_period = ticks_per_s / board::servo_rate_Hz;
 inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 
-/// Input levels of the chip, and a quadrature decoder as in the timers.
+/// Input levels of the chip, with decoded encoder counts.
 class DecodedInputs final : public InputPins {
  public:
   explicit DecodedInputs(const board::Facts& board) : facts(board) {}
@@ -54,7 +54,7 @@ class DecodedInputs final : public InputPins {
   Ticks shortest_pause = just_now;     ///< between two edges of one encoder
 };
 
-/// A plant with center-aligned, unipolar PWM edges as defined in the board's facts.
+/// A plant with center-aligned, unipolar PWM.
 struct DrivenPlant {
   explicit DrivenPlant(const arms::Description& arm, const PlantOptions& options = {},
                        const board::Facts& board = board::omni_driver)
@@ -87,7 +87,6 @@ struct DrivenPlant {
       plant.advance(now += servo_period);
     }
   }
-  /// Runs with PWM at these duty cycles.
   void run(double time_s, std::array<double, 3> duty) {
     struct Edge {
       Ticks at;

@@ -78,8 +78,8 @@ TEST_CASE("an arm that is let go falls onto its stops and rests") {
 }
 
 TEST_CASE("a wall made by the motors is stable against a stiff hand and keeps still") {
-  // A proportional-derivative controller runs at 20 kHz in workspace coordinates. Its force is converted to duty cycles
-  // without a current loop. The simulation includes the complete plant from duty cycles to position.
+  // A proportional-derivative controller runs at 20 kHz in workspace coordinates. The controller's force is converted
+  // to duty cycles without a current loop. The simulation includes the complete plant from duty cycles to position.
   const auto arm = test::omni();
   DrivenPlant driven(arm);
   driven.enable(true);

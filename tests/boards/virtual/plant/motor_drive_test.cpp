@@ -48,8 +48,8 @@ Ripple switch_bridge(MotorDrive& motor, double duty, int periods, Ticks& now) {
       ripple.highest_A = std::max(ripple.highest_A, motor.current_A());
     };
     if (last) motor.take_charges();
-    // The period starts in the middle of the low zero vector. The leg with the larger duty cycle rises first and falls
-    // last.
+    // The period starts in the middle of a zero vector with both legs low. The leg with the larger duty cycle switches
+    // high first and low last.
     const unsigned first = duty >= 0.0 ? 0 : 1;
     const double longer = std::max(duty_a, duty_b), shorter = std::min(duty_a, duty_b);
     edge((1.0 - longer) / 2.0, first, Leg::high);
@@ -77,7 +77,7 @@ TEST_CASE("a voltage step drives the current along R and L") {
     CHECK(motor.current_A() ==
           doctest::Approx(bus_V / resistance_ohm * (1.0 - std::exp(-at_s / time_constant_s))).epsilon(1e-6));
   }
-  // The charge is the integral of the current: V t / R minus the charge of the inductance.
+  // The charge is the integral of the current after a voltage step.
   const auto charges = motor.take_charges();
   CHECK(charges.motor_As == doctest::Approx(bus_V / resistance_ohm * (2e-3 - time_constant_s)).scale(0).epsilon(1e-6));
   CHECK(charges.supply_As == doctest::Approx(charges.motor_As));
@@ -111,7 +111,7 @@ TEST_CASE("the supply gives the power that the motor takes") {
   auto motor = drive();
   Ticks now = 0;
   const double mean_A = switch_bridge(motor, 0.5, 1000, now).mean_A;
-  // Runs one more period with single edges, and then reads the charges of this period. At duty cycle 0.5 the supply
+  // Switches each edge of one period separately and reads the charges of the period. At duty cycle 0.5 the supply
   // drives the motor half of the time.
   const Ticks period = virtual_board::ticks_per_s / board::pwm_Hz;
   motor.set_leg(0, Leg::high, now + period / 8);
@@ -157,8 +157,8 @@ TEST_CASE("the dead time costs a voltage against the current's direction") {
   auto motor = drive(static_cast<double>(board::omni_driver.bridge_dead_time_s));
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.3, 2000, now);
-  // The dead time shortens the pulse of leg A and lengthens the pulse of leg B. During each dead time the diode's
-  // forward voltage is added.
+  // The dead time shortens the pulse of leg A and lengthens the pulse of leg B. During the dead times the current also
+  // flows against the diodes' forward voltages.
   const double lost_V =
       2.0 * static_cast<double>(board::omni_driver.bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
   CHECK(lost_V > 0.4);

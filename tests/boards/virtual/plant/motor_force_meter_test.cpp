@@ -32,7 +32,7 @@ TEST_CASE("the meter of the motors tells the force of their torques, in the mean
   for (int step = 0; step < 58; ++step) meter.step({0.0, 0.0, 0.0}, jacobian_m, true);
   CHECK(meter.peak_over_ms_N() == 0.0);
   meter.step({0.0, 0.0, 0.0}, jacobian_m, true);
-  // The force acts during one whole period and during parts of two other periods, and all three magnitudes are added.
+  // The meter adds the magnitudes of three periods: one whole period and parts of two periods.
   CHECK(meter.peak_over_ms_N() == doctest::Approx(0.2 * (1.0 + 2.0 / 3 + 1.0 / 3) / 60));
   meter.start();
   for (int step = 0; step < 6; ++step) meter.step({0.0, step < 3 ? 0.04 : -0.04, 0.0}, jacobian_m, true);
@@ -58,7 +58,7 @@ TEST_CASE("the plant's meter tells how hard the bridges have the motors press, w
   CHECK(now_N.norm() > 0.1);
   CHECK(peak_N() > 0.9 * now_N.norm());
   CHECK(peak_N() < 1.5 * now_N.norm());
-  // A braked arm in motion also exerts a force.
+  // A braked arm in motion exerts a force.
   driven.legs(PinLevel::low);
   driven.idle(0.01);
   driven.plant.place(free_joints(arm), {6.0, 6.0, 6.0});

@@ -14,7 +14,7 @@ using namespace inkwell::test;
 
 namespace {
 
-/// An arm without friction and weight, rotating about the waist axis. The encoder edges are decoded.
+/// An arm without friction and weight, rotating about the waist axis.
 struct Swinging {
   Swinging() : arm(weightless()), driven(arm) {
     driven.plant.place({-0.9, 0.8, 0.4}, {20.0, 0.0, 0.0});
@@ -34,8 +34,7 @@ struct Swinging {
   std::int64_t before, true_before;
 };
 
-/// Runs the bridges at these duty cycles until the currents are constant. The time is too short for the free joints to
-/// move.
+/// Runs the bridges at these duty cycles until the currents are constant. The run is too short for the joints to move.
 DrivenPlant driven_at(std::array<double, 3> duty, double time_s = 0.003) {
   DrivenPlant driven(test::omni());
   driven.enable(true);
@@ -133,8 +132,7 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     DrivenPlant driven(arm);
     driven.plant.set_motor_fault(2, fault);
     driven.enable(true);
-    // Full supply voltage is applied in one direction, too briefly for significant motion. The resistance determines
-    // the current.
+    // Full supply voltage is applied in one direction, too briefly for significant motion.
     driven.plant.output_changed(board::omni_driver.bridges[2].leg_a.pin.port,
                                 board::omni_driver.bridges[2].leg_a.pin.number, PinLevel::high, 0);
     driven.idle(0.0012);
@@ -191,7 +189,7 @@ TEST_CASE("a fused leg conducts though the bridge is disabled: a motor that is t
     driven.idle(0.001);
     const double back_emf_V = test::torque_Nm_per_A(arm, 0) * 20.0;
     CHECK(back_emf_V > 2.0);
-    // Current flows from ground through the diode of one leg and back through the other leg, in one direction only.
+    // A diode in the circuit permits current in one direction only.
     if (speed_rad_s > 0.0)
       CHECK(std::abs(current_A(driven, 0)) > 0.7 * (back_emf_V - 0.8) / test::circuit_ohm(arm));
     else
@@ -213,7 +211,7 @@ TEST_CASE("a leg that never conducts leaves one direction of current only, a slo
   slow.plant.set_leg_delay(1, 0, 1e-6);
   slow.plant.set_leg_delay(1, 1, 1e-6);
   slow.run(0.003, {0.0, 0.4, 0.0});
-  // The diodes conduct during the delay once per period in each leg, as in a dead time.
+  // The diodes conduct once per period in each leg, for the duration of the delay.
   const double lost_V = 2.0 * 1e-6 * board::pwm_Hz * static_cast<double>(board::supply_nominal_V);
   CHECK(healthy_A - current_A(slow, 1) ==
         doctest::Approx(lost_V / test::circuit_ohm(test::omni())).scale(0).epsilon(0.4));

@@ -176,7 +176,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at == PinLevel::high ? PinLevel::low : PinLevel::high);
     driven.now += 10;
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);
-    // The last rising edge, at or before this level change, restarts the hold time.
+    // The hold time restarts with the last rising edge of the heartbeat.
     const Ticks off = (stopped_at == PinLevel::high ? driven.now : newest) + hold;
     driven.now += 10;
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);  // unchanged level, no rising edge
@@ -186,7 +186,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.is_halted = true;
     driven.idle(0.0005);
     CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
-    // A change of the enable input does not enable the bridges again; a heartbeat edge is required.
+    // Enabling the bridges requires a heartbeat edge in addition to the enable input.
     driven.set_enable(false);
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::low);
     driven.set_enable(true);
@@ -197,7 +197,7 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.set_enable(false);
     driven.set_enable(true);
     CHECK_FALSE(is_on_at(driven.now));
-    // The bridges can also be enabled while the heartbeat is high, as inside the control interrupt.
+    // The bridges can be enabled during a high heartbeat, as in the control interrupt.
     driven.set_enable(false);
     CHECK_FALSE(is_on_at(driven.now));
     driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::high);

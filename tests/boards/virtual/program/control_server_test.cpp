@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server; a separate thread answers and counts its requests.
+/// The server counts its requests and answers them in a separate thread.
 class AnsweringServer {
  public:
   explicit AnsweringServer(const local::SocketAddress& where = {}) : server_(where) {

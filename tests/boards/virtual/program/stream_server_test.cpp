@@ -19,7 +19,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A server and the bytes that it has received.
 class Receiver {
  public:
   explicit Receiver(FirstBytes welcome)

@@ -1,4 +1,4 @@
-// Tests the effect of spikes on an encoder wire on the pose. Crosstalk from the bridges causes such spikes.
+// Tests how spikes on an encoder wire change the pose. Crosstalk from the bridges causes spikes on encoder wires.
 #include <doctest/doctest.h>
 
 #include <functional>

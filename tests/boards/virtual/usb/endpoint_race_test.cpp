@@ -25,8 +25,8 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
-    // The driver reads the register twice when it replaces a waiting pose. The second read belongs to a
-    // read-modify-write access.
+    // To replace a waiting pose, the driver reads the endpoint's control register twice. The second read of the
+    // register is part of a read-modify-write access.
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
@@ -49,8 +49,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
 }
 
 TEST_CASE("a pose that the host takes while a newer one of the same frame replaces it does not come twice") {
-  // Without requests of the host, the driver replaces a report twice per frame: first by the spare report, then by the
-  // newest report.
+  // If the host requests no report, first the spare report and then the newest report replace the waiting report.
   for (const int replacement : {1, 2}) {
     CAPTURE(replacement);
     FirmwareOnBus bus(flashed_image());
@@ -74,7 +73,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     protocol::PoseReport first;
     std::memcpy(&first, packet.data(), sizeof first);
     bus.registers.on_read = {};
-    // The host model does not detect this test's direct read, so the test also reads the next packet directly.
+    // The test reads the next packet directly, because the host model missed the previous packet.
     std::optional<protocol::PoseReport> next;
     bus.cable.on_start_of_frame = [&](std::uint16_t) {
       if (next || bus.core.in(own_address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;
@@ -98,7 +97,7 @@ Setup descriptor_request(std::uint8_t type) {
   return {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{type}, {}, {}, std::byte{64}, {}};
 }
 
-/// The firmware and a host. The host sends a SETUP, a token and, at a chosen time, a second SETUP.
+/// The host sends a SETUP packet, a token and, at a chosen time, a second SETUP packet.
 struct Race {
   Race() : bus(flashed_image()) { bus.connect(); }
 
@@ -110,7 +109,7 @@ struct Race {
   void interfere() {
     came = true;
     bus.cable.setup(own_address, 0, descriptor_request(configuration_descriptor));
-    // This check runs before the next token, which follows the SETUP by at least 4 us.
+    // The next token follows at least 4 us after the SETUP packet.
     auto& scheduler = bus.chip.connections().scheduler;
     scheduler.at(scheduler.now() + ticks(1e-6), [this] {
       if (read || fills) return;  // a register read would disturb the words of a packet
@@ -118,7 +117,7 @@ struct Race {
       CHECK((bus.core.read(control_out, 4) & naksts) != 0);
     });
   }
-  /// Returns the descriptor type in the device's final answer; 0 without an answer.
+  /// Returns the descriptor type in the device's last answer, or 0 if there is no answer.
   std::uint8_t answer() {
     for (int i = 0; i < 300; ++i) {
       bus.run_for(10e-6);

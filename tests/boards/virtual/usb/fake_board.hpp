@@ -26,7 +26,7 @@ class FakeScheduler final : public virtual_board::Scheduler {
   void cancel(Id id) override {
     std::erase_if(events_, [&](const auto& event) { return event.first.second == id; });
   }
-  /// Runs one event if an event is due by `end`.
+  /// Runs the next event if its time is at most `end`.
   bool run_one(Ticks end) {
     if (events_.empty() || events_.begin()->first.first > end) return false;
     auto node = events_.extract(events_.begin());

@@ -1,5 +1,5 @@
-// The flashed firmware on the virtual chip, with a USB host. The host can observe every transaction on the cable. All
-// parts run in one program, so that times are measured exactly in board time.
+// The flashed firmware on the virtual chip, with a USB host. The host can observe every transaction on the cable.
+// Firmware and host run in one program, so times are exact in board time.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class RestingCircuit final : public virtual_board::Circuit {
   std::function<double(char port, unsigned pin, Ticks now)> voltage_V;
 };
 
-/// The cable: forwards all transactions and reports them.
+/// Forwards all transactions on the cable and reports them.
 class Cable : public virtual_board::BusDevice {
  public:
   explicit Cable(virtual_board::BusDevice& device) : device_(device) {}
@@ -74,7 +74,7 @@ class Cable : public virtual_board::BusDevice {
   virtual_board::BusDevice& device_;
 };
 
-/// The core's registers on the chip's bus. This object reports each register write. It reports each register read
+/// The core's registers on the chip's bus. Reports each register write of the firmware. Reports each register read
 /// before the firmware receives the value.
 class ObservedRegisters final : public virtual_board::Peripheral {
  public:
@@ -97,10 +97,9 @@ class ObservedRegisters final : public virtual_board::Peripheral {
   virtual_board::Peripheral& registers_;
 };
 
-/// build/board/inkwell.elf, next to the build directory of this program.
+/// Returns the path of build/board/inkwell.elf.
 std::filesystem::path flashed_image();
 
-/// Chip, cable and a host that enumerates and configures the device.
 class FirmwareOnBus final : private virtual_board::RootPort::Client {
  public:
   explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0,
@@ -111,8 +110,8 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   /// Enumerates and configures the device. Throws std::runtime_error if the device does not appear within one second.
   void connect();
   void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
-  /// Runs a control transfer and returns its status and data. Throws std::runtime_error after two seconds, because a
-  /// sector erase takes one second.
+  /// Runs a control transfer and returns its status and data. Throws std::runtime_error after two seconds, twice the
+  /// duration of a sector erase.
   struct Answer {
     std::int32_t status;
     std::vector<std::byte> data;

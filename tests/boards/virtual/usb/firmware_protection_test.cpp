@@ -29,7 +29,7 @@ std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
   return static_cast<std::uint16_t>(bus.chip.memory_word(address & ~3u) >> 8 * (address & 2));
 }
 
-/// Returns the address of any half word in flash that equals this instruction.
+/// Returns the address of a flash half word with the value of this instruction.
 std::uint32_t address_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
   for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
     if (half_word(bus, address) == instruction) return address;
@@ -46,7 +46,8 @@ protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   return report.crash;
 }
 
-/// After this time the control interrupt runs. Without motors, the later self-test would fail and store a fault.
+/// At this time the control interrupt runs, and the self-test has not started. Without motors the self-test would fail
+/// and store a fault.
 constexpr double before_self_test_s = 0.05;
 
 constexpr unsigned control_interrupt = 16 + 18;
@@ -55,8 +56,8 @@ void run_into_control_interrupt(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != control_interrupt) bus.run_for(1e-6);
 }
 
-/// Runs until directly after a control interrupt. The main loop masks interrupts before it sleeps, and a masked fault
-/// would have another type.
+/// Runs until a control interrupt has returned. A fault in the main loop's sleep would have another type, because
+/// interrupts are masked.
 void run_into_main_loop(FirmwareOnBus& bus) {
   run_into_control_interrupt(bus);
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);
@@ -90,7 +91,7 @@ protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   return crash;
 }
 
-/// Returns the first address at or after `begin` whose two preceding half words satisfy `are_such`.
+/// Returns the first address at or after `begin` for which the two preceding half words satisfy `are_such`.
 std::uint32_t address_after(const FirmwareOnBus& bus, std::uint32_t begin,
                             const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
   std::uint32_t address = begin + 4;
@@ -110,8 +111,7 @@ bool is_bl(std::uint16_t last, std::uint16_t before) {
 }
 bool is_call(std::uint16_t last, std::uint16_t before) { return is_blx(last) || is_bl(last, before); }
 
-/// Reads a null pointer while the link register and the stack have these values. Returns the crash record with the
-/// callers.
+/// Reads a null pointer with these values in the link register and on the stack. Returns the resulting crash record.
 protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<const std::uint32_t> words) {
   FirmwareOnBus bus(flashed_image());
   bus.run_for(before_self_test_s);

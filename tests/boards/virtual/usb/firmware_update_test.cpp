@@ -114,7 +114,7 @@ TEST_CASE("the boot loader erases and programs the flash in the flash's own time
   CHECK(loader.read(free_sector + 2048, 2048) == block);
   CHECK(loader.read(free_sector, 4) == Bytes(4, std::byte{0xFF}));
 
-  // Without an erase, programming only clears bits.
+  // Without an erase, programming can clear bits but cannot set bits.
   loader.carry_out(0, command(0x21, free_sector + 2048));
   loader.carry_out(2, Bytes(4, std::byte{0x0F}));
   const auto mixed = loader.read(free_sector + 2048, 4);

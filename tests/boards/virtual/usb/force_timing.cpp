@@ -16,8 +16,7 @@ namespace {
 
 using protocol::Signal;
 
-/// The force rises linearly between these values during the measurement, so that each force value identifies the time
-/// of the pose.
+/// The force rises from first_N to last_N during the measurement, so a force value identifies the time of its pose.
 constexpr float first_N = -3.0f, last_N = 3.0f;
 
 constexpr std::uint32_t claim_number = 7;

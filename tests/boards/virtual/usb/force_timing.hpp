@@ -8,8 +8,8 @@
 namespace inkwell::virtual_usb_test {
 
 struct ForceTiming {
-  /// Histogram of report intervals, as deviations from one millisecond of host time. The middle bin counts zero
-  /// deviations. On each side, the other bins count deviations up to 1, 3, 10 and 30 us, and larger deviations.
+  /// Number of report intervals per class of deviation from one millisecond. The middle class counts intervals without
+  /// a deviation. The other classes have bounds of 1, 3, 10 and 30 us on both sides.
   static constexpr std::array<double, 4> deviation_bounds_us{1, 3, 10, 30};
   std::array<std::uint64_t, 2 * deviation_bounds_us.size() + 1> deviations{};
 

@@ -15,7 +15,7 @@ namespace inkwell::virtual_usb_test {
 TEST_CASE("every potentiometer of the gimbal is measured anew whenever its turn comes") {
   using protocol::Signal;
   FirmwareOnBus bus(flashed_image());
-  // Two samples are three control periods apart and differ by about seven converter steps.
+  // The gimbal angle changes by about seven converter steps between two samples.
   bus.circuit.voltage_V = [](char, unsigned, Ticks now) {
     constexpr double ramp_s = 0.05;
     return 0.5 + 2.0 * std::fmod(virtual_board::seconds(now), ramp_s) / ramp_s;

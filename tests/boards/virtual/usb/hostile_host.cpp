@@ -60,7 +60,7 @@ class HostileHost {
     ++outcome.cases;
   }
 
-  /// Returns an error message; empty if the device works.
+  /// Returns an error message, or nothing if the device works.
   std::optional<std::string> recover() {
     leave_packets_behind();
     reset();
@@ -96,7 +96,7 @@ class HostileHost {
     return bus_.cable.setup(address_, 0, packet);
   }
 
-  /// Returns the data packet of an IN transaction; empty if the device sends none.
+  /// Returns the data packet of an IN transaction, if the device sends a packet.
   std::optional<Packet> in(unsigned endpoint, bool acknowledged = true) {
     pause_s(token_bytes * byte_s);
     std::array<std::byte, full_speed_packet_maximum> data;
@@ -129,8 +129,7 @@ class HostileHost {
     return status && status->empty();
   }
 
-  /// Sends reports and a SET_ADDRESS request. The firmware finds these packets in the receive FIFO together with the
-  /// reset.
+  /// Sends reports and a SET_ADDRESS request. The bus reset arrives before the firmware reads the packets.
   void leave_packets_behind() {
     constexpr unsigned elsewhere = 77;
     for (const bool data1 : {false, true}) bus_.cable.out(address_, 1, data1, Packet(64));
@@ -138,7 +137,7 @@ class HostileHost {
     std::array<std::byte, full_speed_packet_maximum> data;
     bus_.cable.in(address_, 0, data);
   }
-  /// Before configuration no endpoint may accept or send packets, except endpoint 0 OUT, which the core controls.
+  /// Returns true if any endpoint except endpoint 0 OUT can accept or send packets.
   bool any_endpoint_open() {
     constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, naksts = 1u << 17, epena = 1u << 31;
     const auto is_open = [this](std::uint32_t control) {
@@ -175,8 +174,7 @@ class HostileHost {
       setup(descriptor_request(kinds[first]));
       pause_s(between(0, 40e-6));
       if (random_() % 2 == 0) continue;
-      // A token completes the stage of this SETUP packet. The next SETUP packet arrives while the device prepares the
-      // answer.
+      // The next SETUP packet arrives while the device prepares the answer.
       random_() % 2 == 0 ? void(in(0, random_() % 2 == 0)) : void(out(0, true, {}));
       pause_s(between(0, 20e-6));
     }
@@ -211,7 +209,7 @@ class HostileHost {
     }
   }
 
-  // Excludes SET_ADDRESS, because the host would have to change the address as well.
+  // SET_ADDRESS is excluded, because this host does not change its address.
   void random_setup() {
     Setup packet;
     for (std::byte& one : packet) one = std::byte(random_() & 0xFF);

@@ -1,4 +1,4 @@
-// Tests the registers of the USB core as described in RM0090, and the reported violations by a driver.
+// Tests the registers of the USB core against RM0090, and the violations that the core reports.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -33,7 +33,7 @@ struct CoreBench {
   void write(std::uint32_t offset, std::uint32_t value) { core.write(offset, value, 4); }
   void wait_us(double time_us) { scheduler.run_until(scheduler.now() + virtual_board::ticks(time_us * 1e-6)); }
   InReply in(unsigned endpoint) { return core.in(0, endpoint, packet); }
-  /// Activates bulk endpoints 0x82 and 0x03, as after SET_CONFIGURATION.
+  /// Activates bulk endpoints 0x82 and 0x03, like SET_CONFIGURATION.
   void activate() {
     write(0x940, 1u << 28 | 2u << 22 | 2u << 18 | 1u << 15 | 64);
     write(0xB60, 1u << 28 | 2u << 18 | 1u << 15 | 64);

@@ -56,8 +56,8 @@ struct Measurement {
     last = pose;
   }
 
-  /// Moves the first encoder back and forth by one edge, at any phase of frames and control periods. The next edge
-  /// follows after the host has received the previous edge.
+  /// Moves the first encoder back and forth by one edge at random times. Each edge waits until the host has received
+  /// the previous edge.
   void plan_edge() {
     const Ticks pause = std::uniform_int_distribution<Ticks>(ticks_per_s / 10'000, ticks_per_s / 500)(random);
     bus.chip.connections().scheduler.at(bus.chip.now() + pause, [this] {
@@ -84,7 +84,7 @@ struct Measurement {
 
 constexpr std::uint16_t parameters_feature = 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::parameters);
 
-/// Repeatedly sets all parameters to their current values, for `time_s`.
+/// Sets all parameters to their current values repeatedly for `time_s`.
 void storm(FirmwareOnBus& bus, double time_s) {
   auto answer = bus.control(0xA1, 1, parameters_feature, 0, sizeof(protocol::ParametersReport));
   protocol::ParametersReport report{};

@@ -19,8 +19,8 @@ struct PoseTiming {
 
 enum class Beside { nothing, storm_of_parameters };
 
-/// Runs the firmware for `time_s` of board time. The host's clock deviates by `host_clock_ppm`, and the host also reads
-/// `scope_signals` signals. With `storm_of_parameters`, the host sets all parameters repeatedly.
+/// Runs the firmware for `time_s` of board time. The host's clock deviates by `host_clock_ppm`, and the host reads
+/// `scope_signals` signals in parallel. With `storm_of_parameters`, the host sets all parameters repeatedly.
 PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s,
                          std::uint8_t scope_signals, Beside beside = Beside::nothing);
 

@@ -1,4 +1,4 @@
-// Poses are synchronized to the bus, independent of the phase between host clock and control period.
+// Poses are synchronized to the bus for every phase between host clock and control period.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -12,7 +12,7 @@
 namespace inkwell::virtual_usb_test {
 
 TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none is old") {
-  // The clocks drift by more than half a millisecond, so that control periods and frames meet at every phase.
+  // The clocks drift by more than half a millisecond, so that every phase between control period and frame occurs.
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
     const PoseTiming timing = measure_poses(flashed_image(), host_clock_ppm, 1.5, 14);

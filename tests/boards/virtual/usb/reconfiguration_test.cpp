@@ -22,7 +22,6 @@ protocol::CommandReport clear_fault(std::uint8_t token) {
   return report;
 }
 
-/// The firmware with a host. The host reads and records poses and controller reports.
 struct Host {
   Host() : bus(flashed_image()) {
     bus.connect();
@@ -32,7 +31,7 @@ struct Host {
     };
   }
 
-  /// Configures the device and discards all pending requests, like a host.
+  /// Configures the device and discards all pending requests.
   void configure() {
     REQUIRE(bus.control(0x00, set_configuration, 1, 0, 0).status == 0);
     first_toggles.clear();
@@ -57,8 +56,7 @@ struct Host {
 TEST_CASE("a second configuration starts every data toggle again, whichever stood where") {
   Host host;
   std::uint8_t token = 0;
-  // The number of packets before a configuration differs between rounds. Therefore the data toggle
-  // has both values before a configuration.
+  // The rounds send different numbers of packets, so the data toggle has both values before a configuration.
   for (int round = 0; round < 4; ++round) {
     CAPTURE(round);
     host.configure();

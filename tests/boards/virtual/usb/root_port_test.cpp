@@ -156,7 +156,7 @@ TEST_CASE("a zero is stuffed after six ones of a data packet") {
   using virtual_board::stuffed_bits;
   CHECK(stuffed_bits(false, {}) == 0);
   CHECK(stuffed_bits(false, Bytes(64)) == 1);  // in the checksum
-  // The last two bits of the packet identifier are also 1 bits.
+  // The last two bits of the packet identifier continue the sequence of 1 bits.
   CHECK(stuffed_bits(false, Bytes(64, std::byte{0xFF})) == 512 / 6 + 1);
   CHECK(stuffed_bits(false, Bytes{std::byte{0xF8}, std::byte{0x01}}) == 1);
   CHECK(stuffed_bits(false, Bytes{std::byte{0xF0}, std::byte{0x01}}) == 0);

@@ -1,4 +1,4 @@
-// Tests several programs on the device of one virtual board.
+// Tests several programs that use one virtual board at the same time.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -78,7 +78,7 @@ TEST_CASE("numbers of transfers are each program's own, and a request that is ta
   CHECK(first.receive<usbip::ReturnUnlink>().status == -104);
   send_report(board, 33);
   CHECK(second.read_report() == 33);
-  // Without requests, a report waits for the next request.
+  // A report without a request waits for the next request.
   second.ask_for_report(9);
   second.unlink(10, 9);
   CHECK(second.receive<usbip::ReturnUnlink>().status == -104);

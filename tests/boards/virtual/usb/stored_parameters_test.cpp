@@ -1,5 +1,5 @@
 // The flashed firmware stores its parameters in the flash of the virtual chip. The stored parameters survive a power
-// loss at any word. Storing delays neither control interrupt nor poses nor watchdog.
+// loss at any word. Storing does not delay the control interrupt or the poses, and the watchdog does not expire.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -134,7 +134,7 @@ TEST_CASE("parameters that were stored hold after the power was off; others do n
   CHECK(report.out_of_range == 0);
   CHECK(report.stores_left == stores_left);
 
-  // Only a changed value needs space in the store.
+  // Unchanged values need no space in the store.
   CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
   CHECK(board.report().records_written == 1);
   board.set_stiffness(600.0f);
@@ -164,11 +164,11 @@ TEST_CASE("nothing is stored while the board tests itself") {
 
 namespace {
 
-/// Number of simulated results per interrupted operation.
+/// Each interrupted operation is tested with this number of possible flash contents.
 constexpr int tears = 4;
 constexpr std::size_t store_offset = 0x8000, sector_bytes = 0x4000;
 
-/// Log memory in the flash of a chip. The board would need hours to create these store contents.
+/// Writes directly to the chip's flash, because the firmware would need hours for these store contents.
 class StoreSectors final : public link::FlashMemory {
  public:
   explicit StoreSectors(Chip& chip) : words_(reinterpret_cast<std::uint32_t*>(chip.flash().data() + store_offset)) {}
@@ -216,7 +216,7 @@ void store_set(link::FlashLog& log, float stiffness, std::uint16_t schema = prot
 
 constexpr float stored_stiffness = 500.0f;
 
-/// Stores sets until there is space for exactly this number of complete records.
+/// Stores sets until the free space is exactly this number of records.
 void fill(Chip& chip, std::size_t (*left)(std::size_t room_of_blank)) {
   StoreSectors sectors(chip);
   link::FlashLog log;
@@ -269,8 +269,7 @@ const Contents before_an_erase[] = {
      default_stiffness},
 };
 
-/// A board and its parameters after start-up, read directly from memory. A request by the host would take a quarter of
-/// a second of board time.
+/// Starts a board and reads its parameters directly from memory. A USB request would take 0.25 s of board time.
 struct ObservedStarts {
   explicit ObservedStarts(const Contents& contents) {
     contents.make(board.bus.chip);
@@ -288,7 +287,7 @@ struct ObservedStarts {
     REQUIRE(held_at != 0);
   }
 
-  /// Returns the parameters at the first trigger of the converters, shortly after the store was read.
+  /// Returns the parameters when the converters are first triggered.
   std::vector<float> after_power_on(const StoreImage& flash) {
     Chip& chip = board.bus.chip;
     put(flash, chip);
@@ -363,8 +362,8 @@ std::vector<Word> words_of_a_store(StoringBoard& board) {
 
 }  // namespace
 
-// This test writes the result of a power cut directly to the flash, because only the flash survives a power cut. A
-// later test cuts the power of the chip, but needs one self-test per power cut.
+// This test writes the result of a power cut directly to the flash, because only the flash survives a power cut. A real
+// power cut would require a self-test at each word.
 TEST_CASE("a power cut at any word of a store leaves all of the old parameters or all of the new ones") {
   for (const Contents& contents : before_a_store) {
     CAPTURE(contents.name);
@@ -464,7 +463,7 @@ TEST_CASE("neither the control interrupt nor the poses are held up by a store, h
     REQUIRE(longest > 0);
     longest = 0;
     CHECK(board.carry_out(Command::store_parameters) == StoreResult::done);
-    // Poses are one millisecond apart, and bus activity may shift a pose within its frame.
+    // Two poses are up to 2 ms apart, because a pose may arrive anywhere in its frame.
     CHECK(longest < ticks(0.0021));
     const auto information = board.get<protocol::InformationReport>(ReportId::information);
     CHECK(information.servo_overruns == 0);

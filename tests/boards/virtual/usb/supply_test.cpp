@@ -1,5 +1,5 @@
-// Tests the flashed firmware during a slow supply loss with two brown-out levels: the documented level and the level of
-// a new chip.
+// Tests the flashed firmware during a slow supply loss, with the documented brown-out level and with the level of a new
+// chip.
 #include <doctest/doctest.h>
 
 #include "boards/omni_driver/facts.hpp"

@@ -28,7 +28,7 @@ class LiveBoard {
   void pause(bool paused) {
     call([&] { paused_ = paused; });
   }
-  /// Returns false if the device was not enumerated within a long time limit.
+  /// Returns false if the device is not enumerated in time.
   bool wait_until_enumerated();
 
   std::atomic<bool> is_ending = false;  ///< the result of `is_ending()` of the board
@@ -66,7 +66,7 @@ class UsbIpClient {
     const Bytes bytes = receive(sizeof(Message));
     return bytes.size() == sizeof(Message) ? usbip::read<Message>(bytes) : Message{};
   }
-  /// True if the server closed the connection without sending anything.
+  /// Returns true if the server closed the connection without sending a byte.
   bool closed() { return receive(1).empty() && closed_; }
 
   void ask_for_list();
@@ -75,7 +75,7 @@ class UsbIpClient {
   void submit(std::uint32_t sequence, unsigned endpoint, bool in, std::uint32_t length, Bytes out_data = {},
               std::array<std::uint8_t, 8> setup = {});
   void unlink(std::uint32_t sequence, std::uint32_t victim);
-  /// Returns the header of an answer to `submit`; all zeros if none arrived.
+  /// Returns the header of an answer to `submit`, or zeros if no answer arrived.
   usbip::ReturnSubmit read_reply() { return receive<usbip::ReturnSubmit>(); }
 
  private:
