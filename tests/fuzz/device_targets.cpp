@@ -32,7 +32,7 @@ const Registered parameter_file{
     },
     [] { return std::vector<Bytes>{bytes_of(device::format_parameters(protocol::default_parameters()))}; }};
 
-/// The first byte chooses the parser for the word.
+/// The first byte selects the parser of the text.
 const Registered words{"words", [](Input input) {
                          if (input.empty()) return;
                          const std::string word = text_of(input.subspan(1));
@@ -59,7 +59,7 @@ const Registered usb_descriptors{
 
 const Registered force_law{"force_law",
                            [](Input input) {
-                             // The memory of a joined force law is never freed, so only a limited number is joined.
+                             // The number of joined force laws is limited, because their memory is never freed.
                              static std::size_t joined = 0;
                              constexpr std::size_t joined_maximum = 100'000;
                              refuse_or_take<device::Error>([&] {
@@ -83,7 +83,7 @@ constexpr auto chosen_signals = [] {
   return selection;
 }();
 
-/// Frames of any length, each preceded by its length in two bytes.
+/// Each frame follows its length in two bytes.
 const Registered scope_frames{
     "scope_frames",
     [](Input input) {

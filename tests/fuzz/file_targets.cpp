@@ -29,7 +29,7 @@ const Registered campaign_result{
 
 /// The recording is read from memory, because file accesses would take most of the time.
 const Registered recording_csv{"recording_csv", [](Input input) {
-                                 // A joined force law is never freed, so only the first force laws are joined.
+                                 // Only the first force laws are joined, because their memory is never freed.
                                  static std::size_t laws = 0;
                                  constexpr std::size_t laws_maximum = 1000;
                                  std::string text = text_of(input);
@@ -58,7 +58,7 @@ const Registered signal_names{"signal_names", [](Input input) {
                                 refuse_or_take<device::Error>([&] { recording::parse_quantities(text_of(input)); });
                               }};
 
-/// A report, followed by all rows that fit into the input.
+/// The input is a report and black-box rows.
 const Registered black_box{"black_box",
                            [](Input input) {
                              protocol::BlackBoxReport report;
@@ -109,7 +109,7 @@ const Registered firmware_image{"firmware_image",
                                   return std::vector<Bytes>{tests::made_elf(tests::made_segments(identity))};
                                 }};
 
-/// A boot loader's description of its memory.
+/// The input is a boot loader's memory description.
 const Registered memory_layout{"memory_layout",
                                [](Input input) {
                                  const auto sectors = firmware_update::parse_memory_layout(text_of(input));
@@ -123,7 +123,7 @@ const Registered memory_layout{"memory_layout",
                                      bytes_of("@Option Bytes  /0x1FFFC000/01*016 e")};
                                }};
 
-/// A formula of a user. If the formula is accepted, it can be evaluated.
+/// Each accepted formula is evaluated.
 const Registered typed_formula{"formula",
                                [](Input input) {
                                  window::Formula formula{.name = "typed", .text = text_of(input), .unit = "1"};

@@ -1,5 +1,5 @@
 // Fuzz target for the flash content of the parameter store. An earlier firmware, an interrupted write or a worn chip
-// can cause any content.
+// can leave any content in the flash.
 #include <cstring>
 #include <stdexcept>
 
@@ -14,14 +14,14 @@ namespace {
 constexpr std::array<std::uint8_t, 3> version{1, 0, 0};
 constexpr std::size_t sector_words = 600;  // small, because erased words would take most of the time
 
-/// Fills the beginnings of both sectors with the raw input.
+/// Fills the first bytes of both sectors with the raw input.
 void fill(test::PlainFlash& flash, Input input) {
   const std::size_t half = input.size() / 2;
   std::memcpy(flash.sectors[0].data(), input.data(), std::min(half, 4 * sector_words));
   std::memcpy(flash.sectors[1].data(), input.data() + half, std::min(input.size() - half, 4 * sector_words));
 }
 
-/// A complete record with any header and payload.
+/// Writes a complete record with any header and payload.
 void write_record(test::PlainFlash& flash, Input input) {
   link::RecordHead head{};
   if (input.size() < sizeof head) return;

@@ -1,4 +1,4 @@
-// Connects one target to libFuzzer, which contains main().
+// Connects one fuzz target to libFuzzer; main() is part of libFuzzer.
 // `inkwell-fuzz TARGET [libFuzzer's options] [FOLDER...]` fuzzes and saves inputs that reach new code in FOLDER.
 // `inkwell-fuzz --list` prints the targets.
 // `inkwell-fuzz --seeds TARGET FOLDER` writes the target's seeds as raw input.
@@ -41,7 +41,7 @@ void write_seeds(const std::string& target, const std::filesystem::path& folder)
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
-  // The fake port's checks need a doctest context outside a test.
+  // The fake port uses doctest checks, which need a context outside a test case.
   static doctest::Context context;
   context.setAsDefaultForAssertsOutOfTestCases();
   context.setAssertHandler([](const doctest::AssertData& failed) {

@@ -1,5 +1,5 @@
 // HDF5 recordings. The input chooses the declarations in a valid file, so that every declaration of the format is
-// tried. Damaged bytes would mostly test the HDF5 library itself.
+// tried. Random bytes would mostly test the HDF5 library.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 using recording::Handle;
 
-/// Chooses options from the input bytes. After the last input byte the result is 0, the option of a valid recording.
+/// Chooses options from the input bytes. When the input is used up, each choice is 0, the option of a valid recording.
 class Choices {
  public:
   explicit Choices(Input left) : left_(left) {}
@@ -89,7 +89,7 @@ Handle chosen_space(Choices& choices, Rank wanted) {
   }
 }
 
-/// Returns arbitrary values for this space, or nothing if the space is too large.
+/// Returns arbitrary bytes for this dataspace, or an empty string if it is too large.
 std::string values_of(hid_t type, hid_t space) {
   constexpr std::uint64_t bytes_maximum = 65'536;
   const auto count = static_cast<std::uint64_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));

@@ -1,4 +1,4 @@
-// Stored inputs: one of each kind, and every input that once broke the code.
+// Seeds are typical inputs and all inputs that once caused a failure.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,9 @@ struct Seed {
   Bytes bytes;
 };
 
-/// The target's examples, then the files of the target's folder, sorted by name. A file NAME.hex contains hexadecimal
-/// digits with spaces and '#' comments; other files are raw bytes. Throws std::runtime_error if a file cannot be read.
+/// Returns the target's examples, and then the files of the target's folder in the order of their names. A file
+/// NAME.hex contains hexadecimal digits with spaces and '#' comments. All other files contain raw bytes. Throws
+/// std::runtime_error if a file cannot be read.
 std::vector<Seed> seeds_of(const Target& target);
 
 /// Throws std::runtime_error if the file cannot be read.

@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-/// The first byte chooses between device list, import and transfers. Transfers are a script with four kinds of steps:
-/// an IN or OUT transfer with its length in two bytes, the cancellation of a transfer, or an answer.
+/// The first byte selects device list, import or transfers. The input for transfers is a script of IN transfers, OUT
+/// transfers, cancellations and answers.
 const Registered usbip_answers{
     "usbip_answers", [](Input input) {
       const auto next = [&](std::size_t size) {

@@ -1,13 +1,10 @@
-// A fuzz target exists for all code of firmware and companion that reads external data. A target is one function that
-// accepts any bytes. A target may throw only the documented exceptions of its parser.
+// Each part of firmware and companion that reads external data has a fuzz target. A target is one function that accepts
+// any bytes. A target may throw only the documented exceptions of its parser.
 #pragma once
 
-// To add a target:
-// 1. Write a function that accepts any bytes and catches only the documented error of the parser.
-//    Register the function with `Registered` in a file of this folder.
-// 2. Add a row to docs/fuzzing.md.
-// 3. Store each input that broke the parser in seeds/TARGET, as raw bytes or as hexadecimal digits with the suffix
-//    .hex.
+// A new target needs a function that accepts any bytes and catches only the documented error of the parser. Register
+// the function with `Registered` in a file of this folder. Add a row to docs/fuzzing.md. Store each input that broke
+// the parser in seeds/TARGET, as raw bytes or as hexadecimal digits with the suffix .hex.
 
 #include <cstddef>
 #include <span>
@@ -40,7 +37,7 @@ struct Registered {
   }
 };
 
-/// The target with this name, or null.
+/// Returns the target with this name, or nullptr.
 inline const Target* find(std::string_view name) {
   for (const Target& target : targets())
     if (target.name == name) return &target;

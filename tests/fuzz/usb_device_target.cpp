@@ -6,7 +6,7 @@
 namespace inkwell::fuzz {
 namespace {
 
-/// Each byte is one step of the host. The upper bits of the byte choose how much of the following input the step uses.
+/// Each byte is one step of the host. The upper bits of a byte set how many input bytes the step uses.
 void host(Input input) {
   test::DeviceBench bench;
   const auto take = [&](std::size_t most) {
@@ -26,8 +26,7 @@ void host(Input input) {
         bench.port.in(0);
         bench.device.poll();
         break;
-      // The time is usually less than one bus frame (20 control periods), because control periods take most of the run
-      // time.
+      // Most steps are shorter than one bus frame, because control periods take most of the run time.
       case 4: bench.run(argument < 12 ? argument + 1 : 20 * (argument - 11)); break;
       case 5: bench.port.frames_run = argument % 2 == 0; break;
       case 6:
@@ -57,7 +56,7 @@ void host(Input input) {
       default: bench.device.poll(); break;
     }
   }
-  // The device must still enumerate after any input.
+  // The device must enumerate after any input.
   bench.port.reset();
   bench.device.poll();
   if (bench.get_descriptor(0x0100, 18).data.size() != 18) throw std::logic_error("the device does not enumerate");

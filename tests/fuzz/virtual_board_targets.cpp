@@ -34,7 +34,7 @@ void check_pin(const PinName& pin) {
   if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
 }
 
-/// Reads all values that the server parses before it passes a request to the board.
+/// Reads all values that the server reads from a request.
 void read_values(Command command, const json& values) {
   switch (command) {
     case Command::run: run_time_s(values); break;
@@ -93,7 +93,7 @@ const Registered control_requests{
       });
     }};
 
-/// Fuzz target for firmware images of a virtual board. The memories still contain the previous images.
+/// Fuzz target for firmware images of a virtual board. The memory is not cleared between two images.
 const Registered board_image{"board_image",
                              [](Input input) {
                                static Memory memory;
@@ -107,13 +107,13 @@ const Registered board_image{"board_image",
                              },
                              [] { return std::vector<Bytes>{tests::made_elf(tests::made_segments({}))}; }};
 
-/// The text of a command line or of a fault script.
+/// The input is a command line or a fault script.
 const Registered injections{
     "injections", [](Input input) {
       refuse_or_take<InvalidInjection>([&] { parse_injections(text_of(input), board::default_board); });
     }};
 
-/// Passes the bytes to `take` in pieces of at most this length, as a socket might.
+/// Passes the bytes to `take` in pieces of at most this length.
 template <class Take>
 void in_pieces(std::string_view bytes, std::size_t most, Take take) {
   for (; !bytes.empty(); bytes.remove_prefix(std::min(most, bytes.size()))) take(bytes.substr(0, most));
@@ -139,7 +139,7 @@ void note(std::string& seen, const Urb& urb) {
   for (const auto& packet : urb.packets) note(seen, {packet.offset, packet.length});
 }
 
-/// All requests in a client's bytes, parsed as in the server: operations until an import, then transfers.
+/// Parses the bytes of a client like the server and returns the found requests.
 std::string found_in(std::string_view bytes, std::size_t piece) {
   std::string seen;
   UsbIpRequests requests;
@@ -177,7 +177,7 @@ std::string found_in(std::string_view bytes, std::size_t piece) {
   return seen;
 }
 
-/// Joins messages into an input that is processed in pieces of one byte.
+/// Returns the messages as an input with a piece length of one byte.
 template <class... Messages>
 Bytes one_by_one(const Messages&... messages) {
   Bytes bytes = tests::joined(messages...);
@@ -194,7 +194,6 @@ std::vector<Bytes> usbip_examples() {
   out.header.direction = usbip::Direction::out;
   out.header.endpoint = 1;
   out.packet_count = 1;
-  // The content of the data has no meaning.
   const usbip::IsochronousPacket data{.offset = 1, .length = 2}, packet{.offset = 3, .length = 4};
   out.length = sizeof data;
   usbip::Unlink unlink{.unlinked_sequence = 1};
@@ -250,7 +249,7 @@ struct Checked {
 
 void check_packet(std::string_view packet) { std::visit(Checked{packet.size()}, gdb::request_of(packet)); }
 
-/// The payloads of all packets, one per line.
+/// Returns the payloads of all packets, one per line.
 std::string packets_in(std::string_view bytes, std::size_t piece) {
   std::string found;
   GdbPackets packets;
@@ -296,8 +295,8 @@ std::vector<Bytes> gdb_examples() {
   return all;
 }
 
-/// If the first byte is 0, the input is one packet without its frame. Otherwise the input is a byte stream, and the
-/// first byte is the length of the pieces.
+/// A first byte of 0 marks a single packet without a frame. Any other first byte is the length of the pieces of a byte
+/// stream.
 const Registered gdb_requests{
     "gdb_requests",
     [](Input input) {

@@ -19,7 +19,7 @@ using protocol::ForceMode;
 using protocol::Signal;
 using protocol::State;
 
-/// An upward force of 0.5 N, without a ramp and far below the force limit.
+/// The law's force of 0.5 N points up and has no ramp.
 Settings settings_with_law() {
   protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
   set[protocol::Parameter::force_ramp_s] = 0.0f;

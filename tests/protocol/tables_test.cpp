@@ -1,4 +1,4 @@
-// Tables that firmware and host share: completeness, unique names, and hashes that detect a change.
+// Tests the tables of firmware and host: completeness, unique names and hashes.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -208,7 +208,7 @@ TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash"
   const std::array one_row{SignalInfo{3, "name", "unit", SignalWire::duty_int16, ""}};
   CHECK(detail::hash_signals(one_row) ==
         detail::fnv1a(detail::fnv1a(detail::hash_number(2166136261u, 3 + 2 * 256), "name"), "unit"));
-  // Every byte of a number affects the hash, and adjacent texts are not merged.
+  // The hash depends on every byte of a number and on the boundaries between texts.
   for (const std::uint32_t bit : {0u, 8u, 16u, 31u})
     CHECK(detail::hash_number(2166136261u, 1u << bit) != detail::hash_number(2166136261u, 0));
   CHECK(detail::fnv1a(detail::fnv1a(1, "ab"), "c") != detail::fnv1a(detail::fnv1a(1, "a"), "bc"));

@@ -17,7 +17,7 @@ std::uint32_t call(Operation operation, const void* parameters) {
   return r0;
 }
 
-/// Returns the handle of the simulator's standard output: name ":tt", mode 4 for writing.
+/// Returns a handle of the simulator's standard output (":tt" in mode 4).
 std::uint32_t standard_output() {
   static const struct {
     const char* name;

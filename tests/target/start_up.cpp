@@ -25,7 +25,7 @@ int run_tests();
   inkwell::semihosting::exit(99);
 }
 
-// Identifies the image for destructors of static objects. There is only one image.
+// The C++ runtime requires this handle for the destructors of static objects.
 void* __dso_handle = nullptr;
 
 // __libc_init_array calls these functions. The functions are empty, because all constructors are in the init array.

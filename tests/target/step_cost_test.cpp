@@ -1,5 +1,5 @@
-// Instructions per step of the controller on the Cortex-M4F. QEMU executes one instruction per nanosecond, so SysTick
-// counts instructions in units of 168 MHz / 1 GHz.
+// Instructions per step of the controller on the Cortex-M4F. QEMU executes one instruction per nanosecond, and SysTick
+// counts with 168 MHz.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/control/arms.hpp"
@@ -16,7 +16,7 @@ class InstructionCounter {
     reload() = 0xFFFFFF;
     value() = 0;
     control() = 5;
-    // A loop with a known number of instructions provides the scale.
+    // A loop with a known number of instructions calibrates the counter.
     constexpr std::uint32_t rounds = 50'000;
     const std::uint32_t begin = ticks();
     std::uint32_t left = rounds;
@@ -41,8 +41,8 @@ class InstructionCounter {
   float instructions_per_tick_;
 };
 
-/// Stage clock of the controller in SysTick ticks. The stage clock costs as much as the board's clock, which also reads
-/// a counter.
+/// Measures the controller's stages in SysTick ticks. Reading this clock costs about as much as reading the board's
+/// clock.
 struct StageClock {
   const InstructionCounter& counter;
   std::uint32_t begin = counter.ticks();
@@ -54,8 +54,8 @@ struct StageClock {
   }
 };
 
-/// The box is far from the arm, so every step has contact with three walls and reaches the force limit. No motors are
-/// simulated, so no current flows although the joints move.
+/// The box is far from the arm, so every step has contact with three walls and reaches the force limit. The joints move
+/// without current, because the motors are not simulated.
 protocol::ParameterSet parameters_out_of_box() {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
@@ -81,7 +81,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2400 instr
   constexpr int steps = 400;
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
-    // The longest search of the velocity windows occurs with an edge in two of three periods on every joint.
+    // The search in the velocity windows is longest if each joint has an edge in two of three periods.
     for (std::int32_t& counts : samples.encoder_counts) counts += i % 3 != 0 ? 1 : 0;
     StageClock clock{counter};
     const std::uint32_t begin = counter.ticks();
@@ -100,8 +100,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2400 instr
   CHECK(controller.signals()[protocol::Signal::force_N] > 0.0f);
   CHECK(controller.signals()[protocol::Signal::joint_speed_3_rad_s] > 0.0f);
   CHECK(longest > 300.0f);
-  // QEMU counts instructions. The virtual board counts cycles, and a test with the complete firmware checks the
-  // duration of the interrupt.
+  // QEMU counts instructions. A test with the complete firmware checks the duration of the interrupt in cycles.
   CHECK(longest < 2400.0f);
 }
 

@@ -12,7 +12,7 @@ namespace {
 using namespace inkwell;
 using namespace inkwell::tests::controller_names;
 
-/// Moves joint 2 back and joint 3 up, so that the probe moves outward along x below the speed limit.
+/// Moves joints 2 and 3 so that the probe moves outward along x, more slowly than the speed limit.
 void push_into_wall(Controller& controller, Samples& samples, const Settings& settings) {
   for (int i = 0; i < 100; ++i) {
     if (i % 2 == 0) --samples.encoder_counts[1];
@@ -90,7 +90,7 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::torque_3_Nm] == torque[2]);
   CHECK(signals[Signal::current_reference_3_A] == doctest::Approx(torque[2] * settings.motors.ampere_per_Nm[2]));
   CHECK(signals[Signal::velocity_x_m_s] == 0.0f);
-  // No current flows in this test, so the current loops apply the maximum voltage in the direction of the reference.
+  // No current flows in this test, so the current loops apply the maximum voltage.
   CHECK(signals[Signal::duty_2] * signals[Signal::current_reference_2_A] > 0.0f);
   CHECK(std::abs(signals[Signal::duty_2]) ==
         doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-3));

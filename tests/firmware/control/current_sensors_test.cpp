@@ -167,7 +167,7 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   samples.current_A[1] = lowered_A - 0.01f;
   run_with_host(controller, samples, settings, 300);
   CHECK(controller.force_is_on());
-  // The raised limit applies immediately, before the current rises.
+  // A raised current limit applies immediately.
   settings.limits.over_current_A[1] = current_A + 0.01f;
   run_with_host(controller, samples, settings, 3);
   samples.current_A[1] = current_A;

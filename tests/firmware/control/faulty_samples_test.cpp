@@ -13,7 +13,7 @@ namespace {
 using namespace inkwell;
 using namespace inkwell::tests::controller_names;
 
-/// Each of these samples must switch off an active controller in the same period.
+/// Each sample must switch an active controller off in the same period.
 struct BadSample {
   Fault fault;
   void (*spoil)(Samples&);
@@ -102,7 +102,7 @@ TEST_CASE("a joint beyond its stop is told, the elbow by its angle between the l
       CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] - beyond_rad)) == Fault::none);
       CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] + beyond_rad)) == Fault::encoder_implausible);
     }
-    // With joints 2 and 3 at the same end, the third joint of a parallelogram is far beyond the elbow's stops.
+    // Joints 2 and 3 may reach the same end together.
     for (const auto& ends_rad : {lower_rad, upper_rad}) {
       const float inward_rad = ends_rad == lower_rad ? beyond_rad : -beyond_rad;
       CHECK(fault_at(settings, {middle_rad[0], ends_rad[1] + inward_rad, ends_rad[2] + inward_rad}) == Fault::none);
@@ -176,7 +176,7 @@ TEST_CASE("a motor that was hot before a restart is as hot after it, and goes on
   CHECK(controller.motor_heat()[1] == doctest::Approx(0.5f * housing).scale(0).epsilon(0.01));
   CHECK(controller.motor_heat()[2] == doctest::Approx(0.125f * (winding + housing)).scale(0).epsilon(0.01));
 
-  // A hot motor must cool to the same temperature after a restart as without a restart.
+  // A restart must not change the cooling of a hot motor.
   Controller hot{tests::board_limits};
   hot.start_warm({{1.1f, 0.0f, 0.0f}, {1.1f, 0.0f, 0.0f}, 1});
   CHECK(hot.warmth().too_hot == 1);

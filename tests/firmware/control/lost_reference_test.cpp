@@ -1,4 +1,4 @@
-// Detection of wrong encoder counts. After wrong counts the reference is invalid, whichever fault is reported. The
+// Detection of wrong encoder counts. Wrong counts invalidate the reference, independent of the reported fault. The
 // reference becomes valid only after the inkwell switch has opened and closed again.
 #include <doctest/doctest.h>
 
@@ -32,7 +32,7 @@ Settings free_space(protocol::ParameterSet set = tests::omni_parameters()) {
   return control::prepare(set);
 }
 
-/// Maximum speed of an arm with the force on.
+/// At this speed the arm may move with the force on.
 constexpr std::int32_t step_counts = 1;
 constexpr std::uint32_t step_periods = 4;
 
@@ -160,7 +160,7 @@ TEST_CASE("a switch that was closed elsewhere gives no reference before it was s
   tests::run(controller, samples, settings, rest_periods);
   REQUIRE(controller.fault() == Fault::inkwell_implausible);
   REQUIRE(state_after_clearing(controller, samples, settings) == State::unreferenced);
-  // The wire is still shorted to ground, and the arm rests at several positions.
+  // The short circuit to ground remains while the arm rests at several positions.
   for (const std::int32_t counts : {600, 900, 0}) {
     tests::move_to(controller, samples, {counts, 0, 0}, settings, step_counts, step_periods);
     tests::run(controller, samples, settings, 3 * rest_periods);

@@ -1,4 +1,4 @@
-// An arm with a host. The host sends signs of life. The inkwell is near a wall.
+// An arm whose inkwell is near a wall.
 #pragma once
 
 #include "tests/firmware/control/arms.hpp"
@@ -6,7 +6,7 @@
 
 namespace inkwell::tests {
 
-/// The paper's arm in a box without damping. The inkwell's pose is 2 mm inside the upper x wall.
+/// Settings of the paper's arm with undamped walls. The inkwell's pose is 2 mm inside the upper x wall.
 inline control::Settings settings_near_wall() {
   using enum protocol::Parameter;
   protocol::ParameterSet set = without_motors(paper_parameters());

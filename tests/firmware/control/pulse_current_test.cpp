@@ -14,7 +14,7 @@ using protocol::Fault;
 
 Settings plain_settings() { return control::prepare(tests::paper_parameters()); }
 
-/// Controller a few control periods after the start of the pulses.
+/// Returns a controller that has just started the pulses.
 Controller controller_in_pulses(const Settings& settings) {
   Controller controller = tests::ready_controller(settings);
   tests::run(controller, tests::samples_at_rest(), settings, 300);

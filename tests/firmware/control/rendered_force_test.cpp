@@ -31,7 +31,7 @@ protocol::ParameterSet parameters_in_wall() {
   return set;
 }
 
-/// A board with a stationary arm, after the force ramp.
+/// A board with a stationary arm at full force.
 struct StillArm {
   protocol::ParameterSet parameters = parameters_in_wall();
   control::Settings settings = control::prepare(parameters);
@@ -135,7 +135,7 @@ TEST_CASE("a program that replaces the walls, and returns to them, is felt witho
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   arm.drive({}, ForceMode::instead_of_walls);
   arm.run(800);
-  // The program stops sending. After the program's force has expired, only the wall force remains.
+  // The program stops sending. The program's force expires, and the wall force remains.
   CHECK(arm.largest_step_N(100) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
   CHECK(arm.controller.force_sources() == bit(ForceSource::walls));

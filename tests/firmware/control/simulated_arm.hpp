@@ -12,7 +12,7 @@
 
 namespace inkwell::tests {
 
-/// Each stage takes one more cycle than the previous stage: 1, 2, 3, ...
+/// Each stage takes one cycle more than the previous stage.
 struct FakeClock {
   std::uint32_t laps = 0;
   std::uint32_t lap() { return ++laps; }
@@ -41,7 +41,8 @@ inline protocol::CommandReport command(protocol::Command which) {
   return report;
 }
 
-/// For tests without motor currents. The low voltage limit prevents the detection of a missing motor.
+/// Returns the parameters for tests in which no motor current flows. The low voltage limit prevents the detection of a
+/// missing motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
   set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorCheck::tolerance_V;
   return set;
@@ -68,7 +69,8 @@ inline std::array<std::int32_t, 3> counts_at(const control::Triple& joint_rad, c
   return counts;
 }
 
-/// Moves to these counts in steps of at most `step_counts` per `step_periods`. The host sends signs of life.
+/// Moves to these counts in steps of at most `step_counts` per `step_periods`. The host sends signs of life during the
+/// move.
 inline void move_to(control::Controller& controller, control::Samples& samples,
                     const std::array<std::int32_t, 3>& there_counts, const control::Settings& settings,
                     std::int32_t step_counts = 15, std::uint32_t step_periods = 1) {
@@ -92,7 +94,7 @@ inline control::Controller started_controller(const control::Settings& settings,
   return controller;
 }
 
-/// Controller in state `ready`: referenced at counts of zero, with the stylus out of the inkwell.
+/// Returns a controller in state `ready` whose reference counts are zero. The stylus is outside the inkwell.
 inline control::Controller ready_controller(const control::Settings& settings,
                                             const control::MeasuredMotors& measured = {},
                                             std::uint32_t first_period = 0) {

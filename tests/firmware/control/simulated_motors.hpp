@@ -1,4 +1,4 @@
-// Three motors at rest with bridges and shunts, for tests with pulses.
+// Three motors at rest with bridges and shunts.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ class SimulatedMotors {
   std::array<SimulatedMotor, 3> motors;
 
  private:
-  // The dead time reduces the driving voltage, and suppresses a small voltage completely.
+  // The dead time reduces the driving voltage and suppresses small voltages.
   static void advance(SimulatedMotor& motor, float voltage_V) {
     motor.back_emf_V += motor.back_emf_V_per_s * protocol::servo_period_s;
     if (motor.is_open) return;

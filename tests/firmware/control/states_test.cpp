@@ -26,7 +26,7 @@ protocol::ParameterSet parameters() {
   return set;
 }
 
-/// A box far from the arm. The wall force would exceed the force limit.
+/// The box is far from the arm, so the wall force reaches the force limit.
 Settings held_back() {
   protocol::ParameterSet set = parameters();
   set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = 0.4f;

@@ -1,4 +1,4 @@
-// Test pulses of one motor, and their stop conditions.
+// Tests the test pulses of one motor and the conditions that stop a pulse.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   }
 }
 
-/// Hand force that balances the torque of one motor only: J' F = torque, by Cramer's rule.
+/// Returns the hand force that balances the torque of one motor, from J' F = torque by Cramer's rule.
 double held_N(const control::Jacobian& jacobian, std::size_t motor, double torque_Nm) {
   const auto column = [&](std::size_t i) {
     const control::Vector3& v = jacobian.column[i % 3];
@@ -115,7 +115,7 @@ TEST_CASE(
       applied_V = drive.enabled ? drive.duty[1] * samples.supply_V : 0.0f;
     }
     CHECK(controller.state() == State::ready);
-    // The current is measured one period late, and the reaction follows one period later.
+    // The current exceeds the limit for two periods: one for the measurement and one for the reaction.
     CHECK(largest_A < limit_A + 2.0f * amplitude_V * protocol::servo_period_s / inductance_H);
     CHECK(largest_A > 0.9f * std::min(limit_A, amplitude_V / resistance_ohm));
   }
@@ -163,7 +163,7 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
         doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-4));
 }
 
-/// Sensor reading: the amplifier saturates 0.2 V below its rails, here at 3.6 A.
+/// The current sensor saturates at 3.6 A.
 float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
 
 TEST_CASE("a current that its sensor cannot show trips within two control periods, at the largest limit too") {

@@ -68,7 +68,7 @@ struct TurningArm {
   bool reached(Limit limit) const { return protocol::is_reached(limits, limit); }
 };
 
-/// Returns a force with or against the motion; zero at rest.
+/// Returns a force with or against the motion, or zero at rest.
 inline Vector3 along(const Vector3& velocity_m_per_s, float force_N) {
   const float speed_m_per_s = std::sqrt(dot(velocity_m_per_s, velocity_m_per_s));
   return speed_m_per_s > 0.01f ? (force_N / speed_m_per_s) * velocity_m_per_s : Vector3{};

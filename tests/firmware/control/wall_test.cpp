@@ -1,6 +1,6 @@
 // Tests the controller in a closed loop with a simulated arm. The arm has motors with winding and back-EMF, joints with
 // inertia and friction, and encoders. A simulated hand pulls the probe to a target. The inertia is constant and gravity
-// is omitted; the virtual board simulates both.
+// is omitted, unlike on the virtual board.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ class SimulatedArm {
   Triple current_A_{};
 };
 
-/// Measurements of one push, as reported by the device.
+/// Measured values of one push.
 struct Push {
   float largest_force_N = 0.0f;
   float deepest_m = 0.0f;
@@ -89,7 +89,7 @@ struct Push {
   protocol::State state;
 };
 
-/// The hand moves 14 mm along x in 0.3 s, the last 10 mm beyond the wall, and then stops.
+/// In 0.3 s the hand moves 14 mm along x and stops 10 mm beyond the wall surface.
 Push push_against_wall(protocol::ParameterSet parameters) {
   parameters[Parameter::sphere_radius_m] = 0.0f;
   parameters[Parameter::force_ramp_s] = 0.02f;
@@ -127,7 +127,7 @@ Push push_against_wall(protocol::ParameterSet parameters) {
     if (period < move_periods + settle_periods) continue;
     push.lowest_steady_m = std::min(push.lowest_steady_m, signals[Signal::position_x_m]);
     push.highest_steady_m = std::max(push.highest_steady_m, signals[Signal::position_x_m]);
-    // The mean is used, because the reference alternates continuously when the probe rests between two counts.
+    // The reference alternates when the probe rests between two counts, so the test evaluates the mean error.
     push.current_error_A +=
         (signals[Signal::current_1_A] - signals[Signal::current_reference_1_A]) / static_cast<float>(steady_periods);
   }

@@ -14,7 +14,6 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard",
             "-fno-exceptions", "-fno-rtti", "-I", REPOSITORY / "firmware/application"]
 
-# Headers of the firmware, and a driver that uses their peripherals.
 HEADERS = """
 #include "firmware/application/parts.hpp"
 #include "firmware/drivers/interrupts.hpp"

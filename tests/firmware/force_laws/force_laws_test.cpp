@@ -12,7 +12,7 @@ namespace {
 using namespace inkwell;
 using namespace inkwell::force_laws;
 
-/// Runs a law with the default values of its parameters, one step per control period.
+/// Steps a force law once per control period with its default parameters.
 template <class Law>
 struct Stepped {
   typename Law::Parameters parameters{};
@@ -87,12 +87,12 @@ TEST_CASE("a dial counts its notches there and back, and pulls to the middle of 
   const Vector3 begin_m{law.parameters.x_m + radius_m, law.parameters.y_m, 0.0f};
   law.probe.position_m = begin_m;
   CHECK(law.step() == Vector3{});
-  // After a quarter of a notch, the force is largest and points back.
+  // At a quarter of a notch, the force is largest and opposes the motion.
   const Vector3 quarter_m = begin_m + Vector3{0.0f, 0.25f * law.parameters.notch_m, 0.0f};
   CHECK(law.move(quarter_m, 200).y == doctest::Approx(-law.parameters.force_N).epsilon(0.01));
   law.move(begin_m + Vector3{0.0f, 0.8f * law.parameters.notch_m, 0.0f}, 400);
   CHECK(law.signals.passed_notches == 1.0f);
-  // Because of hysteresis, the notch count does not decrease yet.
+  // Hysteresis keeps the notch count unchanged.
   law.move(begin_m + Vector3{0.0f, 0.45f * law.parameters.notch_m, 0.0f}, 400);
   CHECK(law.signals.passed_notches == 1.0f);
   law.move(begin_m, 400);
@@ -112,7 +112,7 @@ TEST_CASE("generated C code keeps its state: the mass swings, comes to rest at t
     law.step();
     fastest_m_per_s = std::fmax(fastest_m_per_s, law.signals.speed_m_per_s);
   }
-  // The peak speed is x sqrt(k / m), slightly reduced by the damping.
+  // Without damping the peak speed would be x sqrt(k / m).
   CHECK(fastest_m_per_s == doctest::Approx(0.005 * std::sqrt(200.0 / 0.2)).epsilon(0.15));
   CHECK(law.signals.speed_m_per_s < 1e-3f);
   law.state = {};

@@ -1,5 +1,5 @@
-// One Link object for all tests, constructed again for each test, because its scope frames fill half of the chip's
-// memory. The black box of the Link object has fewer rows than on the board, to save memory.
+// All tests share one Link object, because its scope frames fill half of the chip's memory. The black box of the Link
+// object has fewer rows than on the board, to save memory.
 #pragma once
 
 #include <cstdint>

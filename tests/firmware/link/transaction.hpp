@@ -33,7 +33,7 @@ inline protocol::ParameterEntry entry(protocol::Parameter parameter, float value
   return {protocol::info(parameter).id, 0, value};
 }
 
-/// Returns a report filled with 0xFF, like a reused buffer of the board.
+/// Returns a report whose bytes are all 0xFF.
 inline protocol::ParametersReport spoiled_report() {
   std::array<std::byte, sizeof(protocol::ParametersReport)> bytes;
   bytes.fill(std::byte{0xFF});

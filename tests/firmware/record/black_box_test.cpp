@@ -1,4 +1,4 @@
-// Tests the black box, also across resets.
+// Tests the black box, including its content after resets.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -39,7 +39,7 @@ protocol::RequestResult result_of(const protocol::BlackBoxRowsReport& report) {
   return static_cast<protocol::RequestResult>(report.result);
 }
 
-/// A board with memory for the record; the memory survives restarts. Each run has a new sample ring, from fresh_link().
+/// The memory of the record survives restarts of the board. Each start creates a new sample ring with fresh_link().
 struct Board {
   link::BlackBoxMemory<rows_before, rows_from_fault> memory{};
   link::SampleRing* samples = nullptr;
@@ -100,7 +100,7 @@ struct Board {
 
 using Periods = std::vector<std::uint32_t>;
 
-/// Raises a fault in period 1007 and records all rows after it.
+/// Raises a fault in period 1007 and records all later rows.
 void meet_fault(Board& board, Fault fault = Fault::supply_low) {
   board.run(1007, State::active);
   board.run(3 * step + 1, State::fault, fault);
@@ -185,7 +185,7 @@ TEST_CASE("a late main loop misses rows but neither the fault's period nor anybo
     CHECK(board.box->report().fault_periods == 1007);
     CHECK(board.periods() == around_fault);
   }
-  // The main loop is so late that the interrupt has overwritten samples.
+  // The main loop is late, so the interrupt has overwritten samples.
   Board board;
   for (int i = 0; i < 20; ++i) {
     board.pass(51, State::active);
@@ -332,7 +332,7 @@ TEST_CASE("memory after power-up is never taken for a black box") {
     if (i % 3 != 2) {
       fill(board.memory);
     } else {
-      // Random memory may follow a matching hash of the tables.
+      // The hash of the tables matches, but the memory after the hash is random.
       fill(board.memory.notes.cause);
       fill(board.memory.ring);
       fill(board.memory.line);
@@ -374,7 +374,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
       const std::size_t before = board.box->report().rows_before;
       REQUIRE(before <= rows_before);
       CHECK(board.box->report().fault_periods == (is_kept ? 1007 : periods.empty() ? 0 : 1000));
-      // The remaining rows are consecutive on both sides of the fault.
+      // The retained rows are consecutive before and after the fault.
       REQUIRE(periods.size() - before <= expected.size() - rows_before);
       for (std::size_t i = 0; i < periods.size(); ++i)
         CHECK(periods[i] == expected[i < before ? rows_before - before + i : rows_before + i - before]);
@@ -385,7 +385,7 @@ TEST_CASE("a flipped bit costs rows or the black box, and is never shown") {
 TEST_CASE("rows of an image with other tables are not shown by this one") {
   Board board;
   meet_fault(board);
-  // The same memory is read with the layout for another number of rows.
+  // Reads the memory with a layout that has another number of rows.
   auto& other = reinterpret_cast<link::BlackBoxMemory<rows_before - 1, rows_from_fault + 1>&>(board.memory);
   link::BlackBox box(*board.samples, other);
   box.start(Fault::none, {});

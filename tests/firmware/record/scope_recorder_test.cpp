@@ -84,7 +84,7 @@ SignalSelection select(std::uint8_t count, std::uint8_t first = 0) {
   return selection;
 }
 
-/// Records and reads all frames immediately. Every sample must appear exactly once and with correct values.
+/// Records all frames and reads each frame immediately. Every sample must appear exactly once and with correct values.
 void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, std::uint32_t periods) {
   link::Link& fresh = test::fresh_link();
   link::ScopeRecorder& scope = fresh.scope;
@@ -210,7 +210,7 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
       if (values[0] != signals_at(at).values[0]) FAIL_CHECK("a sample was overwritten");
     });
   };
-  // Only the newest frames remain, in addition to the frame that is being sent.
+  // The recorder retains the newest frames and the frame that is being sent.
   const std::uint32_t kept = link::ScopeFrames::count - 1;
   const std::uint32_t dropped = (frames_recorded - kept) * samples_per_frame;
   CHECK(scope.samples_dropped() == dropped);
@@ -258,7 +258,7 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   scope.select(second, 3);
   const std::uint32_t start = period;
   for (int i = 0; i < 800; ++i) test::record(fresh, signals_at(period), period), ++period;
-  // The frame that was being sent is still complete, and the token of the frame identifies the signal selection.
+  // The frame that was being sent is complete, and its token identifies the old selection.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
     ScopeFrameHeader header;
@@ -291,7 +291,7 @@ TEST_CASE("a main loop that comes late loses nothing up to the ring's length, be
     }
     for (std::uint32_t i = 0; i < 100; ++i, ++period) test::record(fresh, signals_at(period), period);
     scope.select({}, 2);
-    // The interrupt recorded one more sample before the main loop ran.
+    // The interrupt has recorded late_periods + 1 samples.
     const std::uint32_t lost = late_periods + 1 - link::SampleRing::readable;
     CHECK(scope.samples_dropped() == lost);
     std::uint32_t next = 0;

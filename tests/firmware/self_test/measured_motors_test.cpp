@@ -1,4 +1,4 @@
-// Tests the effect of the self-test's motor and bridge data in the control interrupt.
+// Tests how the control interrupt uses the self-test's data of motors and bridges.
 #include "tests/firmware/self_test/self_test_board.hpp"
 
 namespace {
@@ -10,7 +10,7 @@ using protocol::SelfTestItem;
 using protocol::SelfTestResult;
 using protocol::State;
 
-/// A program requests the maximum force in one direction from this board.
+/// A program applies the maximum force in one direction.
 struct PushedBoard : test::SelfTestBoard {
   std::size_t strongest = 0;  ///< motor with the largest current
 
@@ -55,7 +55,7 @@ struct PushedBoard : test::SelfTestBoard {
     }
   }
 
-  /// Ratio of true current to current reference, for the motor with the largest current.
+  /// Ratio of the true current to the reference of the motor with the largest current.
   float part_of_reference() const {
     const auto signal = of_axis(protocol::Signal::current_reference_1_A, strongest);
     return motors.motors[strongest].current_A / controller.signals()[signal];
@@ -111,7 +111,7 @@ TEST_CASE("a motor that its current has warmed since the test gets the voltage f
   PushedBoard board;
   board.test_after_start();
   board.make_active();
-  // Only the current heats the motor model, so the test shortens the model's time constants.
+  // The test shortens the time constants of the motor model to save time.
   board.settings.heat.housing_per_update = board.settings.heat.winding_per_update = 0.05f;
   board.push(20'000);
   const float heat = board.controller.motor_heat()[board.strongest];

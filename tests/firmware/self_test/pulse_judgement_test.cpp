@@ -37,7 +37,7 @@ struct Bench {
   }
 };
 
-/// Returns the result with a changed second motor. The first and the third motor must pass.
+/// Returns the result of pulses with a changed second motor. The first and the third motor must pass.
 PulseJudgement with_second(Change change) {
   Bench bench;
   change(bench.simulated.motors[1]);
@@ -118,8 +118,7 @@ TEST_CASE("a resistance is kept if the motor rests and both signs agree") {
   CHECK(moving(-0.12f) == 0.0f);
   bench.counts_per_period = {};
   for (const float back_emf_V : {0.2f, 0.75f}) {
-    // In one direction, dead time and back EMF exceed the voltage of the low pulse. The voltage step to the high pulse
-    // then differs between the two directions.
+    // If dead time and back EMF exceed the voltage of the low pulse, the voltage step depends on the direction.
     CAPTURE(back_emf_V);
     bench.simulated.motors[0].back_emf_V = back_emf_V;
     const PulseJudgement judgement = bench.judgement();
@@ -151,7 +150,7 @@ TEST_CASE("half its turns, half or double the gain of its sensor, an open motor:
 
 TEST_CASE("a motor that goes well in one direction only is told") {
   Bench bench;
-  // If a back EMF cancels the current of one direction, the effect is the same as a half bridge that does not conduct.
+  // If a back EMF cancels the current of one direction, a half bridge appears not to conduct.
   bench.simulated.motors[0].back_emf_V = 2.0f;
   CHECK(bench.judgement().motors[0].result == SelfTestResult::failed);
   bench.simulated.motors[0].back_emf_V = -2.0f;

@@ -1,4 +1,4 @@
-// RAM march test: detected defects and restored content.
+// Tests the defects that the RAM march test detects, and the restored content.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace inkwell;
 
-/// A word with stuck bits, and optionally a coupling to another word.
+/// A word may have stuck bits and a coupling to another word.
 struct Word {
   std::uint32_t stored = 0, stuck_high = 0, stuck_low = 0;
   Word* disturbs = nullptr;  ///< each write flips a bit of this word

@@ -1,4 +1,4 @@
-// A board in the self-test: main loop, control interrupt and simulated motors.
+// Main loop, control interrupt and simulated motors of a board in the self-test.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 
 namespace inkwell::test {
 
-/// A board's interrupt, with one pass of the main loop per period.
+/// Runs one control interrupt and one pass of the main loop per period.
 struct SelfTestBoard {
   link::Link& link = fresh_link();
   control::Controller controller{tests::board_limits};

@@ -1,5 +1,5 @@
-// Tests the flash log with any flash content, and with a power loss at any word or erase. The next start finds the
-// previous set or the new set, and can store another set.
+// Tests the flash log with any flash content and with power losses during writes and erases. After a power loss, the
+// next start finds the previous set or the new set, and can store another set.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -18,8 +18,8 @@ constexpr std::uint32_t erased = 0xFFFF'FFFF;
 
 struct PowerCut {};
 
-/// Flash memory with the behavior of the chip's flash. Programming only clears bits, and a power loss leaves the
-/// interrupted word or sector partly written.
+/// Flash memory with the behavior of the chip's flash. Programming can clear bits but cannot set bits. A power loss
+/// leaves the interrupted word or sector partly written.
 class FakeFlash final : public FlashMemory {
  public:
   FakeFlash() {
@@ -71,7 +71,8 @@ Payload payload_of(std::uint32_t set) {
   return payload;
 }
 
-/// Returns the number of the stored set, or 0 if no set is stored. The test fails for a set that was never stored.
+/// Returns the number of the stored set, or 0 if no set is stored. Fails the test if the content differs from every
+/// stored set.
 std::uint32_t held(const FlashLog& log) {
   if (!log.newest()) return 0;
   const auto payload = log.newest()->payload;
@@ -99,7 +100,7 @@ FlashLog started(FlashMemory& flash) {
   return log;
 }
 
-/// Stores sets, numbered from `first` on, until there is space for only `left` records.
+/// Stores sets with numbers from `first` on, until there is space for `left` records.
 std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
   FlashLog log = started(flash);
   while (log.room(payload_words) > left) REQUIRE(store(log, first++));
@@ -108,7 +109,7 @@ std::uint32_t fill(FakeFlash& flash, std::uint32_t first, std::size_t left) {
 
 struct Begin {
   std::string name;
-  /// Creates flash content, and returns the number of the stored set, or 0.
+  /// Fills the flash and returns the number of the stored set, or 0.
   std::function<std::uint32_t(FakeFlash&)> make;
 };
 

@@ -1,4 +1,4 @@
-// Tests that the motor heat is retained across a restart, with any memory content.
+// Tests the motor heat after a restart, with valid and invalid memory contents.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,6 @@ void check_is(const std::optional<Warmth>& found, const Warmth& expected) {
 
 using Words = std::array<std::uint32_t, sizeof(MotorHeatKeeper) / sizeof(std::uint32_t)>;
 
-/// Memory layout of the keeper, with named members.
 struct Memory {
   struct Slot {
     struct Left {
@@ -55,7 +54,7 @@ MotorHeatKeeper fresh() {
   return keeper;
 }
 
-/// Two records have been written, the second record to the second slot.
+/// Returns the memory after two records; the second record is in the second slot.
 Memory memory_with(const Warmth& first, const Warmth& second) {
   MotorHeatKeeper keeper = fresh();
   keeper.store(first);
@@ -103,7 +102,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
   keeper.store(warmer);
   const auto after = std::bit_cast<Words>(keeper);
   constexpr std::size_t number = 7, check = 8, next_number = 18;
-  // The previous record in this slot has the same heat as the new record.
+  // The slot already contained the same heat, so only the numbers and the checksum change.
   for (std::size_t word = 0; word < after.size(); ++word)
     CHECK((before[word] != after[word]) == (word == number || word == check || word == next_number));
   // The compiler may write the words in any order.
@@ -116,7 +115,7 @@ TEST_CASE("motor heat: of a copy that a restart cut off nothing is believed, and
     keeper.store(warmer);
     check_is(keeper.start(false), warmer);
   }
-  // Storing a different heat is interrupted after each word.
+  // The test interrupts the storage of a different heat after each word.
   Memory other = memory_with(warm, warmer);
   for (std::size_t end = 1; end < check; ++end) {
     Memory cut = other;

@@ -19,8 +19,8 @@ namespace {
 
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 
-/// Sends an invalid transaction. Checks the reported reason, parameter and value. Checks that no parameter has changed
-/// and that the interrupt receives no new settings.
+/// Sends an invalid transaction. Checks the reason, the parameter and the value in the refusal. Checks that no
+/// parameter has changed and that the interrupt receives no new settings.
 void check_refused(ParameterStore& store, std::span<const std::byte> report, Refusal reason, std::uint16_t id = 0,
                    float value = 0.0f, bool force_is_on = false) {
   const protocol::ParameterSet before = store.values();
@@ -212,7 +212,7 @@ TEST_CASE("bounds must leave room between them") {
     check_refused(store, Transaction{entry(pair.maximum, -0.4f), entry(pair.minimum, 0.4f)}.bytes(),
                   Refusal::inconsistent, id_of(pair.minimum), 0.4f);
   }
-  // Both bounds of a transaction are checked together, in any order.
+  // The check of both bounds does not depend on their order in the transaction.
   const Transaction both{entry(Parameter::box_minimum_x_m, 0.2f), entry(Parameter::box_maximum_x_m, 0.4f)};
   CHECK(store.accept(both.bytes(), false) == Refusal::accepted);
 }
@@ -238,7 +238,7 @@ TEST_CASE("while the force is on the arm can not change, everything else can") {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];
     CAPTURE(row.name);
     const bool arm = row.group == "arm";
-    // An equal value is not a change.
+    // While the force is on, a parameter may be set to its current value.
     CHECK(store.accept(Transaction{{row.id, 0, row.default_value}}.bytes(), true) == Refusal::accepted);
     store.apply_offered(0);
     if (!arm) continue;

@@ -1,4 +1,4 @@
-// Parameters are stored on command and loaded at start-up, even if another firmware stored them.
+// Tests stored parameters, including sets from other firmware versions.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -31,7 +31,7 @@ constexpr Parameter force_limit = Parameter::force_limit_N, link_length = Parame
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 float default_of(Parameter parameter) { return link::image_defaults()[parameter]; }
 
-/// A firmware, started with the contents of `flash`.
+/// A board that starts with the contents of `flash`.
 struct Board {
   link::ParameterStore parameters;
   link::StoredParameters stored;
@@ -65,7 +65,7 @@ struct Board {
   float held(Parameter parameter) const { return parameters.values()[parameter]; }
 };
 
-/// Stores one value, using a separate board.
+/// Stores one value with a temporary board.
 void store_in(PlainFlash& flash, Parameter parameter, float value) {
   Board board(flash);
   board.set(parameter, value);
@@ -80,7 +80,7 @@ FlashLog log_of(PlainFlash& flash) {
   return log;
 }
 
-/// Writes a record that any firmware version could have written.
+/// Writes a record of any firmware version.
 void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
   std::vector<std::uint32_t> payload;
   for (const auto& [id, value] : entries) {
@@ -495,7 +495,7 @@ TEST_CASE("stored parameters: a bit that changes in any word of what is written,
   board.set(force_limit, 1.2345f);
   REQUIRE(board.store() == StoreResult::done);
   CHECK(board.stored.is_intact());
-  // The members are private. The value of the force limit is unique, so the test finds the members by this value.
+  // The test searches the private members for the unique value of the force limit.
   auto* const bytes = reinterpret_cast<std::byte*>(&board.stored);
   unsigned copies = 0;
   for (std::size_t at = 0; at < sizeof board.stored; at += sizeof(float)) {

@@ -136,7 +136,7 @@ TEST_CASE("HID: the newest pose can be asked for") {
     std::memcpy(&pose, data.data(), sizeof pose);
     return pose;
   };
-  // Before the first control period, the pose report contains only the state.
+  // Before the first control period, the pose report contains the state but no pose.
   const protocol::PoseReport first = read();
   const protocol::PoseReport expected{.state = protocol::State::starting};
   CHECK(std::memcmp(&first, &expected, sizeof first) == 0);
@@ -363,8 +363,8 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
       CHECK(position_m == static_cast<float>(period));
     }
   }
-  // The device accepts the transfer and refuses the request. The selected rows do not change, and the report shows the
-  // result.
+  // The device accepts the transfer and refuses the request. The report shows the refusal, and the selected rows do not
+  // change.
   const protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
   CHECK(bench.set_report(3, request) == done_result);
   const auto refused = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);

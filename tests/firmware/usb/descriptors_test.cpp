@@ -135,7 +135,7 @@ TEST_CASE("descriptors that are not there are refused") {
   CHECK(bench.get_descriptor(0x2201, 9, 1, 2) == stall_result);
   CHECK(bench.get_descriptor(0x2300, 9, 1, 0) == stall_result);
   CHECK(bench.get_descriptor(0x0100, 18, 2) == stall_result);  // an endpoint has no descriptors
-  // The device still answers after all requests of this test.
+  // The device works after all requests of this test.
   CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18);
 }
 

@@ -24,7 +24,7 @@ inline constexpr usb::Identity identity{{'0', '1', '2', '3', '4', '5', '6', '7',
                                         168'000'000,
                                         0x14};
 
-/// Result of a control transfer, with the data of its IN data stage.
+/// Result of a control transfer and the data of its IN data stage.
 struct ControlResult {
   bool stalled = false;
   Bytes data{};
@@ -68,7 +68,7 @@ struct DeviceBench {
       REQUIRE(result.data.size() <= length);
       if (packet.data.size() < 64 || result.data.size() == length) break;
     }
-    // The device sends no further data and accepts the status stage.
+    // The device sends no more data and accepts the status stage.
     CHECK(port.in(0).handshake == Handshake::nak);
     CHECK(port.out(0, {}) == Handshake::ack);
     device.poll();
@@ -128,7 +128,7 @@ struct DeviceBench {
     return report;
   }
 
-  /// Simulates control interrupts, which carry out commands and record samples. The signals are test values.
+  /// Simulates control interrupts, which carry out commands and record samples. The recorded signals have test values.
   void run(std::uint32_t count, protocol::State state = protocol::State::ready,
            protocol::Fault fault = protocol::Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {

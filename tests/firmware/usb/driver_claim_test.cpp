@@ -43,7 +43,7 @@ struct DrivenBench : DeviceBench {
       if (entry.ticket == ticket) return entry.result;
     return std::nullopt;
   }
-  /// Returns true if the control interrupt accepts a heartbeat with this claim as a sign of life.
+  /// Sends a heartbeat with this claim and returns true if the control interrupt accepts the heartbeat.
   bool keeps_alive(std::uint32_t claim) {
     link.commands.take_sign_of_life();
     REQUIRE(port.out(1, bytes_of(command(Command::heartbeat, 1, claim))) == Handshake::ack);

@@ -1,4 +1,4 @@
-// A software port and a host. The host sends and receives single packets, valid or invalid.
+// A simulated USB port and its host. The host sends and receives single packets, valid or invalid.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -109,8 +109,8 @@ class FakePort final : public usb::Port {
 
   // ---- host side ----
 
-  /// Advances time by one control period. A bus frame has twenty control periods, and the main loop runs in the middle
-  /// of each period.
+  /// Advances time by one control period. A bus frame has twenty control periods. The main loop runs in the middle of
+  /// each period.
   void pass_period() {
     age_cycles_ += period_cycles;
     if (age_cycles_ < frame_cycles) return;
@@ -120,7 +120,7 @@ class FakePort final : public usb::Port {
     frame_.number = frame_.count % 2048;
   }
   bool frames_run = true;
-  /// The host polls this endpoint once, directly before the device cancels the transfer.
+  /// The host polls this endpoint once, just before a cancellation by the device.
   std::optional<std::uint8_t> polled_in_cancel;
 
   void reset() {
@@ -133,7 +133,7 @@ class FakePort final : public usb::Port {
   void suspend() { push(usb::Event::Kind::suspend); }
   void resume() { push(usb::Event::Kind::resume); }
 
-  /// Sends a SETUP packet, which is never refused and which ends a stall of endpoint 0.
+  /// Sends a SETUP packet, which always ends a stall of endpoint 0.
   void setup(std::span<const std::byte> packet) {
     at(0x00).stalled = at(0x80).stalled = false;
     at(0x00).armed = false;

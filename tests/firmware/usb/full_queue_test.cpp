@@ -1,4 +1,4 @@
-// Tests a host that sends commands faster than the control interrupt executes these commands.
+// Tests a host that sends commands faster than the control interrupt executes them.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/usb/device_bench.hpp"
@@ -14,7 +14,7 @@ using test::request;
 
 namespace {
 
-/// A device with a full queue and one held command, enable_force. Tokens count up from 1.
+/// The device has a full queue and holds one additional command, enable_force. Tokens count up from 1.
 struct FullQueue : test::DeviceBench {
   std::uint8_t token = 0;
 
@@ -36,8 +36,7 @@ struct FullQueue : test::DeviceBench {
     return handshake;
   }
 
-  /// The interrupt resumes the removal of commands. All commands arrive in order, and the endpoint accepts the next
-  /// command.
+  /// Lets the interrupt empty the queue and checks that all commands arrive in order.
   void check_nothing_was_lost() {
     CHECK(offer(Command::clear_fault) == Handshake::nak);
     run(1);

@@ -46,7 +46,7 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
                                   192u, 256u, 512u, 576u, 640u, 4096u, exact - 1, exact, exact + 1, 65535u}) {
       if (length == 0) continue;
       CAPTURE(length);
-      // DeviceBench::read() checks that a short packet ends the data stage only if the answer is shorter than wLength.
+      // DeviceBench::read() checks whether a short packet must end the answer.
       const auto w_length = static_cast<std::uint16_t>(length);
       const Bytes data = bench.control(request(read.type, read.number, read.value, read.index, w_length)).data;
       CHECK(data == Bytes(all.begin(), all.begin() + std::min(length, exact)));
@@ -179,7 +179,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
   for (const std::size_t size : {std::size_t{64}, std::size_t{65}, std::size_t{127}, std::size_t{128}, std::size_t{129},
                                  sizeof(protocol::ParametersReport)}) {
     CAPTURE(size);
-    // The number of entries must match the length, because a shorter report is refused.
+    // The device refuses a report whose length does not match its number of entries.
     test::Transaction transaction{};
     auto& report = transaction.report();
     report.count = static_cast<std::uint16_t>((size - protocol::parameters_report_size(0)) / sizeof(*report.entries));

@@ -57,8 +57,8 @@ struct PaddingBench : DeviceBench {
   }
 };
 
-/// Checks that a report with accepted lengths has an effect, and that the same report with refused lengths has no
-/// effect. `has_effect` returns true if the last write had its effect, and changes the value for the next write.
+/// Checks that a report has an effect only with the accepted lengths. `has_effect` returns whether the last write had
+/// an effect, and prepares another value for the next write.
 template <class HasEffect>
 void check_lengths(PaddingBench& bench, ReportId id, ReportKind kind, std::span<const std::byte> used,
                    HasEffect has_effect) {
@@ -109,7 +109,7 @@ TEST_CASE("padding: shapes") {
     const control::Shapes* taken = bench.link.program.take_shapes();
     return taken != nullptr && taken->life_periods[1] != 0 && taken->life_periods[2] == 0;
   });
-  // The length is above the smallest length in use, but too short for the planes. The report is received and refused.
+  // The device receives and refuses a report that is too short for its planes.
   shapes.ticket = 5;
   CHECK(bench.write(ReportKind::feature, used, used.size() - 1) == done_result);
   const auto results = bench.get_feature<protocol::RequestResultsReport>(ReportId::request_results);

@@ -1,4 +1,4 @@
-// Poses and controller reports. Each bus frame has one new pose, as recent as possible.
+// Poses and controller reports. Each bus frame transfers the newest pose.
 #include <doctest/doctest.h>
 
 #include "tests/firmware/usb/host_reads.hpp"
@@ -157,10 +157,10 @@ TEST_CASE("the controller's report is as new as the pose whenever the host's tur
     for (int frame = 0; frame < 8; ++frame) pass_frame(bench);
     const auto report = read_controller(bench);
     REQUIRE(report.has_value());
-    // The bench sets x in meters to the period number, which is out of range.
+    // The bench sets x to the period number in meters, which exceeds the range of the report.
     CHECK(report->position[0] == 32767);
     CHECK(report->angle[0] == static_cast<std::int16_t>(bench.periods - 1));
-    // After the first report, a report needs only one replacement within eight bus frames.
+    // Each iteration of eight bus frames replaces the report only once.
     if (i == 0) cancels = bench.port.cancels(0x83);
     CHECK(bench.port.cancels(0x83) == cancels + static_cast<unsigned>(i));
   }

@@ -236,7 +236,7 @@ TEST_CASE("unplugged and plugged in again in every state, the device works as th
     bench.run(200);
     bench.device.poll();
     CHECK(read_pose(bench).has_value());
-    // At most two earlier frames precede the new frames. The token identifies the earlier frames.
+    // Up to two old frames arrive before the new frames. A frame's token identifies its signal selection.
     int old_frames = 0;
     auto header = header_of(read_frame(bench));
     for (; header.selection_token != 77; header = header_of(read_frame(bench))) {

@@ -1,4 +1,4 @@
-// Tests the descriptors that Windows uses to select drivers, and the lengths of the nested parts.
+// Tests the descriptors from which Windows selects drivers, and the lengths in these descriptors.
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -42,7 +42,7 @@ void append_utf16(Bytes& to, std::string_view text, unsigned zeros) {
 Bytes microsoft_set(DeviceBench& bench) { return bench.control(request(0xC0, 0x20, 0, 7, 512)).data; }
 Bytes object_store(DeviceBench& bench) { return bench.get_descriptor(0x0F00, 255).data; }
 
-/// Returns the parts of `whole`. The first one or two bytes of a part are its length. The parts must fill `whole`
+/// Splits `whole` into its parts. A part starts with its length in one or two bytes. The parts must fill `whole`
 /// exactly.
 std::vector<View> parts_of(View whole, bool has_wide_length) {
   std::vector<View> parts;
@@ -56,9 +56,8 @@ std::vector<View> parts_of(View whole, bool has_wide_length) {
   return parts;
 }
 
-/// Returns the subsets of this type in `whole`, including their headers. The total length in a header counts the header
-/// and everything in the subset (Microsoft OS 2.0 Descriptors Specification, tables 11 and 12). The subsets must fill
-/// `whole` exactly.
+/// Returns the subsets of this type with their headers. The length in a header includes the header and the content of
+/// the subset (Microsoft OS 2.0 Descriptors Specification, tables 11 and 12). The subsets must fill `whole` exactly.
 std::vector<View> subsets_of(View whole, unsigned type) {
   std::vector<View> subsets;
   while (!whole.empty()) {

@@ -1,4 +1,4 @@
-// Bytes of every message, from the tables of the Linux kernel's Documentation/usb/usbip_protocol.rst.
+// Compares the bytes of every message with the tables of the Linux kernel's Documentation/usb/usbip_protocol.rst.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -67,7 +67,6 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK(filter.closed == 5);
   show(0, 3);
   CHECK(filter.closed == 5);
-  // A switch may change back in the period in which the filter accepts the first change.
   for (std::uint32_t later = 0; later < 6; ++later) {
     CAPTURE(later);
     SwitchFilter other;
@@ -76,7 +75,7 @@ TEST_CASE("switches count after 5 ms without change") {
     for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) debounce(other, 0, i % SwitchFilter::count);
     CHECK(other.closed == 0);
   }
-  // The other switches do not affect the filter of this switch.
+  // Each switch has an independent filter.
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 5 : 4, 1);
   CHECK((filter.closed & 4) == 4);
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 1 : 0, 1);
@@ -94,7 +93,7 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
     if (i % 1'000 == 0) counts[1] += i == 1'000 ? -2 : 2;
     CHECK_FALSE(update_reference(reference, counts, true));
   }
-  // A dither of one count does not prevent the reference.
+  // Counts that alternate by one do not prevent a reference.
   int taken = 0;
   for (int i = 0; i < 20'000; ++i) {
     counts[2] = 7 + i % 2;
@@ -111,7 +110,7 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
   CHECK(reference.counts[0] == 104);
 
-  // After forget() with the stylus in the inkwell, a new reference is recorded after the usual time.
+  // After forget(), a stylus in the inkwell causes a new reference.
   forget(reference, false);
   CHECK_FALSE(reference.valid);
   for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)

@@ -34,7 +34,7 @@ struct RegulatedMotor {
   CurrentLoopGains gains = control::prepare(tests::omni_parameters()).current_loop;
   double next_V = 0;  ///< the controller's output becomes active one period later
 
-  /// Runs one control period and returns the current measured by the controller.
+  /// Runs one control period and returns the measured current.
   double step(double reference_A, double back_emf_V = 0, double bound_V = 16) {
     const double seen_A = motor.current_A;
     const control::CurrentLoopStep result =
@@ -72,7 +72,7 @@ TEST_CASE("back EMF of a fast and of an accelerating hand is compensated") {
   // 10 rad/s at the joint is 133 rad/s and 3.1 V at the motor.
   for (int period = 0; period < 100; ++period) regulated.step(1.0, 3.1);
   CHECK(regulated.motor.current_A == doctest::Approx(1.0).epsilon(1e-3));
-  // 40 rad/s^2 at the joint: the integrator follows the ramp with a steady-state error of slope / integral gain.
+  // The back-EMF changes linearly, so the steady-state error is slope / integral gain.
   double seen = 0;
   for (int period = 0; period < 2'000; ++period) seen = regulated.step(1.0, 3.1 - 12.4 * period / 20'000.0);
   CHECK(std::abs(seen - 1.0) < 0.002);
@@ -110,15 +110,15 @@ TEST_CASE(
   CHECK(still.most_V == doctest::Approx(1.05 * 3.0 + 0.4));
   CHECK(still.least_V == -still.most_V);
   const auto turning = control::voltage_range(1.5f, measured, -2.0f, 0.4f, 16.0f);
-  // The torque constant has a tolerance of 25 %, so both bounds move outward by a quarter of the back-EMF.
+  // The torque constant has a tolerance of 25 %, so each bound allows a quarter of the back-EMF.
   CHECK(turning.most_V == doctest::Approx(still.most_V - 2.0f + 0.5f));
   CHECK(turning.least_V == doctest::Approx(still.least_V - 2.0f - 0.5f));
-  // The resistance from the parameters has a larger tolerance, so the range is wider.
+  // The resistance from the parameters has a larger tolerance than a measured resistance.
   CHECK(control::voltage_range(1.5f, control::Resistance::of(0.0f, 0.0f, 2.0f), 0.0f, 0.4f, 16.0f).most_V ==
         doctest::Approx(1.1075 * 3.0 + 0.4));
   for (const float back_emf_V : {-30.0f, 0.0f, 30.0f}) {
     const auto [least_V, most_V] = control::voltage_range(1.5f, measured, back_emf_V, 0.4f, 3.0f);
-    // If the speed is wrong, the voltage may brake the motor, but must not have the opposite sign of the current.
+    // A wrong speed must not permit a voltage with the opposite sign of the current.
     CHECK(least_V == (back_emf_V > 0.0f ? 0.0f : -3.0f));
     CHECK(most_V == (back_emf_V < 0.0f ? 0.0f : 3.0f));
   }

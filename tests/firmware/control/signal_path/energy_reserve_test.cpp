@@ -49,7 +49,7 @@ TEST_CASE("only what drives the motion gives way, from a quarter of the reserve 
   const Vector3 rest_N = without_drive(force_N, power_W, velocity_m_per_s, 1.0f);
   CHECK(dot(rest_N, velocity_m_per_s) < 2e-3f * power_W);
   CHECK(rest_N.y == force_N.y);  // the component across the motion does not change
-  // At rest the motion has no direction, so the force does not jump when the hand reverses.
+  // Near zero speed the force does not depend on the direction, so it does not jump when the hand reverses.
   const Vector3 still_N = without_drive(force_N, 2e-6f, {1e-6f, 0.0f, 0.0f}, 1.0f);
   CHECK(still_N.x == doctest::Approx(force_N.x));
 }
@@ -95,7 +95,7 @@ TEST_CASE("whatever a force comes from, it changes by no more than it may") {
   CHECK(arm.largest_change_N == doctest::Approx(0.1f).scale(0).epsilon(0.01));
   CHECK(arm.reached(Limit::change));
 
-  // The force limit still applies immediately.
+  // The force limit applies without delay.
   arm.turn(0.1f, [](const Vector3&) { return Vector3{0.0f, 3.0f, 0.0f}; });
   CHECK(arm.controller.signals()[Signal::force_N] > 2.5f);
   arm.set[Parameter::force_limit_N] = 1.0f;

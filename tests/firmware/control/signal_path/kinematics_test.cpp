@@ -1,5 +1,5 @@
-// Compares kinematics and virtual work with an independent double-precision reference of rotation matrices. The paper's
-// arm uses Denavit-Hartenberg transforms. The Omni uses the transforms published by the Ubitrack project.
+// Compares kinematics and virtual work with independent rotation matrices in double precision. The paper's arm uses
+// Denavit-Hartenberg transforms. The Omni uses the transforms published by the Ubitrack project.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a
 Point point(const Vector3& v) { return {v.x, v.y, v.z}; }
 Joints joints(const Triple& t) { return {t[0], t[1], t[2]}; }
 
-/// Published kinematics of the Omni with an absolute third angle; same origin as in the arm description.
+/// The published Omni kinematics use an absolute third angle and the origin of the arm description.
 Point omni_reference(const Joints& q, const protocol::ParameterSet& set) {
   const double l1 = set[Parameter::link_2_m], l2 = set[Parameter::link_3_m];
   const double s1 = std::sin(q[0]), c1 = std::cos(q[0]);
@@ -60,7 +60,7 @@ struct ArmCase {
   Reference reference;
 };
 
-/// Two links in one plane, and joint 1 rotates this plane. All descriptions in boards/arms/ have this general form.
+/// Joint 1 rotates the plane of links 2 and 3. All arm descriptions in boards/arms/ have this geometry.
 Point family_reference(const Joints& q, const protocol::ParameterSet& set) {
   const double phi_2 = q[1];
   const double phi_3 = q[2] + set[Parameter::elbow_offset_rad] + (set[Parameter::transmission] == 0.0f ? q[1] : 0.0);
@@ -73,7 +73,7 @@ Point family_reference(const Joints& q, const protocol::ParameterSet& set) {
   return {origin.x - side, origin.y + height, origin.z + forward};
 }
 
-/// Returns all arms with the general form, and the two published arms with their published kinematics.
+/// Returns all described arms, and the two published arms with their published kinematics.
 std::vector<ArmCase> arm_cases() {
   std::vector<ArmCase> cases{{"published Omni", tests::omni_parameters(), omni_reference},
                              {"published paper", tests::paper_parameters(), paper_reference}};
@@ -205,9 +205,8 @@ TEST_CASE("the links' ends: constant lengths, and the last one is the probe") {
   }
 }
 
-/// The paper's Eq. 10 to 15: z, x and x component of (L1 + L2 + L3) x F, (L2 + L3) x F and L3 x F, with L1 = 0. For a
-/// serial arm in the paper's frame, these equations are exact for joint 1. For joints 2 and 3, the equations are exact
-/// only at q1 = pi/2. joint_torques() is the general law.
+/// Equations 10 to 15 of the paper, with L1 = 0. The equations are exact for joint 1 of a serial arm. For joints 2 and
+/// 3, the equations are exact only at q1 = pi/2.
 Triple paper_torques(const control::LinkEnds& ends, const Vector3& force_N) {
   const Vector3 link_2_m = ends.elbow_m - ends.shoulder_m;
   const Vector3 link_3_m = ends.probe_m - ends.elbow_m;

@@ -121,7 +121,7 @@ TEST_CASE("late is more than a millisecond after the interval that the program n
   CHECK(!next_after(20));
   CHECK(!next_after(40));
   CHECK(next_after(41));
-  // A pause is not counted as a delay if the force expires.
+  // If the force expires, the pause does not count as a delay.
   CHECK(!next_after(3000));
 }
 

@@ -30,7 +30,7 @@ Surface rough(float static_friction, float dynamic_friction) {
 
 constexpr std::uint32_t for_long = 1'000'000;
 
-/// Sets plane `index` at height `z_m`, with free space above it.
+/// Places a floor at height `z_m`.
 void put_floor(Shapes& shapes, std::size_t index, float z_m, const Surface& surface,
                std::uint32_t life_periods = for_long) {
   shapes.planes[index] = {{0.0f, 0.0f, 1.0f}, z_m};

@@ -1,4 +1,4 @@
-// Tests that the force component along the motion is reduced near the speed limit, before a fault is raised.
+// Tests that the force along the motion is reduced before the speed reaches its limit.
 #include <doctest/doctest.h>
 
 #include <algorithm>

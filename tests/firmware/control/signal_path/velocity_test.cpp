@@ -87,8 +87,8 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
         if (period > periods / 2)
           worst = std::max(worst, std::abs(estimate.counts_per_period * rate_Hz - sign * counts_per_s) / counts_per_s);
       }
-      // The window covers at least 56 periods and four counts. The uncertainty is one period or one count, whichever is
-      // smaller.
+      // The estimator's window covers at least 56 periods and four counts. The estimated speed is wrong by at most one
+      // period or one count per window.
       const double window_periods = std::max(56.0, 3.9 * rate_Hz / counts_per_s);
       CHECK(worst < 1.0 / window_periods / std::max(1.0, counts_per_s / rate_Hz));
     }
@@ -147,7 +147,7 @@ TEST_CASE("between edges the value rests: it changes in few of the periods") {
   float before = 0.0f;
   constexpr std::uint32_t periods = 20'000;
   for (std::uint32_t period = 1; period <= periods; ++period) {
-    // The speed decreases from 500 counts per second to standstill in the first half.
+    // In half a second the speed decreases from 500 to 250 counts per second, and then the motion stops.
     const double t = std::min(period / rate_Hz, 0.5);
     control::update(estimate, counts_at(500 * t - 250 * t * t), period);
     if (estimate.counts_per_period != before) ++changes;

@@ -1,4 +1,4 @@
-// Tests the detection of a wrong VDDA on chips with and without a valid factory calibration of VREFINT.
+// Tests the detection of a wrong VDDA with valid and invalid factory calibrations of VREFINT.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::uint16_t counts_of(float reference_V, float analog_supply_V) {
   return static_cast<std::uint16_t>(std::min(4096.0f * reference_V / analog_supply_V, 4095.0f));
 }
 
-/// Returns the number of checks until detection with this VDDA; the chip's VREFINT is `true_V`.
+/// Returns the number of checks after which this VDDA is detected; `true_V` is the chip's VREFINT.
 int readings_until_fault(float analog_supply_V, float true_V, std::uint16_t calibrated_counts) {
   AnalogSupply supply = analog_supply(calibrated_counts);
   for (int reading = 1; reading < never; ++reading)
@@ -50,7 +50,7 @@ TEST_CASE("a calibration that was never written or is lost makes the check coars
       CHECK(readings_until_fault(1.12f * nominal_V, reference_V, calibrated_counts) == noticed);
     }
   }
-  // VREFINT is at the limit of the data sheet, and its calibration error is 3 per mille.
+  // VREFINT is at a data sheet limit, and its calibration is wrong by 3 per mille.
   CHECK(readings_until_fault(0.94f * nominal_V, 1.18f, counts_of(1.177f, nominal_V)) == noticed);
   CHECK(readings_until_fault(1.06f * nominal_V, 1.24f, counts_of(1.243f, nominal_V)) == noticed);
 }

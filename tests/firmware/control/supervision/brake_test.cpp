@@ -1,4 +1,4 @@
-// Tests the brake, which short-circuits the motors, and the release of the brake.
+// Tests how the brake short-circuits the motors, and how it is released.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
   CHECK_FALSE(shorts(brake, resists_A, limit_A));
   brake.begin();
   CHECK(shorts(brake, resists_A, limit_A));
-  // If the host is silent before the probe is too fast, the brake is also gentle, because the hand causes the speed.
+  // If the host was silent before the probe became too fast, the hand causes the speed and the brake is gentle.
   Brake silent = begun(condition(Fault::host_silent));
   advance(silent, fast, condition(Fault::over_speed));
   CHECK_FALSE(shorts(silent, resists_A, limit_A));

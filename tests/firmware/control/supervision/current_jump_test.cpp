@@ -18,7 +18,6 @@ using control::Triple;
 using protocol::Fault;
 using protocol::Parameter;
 
-/// An arm pressed into three walls, with motors, bridges and shunts.
 struct HeldArm {
   protocol::ParameterSet parameters = tests::pressed_into_three_walls({0.002f, 0.001f, 0.002f}, 2000.0f);
   control::Settings settings = control::prepare(parameters);

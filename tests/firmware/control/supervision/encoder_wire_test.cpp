@@ -1,4 +1,4 @@
-// Tests the counts of an encoder with a dead wire, and other alternating counts.
+// Tests the detection of a dead encoder wire from the counts of the encoder.
 #include <doctest/doctest.h>
 
 #include <array>

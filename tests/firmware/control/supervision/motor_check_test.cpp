@@ -1,4 +1,4 @@
-// Tests the tolerated deviation of a motor voltage from R i + k w, and the controller's check of all three motors.
+// Tests how far a motor voltage may deviate from R i + k w, and the check of all three motors.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ TEST_CASE("a motor at rest without current may have the bearable voltage, and wh
 TEST_CASE("what a bridge takes at least is missed in a voltage that is too small for a current with one sign") {
   constexpr BridgeLoss loss{0.4f, 0.5f};
   for (const float sign : {1.0f, -1.0f}) {
-    // The resistance accounts for 2 V, and its value may be 28 % too high.
+    // R i is 2 V, and R may be up to 28 % too high.
     for (const float bridge_V : {0.4f, 0.5f})
       CHECK(checks_until_fault(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
     const float least_V = 2.0f + 0.4f - MotorCheck::tolerance_V - 0.56f;
@@ -78,10 +78,10 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
     const float most_V = 2.0f + 0.5f + MotorCheck::tolerance_V + 0.86f;
     CHECK(checks_until_fault(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(checks_until_fault(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
-    // The lower bound assumes at most the dead-time loss, because the voltage drop of brushes is not reliable.
+    // The lower bound ignores the voltage drop of the brushes, which is not reliable.
     CHECK(checks_until_fault(0, sign * (2.0f + 0.5f - MotorCheck::tolerance_V - 0.56f + 0.02f), sign * 1.0f, 0.0f,
                              {0.9f, 0.5f}) == never);
-    // A small current may change sign in each PWM period, and the dead time then has no net effect.
+    // If a small current changes its sign within a PWM period, the dead time has no net effect.
     const float steady_A = MotorCheck::steady_A;
     const float small_V = -0.5f - MotorCheck::tolerance_V + 0.72f * 2.0f * steady_A + 0.02f;
     CHECK(checks_until_fault(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
@@ -107,24 +107,24 @@ TEST_CASE("a motor that was measured may have a fifth more, and what its current
     const auto fits_with = [sign](const Resistance& resistance, float voltage_V) {
       return checks_until_fault(0, sign * voltage_V, sign * 2.5f, 0.0f, {}, resistance) == never;
     };
-    // A measured motor resistance of 2.5 ohm overrides the parameters.
+    // A measured resistance of 2.5 ohm replaces the resistance from the parameters.
     const auto as_measured = Resistance::of(2.5f, 0.0f, 2.0f);
     CHECK(fits_with(as_measured, 1.19f * 6.25f + MotorCheck::tolerance_V));
     CHECK_FALSE(fits_with(as_measured, 1.21f * 6.25f + MotorCheck::tolerance_V));
     CHECK(fits_with(as_measured, 0.73f * 6.25f - MotorCheck::tolerance_V));
     CHECK_FALSE(fits_with(as_measured, 0.71f * 6.25f - MotorCheck::tolerance_V));
-    // The heating at the continuous current increases the resistance by 39 %.
+    // Heating at the continuous current increases the resistance by 39 %.
     const auto warmer = Resistance::of(2.5f, 1.0f, 2.0f);
     CHECK(warmer.value_ohm == doctest::Approx(1.39 * 2.5));
     CHECK(fits_with(warmer, 1.19f * 1.39f * 6.25f + MotorCheck::tolerance_V));
     CHECK_FALSE(fits_with(warmer, 1.21f * 1.39f * 6.25f + MotorCheck::tolerance_V));
-    // A colder motor does not reduce the resistance.
+    // Negative heat does not reduce the resistance.
     CHECK(Resistance::of(2.5f, -1.0f, 2.0f).value_ohm == 2.5f);
   }
 }
 
 TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
-  // The voltage is 4 V beyond the tolerance, and one check runs every three periods.
+  // The voltage exceeds the tolerance by 4 V, and the check runs every three periods.
   const float voltage_V = 4.0f + MotorCheck::tolerance_V;
   const float flux_of_check_Vs = 4.0f * 3.0f * protocol::servo_period_s;
   CHECK(checks_until_fault(0, voltage_V, 0.0f, 0.0f) ==
@@ -176,7 +176,7 @@ TEST_CASE("the model of each arm: its resistances, and the torque constants with
           doctest::Approx(std::max(set[link_2_m], set[link_3_m]) * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
-/// An arm pressed into three walls. Each motor needs a different voltage. The reading of motor `lying` does not change.
+/// Each motor of the pressed arm needs a different voltage. The reading of motor `lying` is frozen.
 struct PressedArm {
   protocol::ParameterSet parameters = [] {
     using enum protocol::Parameter;
@@ -240,14 +240,14 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     tests::run(arm.controller, arm.samples, arm.settings,
                control::SwitchFilter::settle_periods + control::InkwellReference::still_periods + 10);
     CHECK(arm.controller.state() == protocol::State::ready);
-    // The deviation sum was cleared, so the force remains on with a healthy motor.
+    // Clearing the fault also cleared the deviation sum, so a healthy motor raises no fault.
     arm.controller.carry_out(tests::command(protocol::Command::enable_force));
     arm.run(1);
     CHECK(arm.run(4'000) == 4'000);
   }
 }
 
-/// Self-test result: the resistance of PressedArm, and bridges with a negligible voltage drop.
+/// The self-test measured these motor resistances and a negligible voltage drop of the bridges.
 const control::MeasuredMotors measured{{1e-4f, 1e-4f, 1e-4f}, {2.18f, 2.18f, 2.18f}, {}};
 
 /// Returns the steady-state current at the motor's voltage without back-EMF.

@@ -69,8 +69,8 @@ TEST_CASE("the winding warms quickly over its housing, the housing slowly over t
   const control::HeatScale both = control::prepare(set).heat;
   MotorHeat motors;
   run(motors, {2.0f * continuous_A, 0.0f, 0.0f}, both, 0.5f);
-  // Twice the current produces four times the heat. A share of 0.2 appears immediately. The remaining share of 0.8
-  // follows the housing temperature.
+  // Twice the current produces four times the heat. The winding contributes 20 % of the heat immediately, and the
+  // housing contributes 80 % slowly.
   const float housing = 4.0f * 0.8f * (1.0f - std::exp(-0.5f / 2.0f));
   CHECK(motors.heat[0] == doctest::Approx(4.0f * 0.2f + housing).scale(0).epsilon(0.02));
   run(motors, {}, both, 0.5f);

@@ -34,7 +34,7 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
   const auto requested = requested_V(pulses, scale);
   REQUIRE(requested.size() == SelfTestPulses::round_periods);
   CHECK(requested.size() < 300);
-  // The amplitude is 0.7 A if the limit and the voltage allow this current.
+  // The pulse current is 0.7 A, unless the limit or the voltage is too low.
   const Triple high_V{1.4f + dead_V, 2.0f + dead_V, 7.5f + dead_V};
   const Triple low_V{0.56f + dead_V, 0.8f + dead_V, 3.0f + dead_V};
   for (std::size_t period = 0; period < requested.size(); ++period) {

@@ -30,7 +30,7 @@ bool is_detected(Counts counts, Current current_A, bool held = false, std::int32
   return false;
 }
 
-/// Returns a current with these successive values from 0.2 s on; each change takes 0.15 s.
+/// The returned current changes to these values one after another; each change takes 0.15 s.
 template <std::size_t size>
 auto through(const std::array<float, size>& currents_A) {
   return [=](float time_s) {
@@ -73,7 +73,7 @@ TEST_CASE("what changed before it came to stand does not count") {
 }
 
 TEST_CASE("what changed up to the look in which a joint breaks loose does not count for where it stands next") {
-  // The joint moves once during the current rise. The joint is stationary during two further current changes.
+  // The joint moves during the first current change and is stationary during two later changes.
   const auto current_A = [](int reading) {
     if (reading >= 3'500) return reading < 5'000 ? 0.0f : 0.8f;
     return 0.8f * std::clamp(static_cast<float>(reading - 2'000) / 400.0f, 0.0f, 1.0f);
@@ -90,7 +90,7 @@ TEST_CASE("what changed up to the look in which a joint breaks loose does not co
 
 TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
   // The joint stops at 0.2 s, when the current starts to rise by 8 A. The joint reverses within the allowed time in the
-  // first run, and after twice the allowed time in the second run.
+  // first run and too late in the second run.
   for (const float stationary_s : {0.09f, 0.2f}) {
     const auto turning_round = [=](float time_s) {
       return time_s < 0.2f ? static_cast<std::int32_t>(1e4f * time_s)

@@ -1,4 +1,4 @@
-// Compares every cell of the supervisor's tables with a separate copy in this file.
+// Compares the supervisor's tables with a separate copy in this file.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -20,7 +20,6 @@ using protocol::events;
 using protocol::Fault;
 using protocol::State;
 
-// Events and conditions must not be mixed up.
 template <class First, class Second>
 concept Situates = requires {
   Situation{First(), Second()};
@@ -196,7 +195,8 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
     CHECK(advance(found, {good | events(Event::enable), {}}) == found);
     CHECK(advance(found, {clear, {}}) == in(State::ready));
     CHECK(advance(found, {clear, condition(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
-    // The condition of a second fault does not prevent clearing the first fault. The second fault is raised afterwards.
+    // A fault can be cleared while the condition of another fault is true. After the first fault is cleared, the
+    // condition of the second fault raises the second fault.
     const Fault other = row.fault == Fault::supply_low ? Fault::supply_high : Fault::supply_low;
     CHECK(advance(found, {clear, condition(other)}) == in(State::ready));
   }

@@ -63,7 +63,7 @@ TEST_CASE("a step, a sag, a spike and a supply that is cut are no ripple") {
               return time_s < 0.5f || time_s > 0.5f + length_s ? nominal_V : other_V;
             }) == never);
   }
-  // The supply is switched on during the check.
+  // Switching the supply on is not ripple.
   CHECK(periods_until_ripple([](float time_s) { return time_s < 0.5f ? 0.0f : nominal_V; }) == never);
 }
 
