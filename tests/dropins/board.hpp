@@ -10,7 +10,7 @@
 
 namespace inkwell::tests {
 
-/// Rest position of the stylus in the hand of these tests; all coordinates differ.
+/// Rest position of the stylus in the simulated hand.
 inline constexpr device::Vector3 held_point_m{0.02, 0.01, -0.03};
 inline constexpr double hand_N_per_m = 300;
 
@@ -24,7 +24,7 @@ struct Board {
 
   device::Vector3 rest_m = held_point_m;
 
-  /// With `paused` the stylus is outside the inkwell when board time begins, so the encoders are not referenced.
+  /// If `paused` is set, the stylus starts outside the inkwell and the encoders are not referenced.
   explicit Board(const device::VirtualBoardOptions& options = {}) : board(options) {
     if (options.paused) {
       control.dock(false);

@@ -23,7 +23,7 @@ struct Course {
     time_s += passed_s;
     return guard.step({force_N, speed_m_per_s, time_s, is_on}, limits_now);
   }
-  /// Force after this number of milliseconds with a constant input.
+  /// Returns the force after `milliseconds` steps with a constant input.
   double after(int milliseconds, const Vector& force_N) {
     for (int i = 1; i < milliseconds; ++i) step(force_N);
     return length(step(force_N).force_N);

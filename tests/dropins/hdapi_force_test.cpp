@@ -175,8 +175,8 @@ TEST_CASE("a force goes on until another one is set, while ticks and poses come"
   while (const auto error = hdGetError().errorCode)
     CHECK(error == HD_FORCE_ERROR);  // on a busy computer the frames may be late
 
-  // Stopping the scheduler or disabling the capability switches the force off. Starting the scheduler or enabling the
-  // capability afterwards does not restore the force.
+  // Stopping the scheduler or disabling the capability switches the force off. A later start of the scheduler or of the
+  // capability does not restore the force.
   const bool by_scheduler = frames % 2 == 0;
   if (by_scheduler) {
     hdStopScheduler();
@@ -346,7 +346,7 @@ TEST_CASE("a lost link is back by itself, with the force off until the program a
   hdEnable(HD_FORCE_OUTPUT);
   CHECK(held.pulls(0, 0.0028, 0.0038, [] {
     set_force({1, 0, 0});
-    // A busy machine may interrupt the link or the force again.
+    // A busy machine may interrupt the link or switch the force off, so the test enables the force again.
     if (hdGetError().errorCode != HD_SUCCESS) hdEnable(HD_FORCE_OUTPUT);
   }));
 }

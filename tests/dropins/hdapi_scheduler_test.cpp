@@ -123,8 +123,7 @@ TEST_CASE("a thread that is cancelled while it waits for the scheduler ends ther
   hdStartScheduler();
   int ticks = 0;
   CHECK(until([&] { return ++ticks == 20; }));
-  // While the scheduler is stopped, hdScheduleSynchronous() calls the callback in the caller's thread, which may be
-  // canceled.
+  // While the scheduler is stopped, hdScheduleSynchronous() calls the callback in the caller's thread.
   hdStopScheduler();
   CHECK(CancelledThread([] {
           hdScheduleSynchronous(

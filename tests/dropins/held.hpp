@@ -47,7 +47,7 @@ inline void forget_errors() {
   }
 }
 
-/// An open device in a hand; the scheduler is running.
+/// An open device in a hand, with a running scheduler.
 struct Held : Board {
   HHD device = hdInitDevice(nullptr);
   Held() {

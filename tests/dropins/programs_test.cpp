@@ -1,4 +1,4 @@
-// Starts programs that behave like CHAI3D or HDAPI programs, also in parallel and with `inkwell run`.
+// Starts programs that behave like CHAI3D or HDAPI programs, alone, in parallel and through `inkwell run`.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -165,7 +165,7 @@ TEST_CASE("the page's program pulls the hand to the middle of the box until Ente
   board.hold();
   RunningProgram well({program("inkwell"), "run", "--usbip", board.address.substr(6), program("drop-in-well")});
   CHECK(well.read_line() == "Press Enter to end.");
-  // Equilibrium position between springs of 300 and 100 N/m whose rest positions are 20 mm apart.
+  // The springs of 300 and 100 N/m have rest positions 20 mm apart.
   const double asked_s = board.time_s();
   while (board.pulled_m(0) > -0.004 && board.time_s() < asked_s + 5.0) {
   }

@@ -226,7 +226,7 @@ TEST_CASE("a servo pulls the hand, and lets go when it is stopped") {
   REQUIRE(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_OK);
   CHECK(inkwell_servo_is_running(virtual_arm.arm) == 1);
   CHECK(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_REFUSED);
-  // Equilibrium position between springs of 300 and 100 N/m whose rest positions are 20 mm apart.
+  // The springs of 300 and 100 N/m have rest positions 20 mm apart.
   const auto pulled = virtual_arm.wait_until([](const auto& pose) {
     return std::abs(pose.position_m[0] - 0.005) < 0.0007 && std::abs(pose.velocity_m_s[0]) < 0.005;
   });
@@ -322,7 +322,7 @@ TEST_CASE("a plane holds the probe up, and a set that is not sound changes nothi
                   std::string(inkwell_error_text()));
   const double below_m[3]{0, 0, -0.034};
   REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, below_m, hand_N_per_m) == INKWELL_OK);
-  // Equilibrium position between springs of 300 and 1000 N/m whose rest positions are 4 mm apart.
+  // The springs of 300 and 1000 N/m have rest positions 4 mm apart.
   virtual_arm.wait_until([](const auto& pose) {
     return std::abs(pose.force_N[2] - 0.92) < 0.1 && (pose.force_sources & INKWELL_SHAPES) != 0;
   });

@@ -13,7 +13,7 @@
 namespace inkwell::tests {
 namespace {
 
-/// Waiting time that is much longer than the test.
+/// A wait of this duration never finishes during the test.
 constexpr double long_s = 1000;
 
 TEST_CASE("a thread that is cancelled in a call that waits ends there, and the arm goes on") {

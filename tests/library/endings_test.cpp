@@ -1,5 +1,5 @@
-// Tests every command of every interface, followed immediately by every kind of program exit. A command that has
-// returned must have been executed.
+// Each command of each interface is followed by each kind of program exit. A command that has returned must have been
+// executed.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -27,8 +27,8 @@ const Words everything{"stop", "disable", "clear", "set", "store", "shapes"},
     without_shapes{"stop", "disable", "clear", "set", "store"};
 const Words every_end{"close", "exit", "kill", "unplug"};
 
-/// The interfaces with their commands and endings. A command of the command line or the window is complete when its
-/// program exits.
+/// Returns the interfaces with their commands and kinds of exit. A command of the command line or the window is
+/// complete when its program exits.
 std::vector<Interface> interfaces() {
   const std::string build = build_directory(), programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
   std::vector<Interface> all{
@@ -66,7 +66,7 @@ struct Watched : Board {
     watcher.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
   }
 
-  /// Returns the next pose. Waits until the cable is connected again.
+  /// Returns the next pose. If the cable is disconnected, waits until it is connected again.
   inkwell_pose newest() {
     inkwell_pose pose;
     for (int i = 0; i < 6'000; ++i) {
@@ -76,15 +76,15 @@ struct Watched : Board {
     FAIL("the board does not come back");
     return {};
   }
-  /// Returns when the watcher has noticed the unplugged cable.
+  /// Returns after the watcher has detected the disconnection.
   void pull_cable() {
     control.usb(false);
     inkwell_pose pose;
     while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  /// Repeats a call of the watcher while poses are missing. Poses are missing after a cable was unplugged or on a busy
-  /// computer.
+  /// Repeats a call of the watcher while poses are missing. Poses can be missing after a cable was unplugged or on a
+  /// busy computer.
   template <class Call>
   void require(Call call) {
     auto result = INKWELL_DISCONNECTED;
@@ -117,9 +117,10 @@ struct Watched : Board {
       require(set_patience);
     }
   }
-  /// Checks the effect of the command. The board must have no other state from the program.
+  /// Checks the effect of the command. The program must not leave any state on the board except the effect of the
+  /// command.
   void check(const std::string& command) {
-    // A pose that the board sent before the command can arrive after the end of the program.
+    // Poses from before the command may arrive after the program has exited.
     for (int i = 0; i < 1'000 && newest().state != INKWELL_READY; ++i) continue;
     CHECK(newest().state == INKWELL_READY);
     driver.reset();

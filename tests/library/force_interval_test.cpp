@@ -1,4 +1,4 @@
-// Tests the interpolation time for a program's forces on the board.
+// Tests the time in which the board interpolates a program's forces.
 #include <doctest/doctest.h>
 
 #include "host/bindings/library/force_interval.hpp"

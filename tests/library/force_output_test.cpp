@@ -1,4 +1,4 @@
-// Tests that no queue delays the forces to the device or the poses to the program.
+// Tests that forces and poses are not delayed in a queue.
 #include <doctest/doctest.h>
 
 #include <memory>

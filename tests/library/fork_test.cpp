@@ -40,7 +40,7 @@ TEST_CASE("forked children neither use nor disturb their parent's arm, and may o
   CHECK(rows == samples);
 }
 
-/// Runs in a child. Returns 0 if the child can open and drive an arm, and if the parent's handle closes silently.
+/// Runs in a child. Returns 0 if the child can drive an arm and can close its parent's handle without a message.
 int try_to_drive(inkwell_arm* of_parent, const std::string& address) {
   const double none_N[3]{};
   inkwell_arm* own = nullptr;

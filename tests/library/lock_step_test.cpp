@@ -1,4 +1,4 @@
-// Tests that in lock step no pose is missed, no force is late, and a run with the same seed is identical.
+// Tests lock step: all poses arrive, all forces are in time, and equal seeds produce equal runs.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Samples record(inkwell_arm* arm, const std::vector<const char*>& signals, std::s
   return samples;
 }
 
-/// Answers each pose with a force along x that depends only on the time. Counts the missed poses.
+/// Answers each pose with a force along x that is a function of time. Counts the missed poses.
 struct TimedServo {
   std::function<double(double time_s)> force_N;
   std::chrono::microseconds takes{0};
@@ -67,7 +67,7 @@ TEST_CASE("recordings add nothing to the delay from pose to force, and a vibrati
   arm.make_active();
   SUBCASE("100 recordings during a servo") {
     constexpr int recordings = 100;
-    // The commands for the signal selection replace two force reports; the effect disappears after 2 ms.
+    // Commands replace two force reports at the start of each recording, so the test skips 60 rows.
     constexpr std::size_t displaced = 60, rows = 100;
     constexpr double N_per_s = 0.5;
     inkwell_pose begin;
@@ -127,7 +127,7 @@ TEST_CASE("a slow servo misses no pose of a virtual board; a slow loop misses no
   inkwell_pose pose, before;
   for (int i = 0; i < 40; ++i) {
     REQUIRE(inkwell_wait_for_pose(arm.arm, 10.0, &pose) == INKWELL_OK);
-    // After a program's second force, the virtual board waits for each force of this program.
+    // The virtual board waits for a program's forces after the second force.
     if (i > 1 && !board) CHECK(pose.sequence == before.sequence + 1);
     before = pose;
     std::this_thread::sleep_for(slow);
@@ -151,7 +151,7 @@ TEST_CASE("a slow servo in C++ misses no pose of a virtual board, and keeps its 
   CHECK(missed == 0);
 }
 
-/// Runs a servo, requests, a moving hand and two recordings. Returns all received values, with the newest pose last.
+/// Runs a servo, requests, a moving hand and two recordings. Returns all received values; the newest pose is last.
 std::pair<Samples, std::vector<double>> run_script(const std::string& address) {
   VirtualArm arm(address);
   arm.make_active();

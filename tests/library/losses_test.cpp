@@ -188,7 +188,7 @@ TEST_CASE("a force that another program or a fault takes away ends the servo, wi
   REQUIRE(inkwell_clear_fault(board.arm) == INKWELL_OK);
   board.drive();
 
-  // A force that the program itself switches off is not reported as a loss.
+  // No loss is reported if the program itself switches the force off.
   REQUIRE(inkwell_disable_force(board.arm) == INKWELL_OK);
   board.driver.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
   const auto off = board.driver.wait_until([](const auto&) { return true; });

@@ -90,7 +90,7 @@ TEST_CASE("closing takes the force away, and waits for a servo that does not ret
     Gate& gate;
     ~AtTheEnd() { gate.open(); }
   } at_the_end{gate};
-  // The state is ready, because the program has switched the force off. An expired force would leave another state.
+  // The program has switched the force off, so the state is ready. An expired force would lead to a different state.
   looks_on.wait_until(
       [](const auto& pose) { return pose.state == INKWELL_READY && (pose.force_sources & INKWELL_PROGRAM) == 0; });
   CHECK_FALSE(is_closed);

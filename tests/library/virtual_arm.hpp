@@ -1,4 +1,4 @@
-// An arm on a separate virtual board or on a running board, and the time limits of tests.
+// Arms on virtual boards, and time limits of tests.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -11,14 +11,14 @@
 
 namespace inkwell::tests {
 
-/// Rest position of the stylus in the hand of these tests: the middle of the box.
+/// Rest position of the stylus in the middle of the box.
 inline constexpr double free_point_m[3]{0.0, 0.0, -0.03};
 
 inline bool says(const std::string& words) {
   return std::string(inkwell_error_text()).find(words) != std::string::npos;
 }
 
-/// Long time limits, so that a busy computer does not fail the tests.
+/// Sets long time limits, so that tests also pass on a busy computer.
 inline inkwell_result set_patience(inkwell_arm* arm) {
   const char* const names[]{"host_timeout_s", "program_force_expiry_s"};
   const double values[]{2.0, 0.5};

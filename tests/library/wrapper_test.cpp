@@ -24,13 +24,13 @@ void let_pass(const Arm& arm) {
   while (arm.wait_for_pose().sequence - begin < poses) continue;
 }
 
-/// Number of all servo calls, and number of calls during or after the destruction of the servo.
+/// Counts all servo calls, and the calls during or after the destruction of the servo.
 struct Calls {
   std::atomic<int> all = 0, late = 0;
   std::atomic<bool> is_gone = false;
 };
 
-/// The destructor of this servo waits for several poses of `clock`. The test thereby detects a late library call.
+/// The servo's destructor waits for several poses of `clock`. A late call of the servo would occur during this wait.
 Arm::Servo counting_servo(const std::shared_ptr<Calls>& calls, const Arm& clock) {
   struct Captured {
     std::shared_ptr<Calls> calls;
@@ -108,7 +108,7 @@ TEST_CASE("a servo moves with its arm, and a moved-from arm refuses every call")
   wait_for_call(*bench.calls, bench.clock);
   CHECK(second.servo_is_running());
 
-  // NOLINTBEGIN(bugprone-use-after-move): which is tested here
+  // NOLINTBEGIN(bugprone-use-after-move): this test uses a moved arm
   CHECK(first.get() == nullptr);
   CHECK_FALSE(first.servo_is_running());
   CHECK(failure_of([&] { first.start_servo([](const Pose&) { return Vector{}; }); }) == INKWELL_BAD_ARGUMENT);

@@ -1,5 +1,5 @@
-// The window's device connection without a display, with the commands of losses_test.py. The window sends no force; a
-// wall of the box produces the force.
+// Provides the window's device connection without a display, for losses_test.py. The window sends no force; a wall of
+// the box produces the force.
 #include <chrono>
 #include <iostream>
 #include <optional>
@@ -30,7 +30,7 @@ std::string shown_place(const window::DeviceView& view) {
   throw std::runtime_error(shown_place(view) + " " + sentence);
 }
 
-/// Throws the shown message if the window shows no current pose.
+/// Throws the displayed message if the window shows no current pose.
 const window::DeviceView& connected_view() {
   const auto& view = desk->refresh();
   const bool is_silent = view.status.message.find("silent") != std::string::npos;

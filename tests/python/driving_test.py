@@ -33,7 +33,7 @@ class Driving(unittest.TestCase):
         self.assertTrue(self.arm.servo_is_running)
         with self.assertRaisesRegex(inkwell.Refused, "already running on this arm"):
             self.arm.servo(lambda pose: None)
-        # Equilibrium position between springs of 300 and 100 N/m whose rest positions are 20 mm apart.
+        # The springs of 300 and 100 N/m have rest positions 20 mm apart.
         pulled = wait_until(self.arm, lambda pose: abs(pose.position_m[0] - 0.005) < 0.0007
                             and abs(pose.velocity_m_s[0]) < 0.005)
         self.assertAlmostEqual(pulled.force_N[0], 1.5, delta=0.15)
@@ -145,7 +145,7 @@ class Driving(unittest.TestCase):
             thread.start()
         for thread in threads:
             thread.join()
-        # On a busy computer all forces may be set before the first force is sent.
+        # On a busy computer the program may set all forces before the library sends the first force.
         wait_until(self.arm, lambda _: self.arm.information.force_reports > before.force_reports)
         wait_until(self.arm, lambda pose: not pose.feels_program)
         after = self.arm.information
@@ -156,7 +156,7 @@ class Driving(unittest.TestCase):
         make_active(self.arm)
         self.arm.place_shapes(inkwell.Plane(FREE_POINT_M, (0, 0, 1), stiffness_N_per_m=1000))
         self.arm.virtual_hand.move((0, 0, -0.034))
-        # Equilibrium position between springs of 300 and 1000 N/m whose rest positions are 4 mm apart.
+        # The springs of 300 and 1000 N/m have rest positions 4 mm apart.
         wait_until(self.arm, lambda pose: abs(pose.force_N[2] - 0.92) < 0.1 and pose.feels_shapes)
         for wrong, words in (([inkwell.Plane(FREE_POINT_M, (0, 0, 0))], "normal of plane 0"),
                              ([inkwell.Plane((math.nan, 0, 0), (0, 0, 1))], "plane 0"),

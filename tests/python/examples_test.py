@@ -72,7 +72,7 @@ class Examples(unittest.TestCase):
     def test_spring_to_a_point(self, name, board):
         board.take_to(beside(0.02))
         with running(name, board.address):
-            # Equilibrium between the hand's spring of 300 N/m and the program's spring of 100 N/m, 20 mm apart.
+            # The hand's spring of 300 N/m and the program's spring of 100 N/m have rest positions 20 mm apart.
             board.wait_until(rests_at_x(0.015))
         board.wait_until(rests_at_x(0.02))
 
@@ -80,7 +80,7 @@ class Examples(unittest.TestCase):
     def test_magnetic_surface(self, name, board):
         board.take_to(beside(0.006))
         with running(name, board.address):
-            # Equilibrium between two springs of 300 and 200 N/m, 6 mm apart.
+            # Two springs of 300 and 200 N/m have rest positions 6 mm apart.
             board.wait_until(rests_at_x(0.0036, 0.0008))
             board.hold(beside(0.016))
             board.wait_until(rests_at_x(0.016))
@@ -107,7 +107,7 @@ class Examples(unittest.TestCase):
         with running(name, board.address):
             board.let_pass(0.5)  # while the force rises
             damping_Ns_per_m = []
-            # On a busy computer, the program can be too slow during some strokes, but not during all strokes.
+            # On a busy computer the program can be too slow during single strokes, so the test repeats the stroke.
             while not damping_Ns_per_m or abs(damping_Ns_per_m[-1] - 4) > 1:
                 self.assertLess(len(damping_Ns_per_m), 10, damping_Ns_per_m)
                 force_N, velocity_m_s = stroke()
@@ -119,7 +119,7 @@ class Examples(unittest.TestCase):
         with running(name, board.address):
             board.let_pass(0.5)
             board.hold(beside(0.015), 600)
-            # Equilibrium between two springs of 800 and 600 N/m, 5 mm apart, with gravity and friction.
+            # Two springs of 800 and 600 N/m have rest positions 5 mm apart, and gravity and friction act.
             board.wait_until(rests_at_x(0.0179, 0.0008))
             radius_m = np.linalg.norm(np.subtract(board.position_m(), FREE_POINT_M))
             self.assertGreater(radius_m, 0.0172)
@@ -131,7 +131,7 @@ class Examples(unittest.TestCase):
             board.take_to(beside(-0.01))
             other.take_to(beside(0.01))
             with running(name, board.address, other.address):
-                # Springs of 300, 150 and 300 N/m in series, 20 mm long.
+                # Three springs of 300, 150 and 300 N/m are connected in series over a distance of 20 mm.
                 board.wait_until(rests_at_x(-0.005))
                 other.wait_until(rests_at_x(0.005))
                 # The motion of one hand moves the other hand.
@@ -141,7 +141,7 @@ class Examples(unittest.TestCase):
     def test_recording(self):
         with VirtualBoard(BUILD) as board, tempfile.TemporaryDirectory() as folder:
             board.take_to(beside(0.0))
-            # The hand moves back and forth, 20 mm per half second.
+            # The hand moves back and forth by 20 mm per half second.
             board.call("hand_path", points=[{"after_s": 0.5 * i, "target_m": beside(0.02 * (i % 2))}
                                             for i in range(1, 200)])
             file = pathlib.Path(folder, "movement.npz")

@@ -1,6 +1,6 @@
-// Searches for a device and uses it with the calls of CHAI3D 3 in the same order. Loads both libraries with dlopen()
-// and resolves every symbol. Makes one deliberate error. Prints one line per result. The optional argument is a force
-// to the right in newtons.
+// Makes the same calls in the same order as CHAI3D 3. Loads both drop-in libraries with dlopen() and resolves every
+// symbol. Makes one deliberate error. Prints one line per result. The optional argument is a rightward force in
+// newtons.
 #include <dlfcn.h>
 
 #include <cstdio>

@@ -1,5 +1,6 @@
-// This program is linked to libHD.so. The program pulls to the right in each tick until it reads a line. With
-// `ends-in-a-frame`, the program exits in the middle of a frame. The program prints `drives` when the force is on.
+// This program is linked to libHD.so. The program requests a force to the right in each tick until a line arrives on
+// its standard input. With `ends-in-a-frame`, the program exits in the middle of a frame. The program prints `drives`
+// when the force is on.
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-// Forks while the scheduler runs, through HDAPI or libhdPhantom: many times in the main thread and once in the
-// callback. A child uses its parent's device, closes it, and exits with all destructors. The program prints each
-// deviation, then the state of the parent's arm.
+// Forks while the scheduler of HDAPI or libhdPhantom runs: many times in the main thread and once in the callback. A
+// child uses its parent's device, closes it, and exits with all destructors. Prints each unexpected result, and finally
+// the state of the parent's arm.
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// Returns from main() while a callback is scheduled, or exits in the callback. The callback uses a global object whose
-// derived part is destroyed 200 ms before its base.
+// The program returns from main() while a callback is scheduled, or exits in the callback. The callback uses a global
+// object whose derived part is destroyed 200 ms before its base.
 #include <atomic>
 #include <chrono>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // Closes its arm in the destructor of a global object, after the thread-local objects of the main thread were
-// destroyed. Requests all data that the library stores before it closes the arm.
+// destroyed. The program requests all stored data before it closes the arm.
 #include <cstdio>
 
 #include <inkwell/inkwell.h>

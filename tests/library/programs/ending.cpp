@@ -1,5 +1,5 @@
-// Opens the arm of INKWELL_DEVICE, executes one command through the C or the C++ interface and prints `returned`. Then
-// the program ends in the requested form. Usage: ending c|cpp COMMAND close|exit|kill|wait
+// Opens the arm of INKWELL_DEVICE, executes one command through the C or the C++ interface and prints `returned`. The
+// last argument selects how the program exits. Usage: ending c|cpp COMMAND close|exit|kill|wait
 #include <unistd.h>
 
 #include <csignal>

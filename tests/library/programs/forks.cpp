@@ -1,6 +1,6 @@
-// Forks while the library's threads run: many times in the main thread, then in the servo. A child calls every function
-// on its parent's arm, closes this arm, opens another arm, and exits with all destructors. Prints each deviation, then
-// the state of the parent.
+// Forks many times in the main thread and then in the servo, while the library's threads run. A child calls every
+// function on its parent's arm, closes this arm, opens another arm, and exits with all destructors. Prints each
+// unexpected result, and then the state of the parent.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Closes the arm in each process when global objects are destroyed.
+/// The destructor of a global object closes the arm in each process.
 struct LateArm {
   inkwell_arm* arm = nullptr;
   ~LateArm() { inkwell_close(arm); }

@@ -1,4 +1,4 @@
-// Counterpart of ending.cpp for the window without a display. The window executes the requested command before it
+// Executes a command through the window's code without a display. The window executes the requested command before it
 // closes. Usage: window_ending COMMAND exit|wait
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// Text of a firmware crash. Symbol names need an ELF, so tests/system/black_box_test.cpp tests the names.
+// Text of a firmware crash. tests/system/black_box_test.cpp tests the symbol names of a crash.
 #include <doctest/doctest.h>
 
 #include "host/client/crash/crash_text.hpp"

@@ -1,4 +1,4 @@
-// The board's answers to commands and shapes, for the transports of tests.
+// Answers commands and shapes like a board.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tests reading the black box of a device, also while other programs read it and while its contents change.
+// Tests reading the black box of a device, with other readers and changing contents.
 #include <doctest/doctest.h>
 
 #include <cstring>

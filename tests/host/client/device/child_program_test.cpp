@@ -1,4 +1,4 @@
-// Tests that no shell interprets the arguments of child programs, and that their output is returned.
+// Tests that no shell interprets the arguments of child programs, and that the output of these programs is returned.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// A fault counts as cleared after the board state has been observed for this duration.
+// Tests how long clear_fault() observes the board state.
 #include "host/client/device/clear_fault.hpp"
 
 #include <chrono>
@@ -42,7 +42,7 @@ class CountingTransport final : public device::Transport {
 
 constexpr std::uint32_t ms_periods = protocol::servo_rate_Hz / 1000;
 
-/// Returns the time in milliseconds that clear_fault() waits while the board shows the state `shown(ms)`.
+/// Returns the waiting time of clear_fault() in milliseconds; `shown(ms)` is the board state.
 template <class Shown>
 unsigned cleared_after_ms(std::int64_t begin_periods, State first, Shown shown) {
   unsigned written = 0, ms = 0;

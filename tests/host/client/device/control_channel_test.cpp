@@ -1,4 +1,4 @@
-// Tests the request to an arm on a USB cable to change from the firmware to the boot loader.
+// Tests the request that switches a connected arm from the firmware to the boot loader.
 #include <doctest/doctest.h>
 
 #include <libusb-1.0/libusb.h>
@@ -13,7 +13,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// Answer to DFU_GETSTATUS (DFU 1.1, section 6.1.2): no time to wait, no text.
+/// Answer to DFU_GETSTATUS (DFU 1.1, section 6.1.2) without waiting time and text.
 Bytes update_status(unsigned status, unsigned state) {
   Bytes answer(6);
   answer[0] = static_cast<std::byte>(status);

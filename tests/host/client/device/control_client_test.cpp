@@ -18,7 +18,7 @@ namespace {
 
 ControlClient client_of(const FakeControlServer& server) { return ControlClient({"127.0.0.1", server.port()}); }
 
-/// Returns the error message of a call that receives this line as its answer.
+/// Returns the error message for this answer line.
 std::string failure_at(const std::string& line) {
   FakeControlServer server([&](const json&) { return line + "\n"; });
   auto client = client_of(server);

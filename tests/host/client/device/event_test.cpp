@@ -1,4 +1,4 @@
-// Tests the events of a device: changes between two poses, parameter changes, and a log of bounded length.
+// Tests the device events from poses and parameter changes, and the length limit of the event log.
 #include <doctest/doctest.h>
 
 #include "host/client/device/event.hpp"

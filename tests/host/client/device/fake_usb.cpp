@@ -26,7 +26,7 @@ using inkwell::tests::Bytes;
 using inkwell::tests::FakeUsb;
 using inkwell::tests::FakeUsbDevice;
 
-// The libraries' headers only declare these types.
+// The headers of the libraries declare these types but do not define them.
 struct libusb_context {};
 struct libusb_device {
   FakeUsbDevice* device;
@@ -50,7 +50,7 @@ void count(int things) {
   if (current != nullptr) current->open_things += things;
 }
 
-/// Copies the bytes that fit, and returns the number of copied bytes.
+/// Copies as many bytes as the buffer holds, and returns their number.
 int give(const Bytes& bytes, unsigned char* data, std::size_t room) {
   const std::size_t length = std::min(bytes.size(), room);
   std::copy_n(bytes.begin(), length, reinterpret_cast<std::byte*>(data));  // memcpy does not accept a null pointer
@@ -69,8 +69,7 @@ int fail(int reason) {
 
 enum class ReportKind : std::uint8_t { output = 0x90, feature = 0xB0 };
 
-/// Returns the lengths of all reports of this kind by report id, from the firmware's report descriptor (HID 1.11,
-/// section 6.2.2).
+/// Reads the lengths of all reports of this kind from the firmware's report descriptor (HID 1.11, section 6.2.2).
 std::map<std::uint8_t, std::size_t> declared_lengths(ReportKind kind) {
   constexpr std::uint8_t report_id = 0x84, report_count = 0x94, kind_bits = 0xFC;
   const auto descriptor = inkwell::usb::hid_report_descriptor(inkwell::protocol::usb::hid_interface);
@@ -96,7 +95,7 @@ std::size_t longest(const std::map<std::uint8_t, std::size_t>& lengths) {
 }
 
 /// Returns the report as sent on the bus. On Windows, hidapi pads an output report to the length of the longest output
-/// report. A feature report has the length that is declared for its id.
+/// report. A feature report has the declared length of its id.
 Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind) {
   Bytes report = to_bytes(data, length);
   if (!current->is_windows) return report;
@@ -109,7 +108,7 @@ Bytes on_the_bus(const unsigned char* data, std::size_t length, ReportKind kind)
   return report;
 }
 
-/// Calls a board function and returns the result in the form of hidapi.
+/// Calls a board function and returns the result like a hidapi function.
 template <class Call>
 int carry_out(Call call) {
   try {
@@ -130,7 +129,8 @@ std::span<std::byte> writable(unsigned char* data, std::size_t length) {
   return {reinterpret_cast<std::byte*>(data), length};
 }
 
-/// Completes one transfer if possible. The callback runs without the lock, because it submits the next transfer.
+/// Completes a pending transfer, if there is one. The callback runs without the lock, because it submits the next
+/// transfer.
 bool complete_one() {
   libusb_transfer* ended = nullptr;
   {

@@ -1,5 +1,5 @@
 // Fake USB devices for tests. This file's .cpp defines the functions of hidapi and libusb that the device library
-// calls. The linker prefers these functions to the functions of the libraries, so no test accesses a real USB.
+// calls. The linker prefers these functions to the functions of the libraries, so no test accesses real USB devices.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace inkwell::tests {
 
 using Bytes = std::vector<std::byte>;
 
-/// A device as hidapi and libusb present it. FakeUsb guards the members that the test accesses while transfers run.
+/// A fake device for hidapi and libusb. While transfers run, the test must access the members through FakeUsb.
 struct FakeUsbDevice {
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
@@ -60,12 +60,12 @@ struct FakeUsbDevice {
 /// Sets the answers that a session needs when it opens an arm.
 void answer_as_inkwell(FakeUsbDevice& arm);
 
-/// Environment variable for the operating system of a FakeUsb: "windows" for Windows, unset for Linux.
+/// If this environment variable is "windows", FakeUsb behaves like Windows; by default it behaves like Linux.
 inline constexpr char fake_usb_system[] = "INKWELL_FAKE_USB_SYSTEM";
 
 /// The fake USB of one test. The devices exist until the end of the test. The Windows variant pads written reports to
-/// their declared length and requires a buffer for the largest feature report. The Windows variant also allows only one
-/// libusb handle, and its functions leave errno at 0.
+/// their declared length and requires a buffer for the largest feature report. The Windows variant allows one libusb
+/// handle at a time and does not set errno.
 class FakeUsb {
  public:
   FakeUsb();
@@ -89,7 +89,7 @@ class FakeUsb {
   std::mutex mutex;
   bool is_windows = false;
   std::deque<FakeUsbDevice> devices;
-  /// Contexts, handles, claims, transfers and HID devices that were not released.
+  /// Number of contexts, handles, claims, transfers and HID devices that are not released.
   int open_things = 0;
 };
 

@@ -70,7 +70,7 @@ Bytes parameters_report(protocol::ReportId id, const protocol::ParameterSet& set
   return bytes_of(report);
 }
 
-/// The reply, cut to the requested length.
+/// Returns the reply, cut to the requested length.
 Bytes limited(const std::uint8_t (&setup)[8], Bytes reply) {
   const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
   reply.resize(std::min(reply.size(), length));

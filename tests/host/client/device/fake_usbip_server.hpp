@@ -39,13 +39,13 @@ class FakeUsbipServer {
   std::uint16_t port() const { return server_.port(); }
   device::Endpoint endpoint() const;
 
-  // Set these members before a client connects.
+  // The test sets these members before a client connects.
   std::string path;  ///< path of the device on the server
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
   std::string serial_number = "0123456789ABCDEF01234567";
   bool refuses_import = false;
-  /// Changes the reply to the first request of a client.
+  /// Modifies the reply to a client's first request.
   std::function<void(Bytes&)> spoil_reply = [](Bytes&) {};
   Bytes device_descriptor;
   Bytes configuration;  ///< descriptor
@@ -73,23 +73,22 @@ class FakeUsbipServer {
   std::function<protocol::RequestResult()> judge_shapes = [] { return protocol::RequestResult::accepted; };
   /// Changes the content of a feature report that is sent to the client.
   std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
-  /// For this number of transactions, the server closes the connection instead of answering.
+  /// The server answers this number of transactions by closing the connection.
   std::atomic<int> transactions_to_break_at = 0;
-  /// Called before the server closes the connection at a transaction.
+  /// This function is called before the server closes the connection at a transaction.
   std::function<void()> on_break = [] {};
   /// If true, the scope belongs to another program, so scope transfers fail immediately.
   std::atomic<bool> scope_is_taken = false;
   /// If true, control requests are received but not answered, as if board time did not advance.
   std::atomic<bool> holds_requests = false;
-  /// If true, output reports are received, and only answer_output() answers them.
+  /// If true, the server answers an output report only when answer_output() is called.
   std::atomic<bool> holds_outputs = false;
   /// Status in the answer to an output report: 0 or a negative errno.
   std::atomic<std::int32_t> output_status = 0;
   /// If true, the server accepts connections and sends no answer.
   bool silent = false;
 
-  /// Answers the oldest pending transfer of this IN endpoint (1 pose, 2 scope), or the next transfer if none is
-  /// pending.
+  /// Answers the oldest pending or the next transfer of this IN endpoint (1 pose, 2 scope).
   void send(std::uint8_t endpoint, Bytes data);
   /// Fails the oldest pending transfer of this IN endpoint with a negative errno.
   void fail(std::uint8_t endpoint, std::int32_t status);
@@ -102,7 +101,7 @@ class FakeUsbipServer {
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
-  /// The received shape reports, each with its received length.
+  /// Shape reports with their received lengths.
   std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
   /// Number of transfers that the client has canceled.

@@ -1,4 +1,4 @@
-// Listens on this computer for tests and serves one client after another.
+// Serves one client after another on this computer, for tests.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace inkwell::tests {
 
-/// Declare the server as the last member of its owner, so that its thread stops before the data is destroyed.
+/// The server must be the last member of its owner, so that the thread stops before the data is destroyed.
 class LocalServer {
  public:
   /// `serve(client)` runs in the server's thread and uses the connected socket until it returns.

@@ -28,7 +28,7 @@ namespace {
 
 const std::filesystem::path paper_arm = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards/arms/paper.toml";
 
-/// A fake virtual board; the program prints the ports of these servers.
+/// The program is a fake virtual board that prints the ports of these servers.
 class StandIn {
  public:
   StandIn(std::uint16_t usbip_port, std::uint16_t control_port) {
@@ -85,7 +85,7 @@ TEST_CASE("the arm description is parsed once: the name does not need the file a
   const auto pipe = directory / "arm.toml";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   std::atomic<bool> is_over = false;
-  // The first reader of the pipe reads the description, and every other reader reads an empty file.
+  // Only the first reader of the pipe receives the description; later readers receive an empty file.
   std::thread writer([&] {
     {
       std::ifstream description(paper_arm);

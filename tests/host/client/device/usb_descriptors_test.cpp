@@ -1,4 +1,4 @@
-// The interfaces and endpoints that the companion uses are read from the descriptors of the device.
+// The companion reads its interfaces and endpoints from the device's descriptors.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// Tests an arm on a USB cable. A fake USB replaces the libraries hidapi (reports) and libusb (scope).
+// Tests an arm on a USB cable. FakeUsb replaces hidapi (reports) and libusb (scope).
 #include <doctest/doctest.h>
 
 #include <libusb-1.0/libusb.h>

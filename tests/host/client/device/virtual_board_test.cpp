@@ -21,7 +21,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A program in a temporary folder. The folder is deleted after the test.
+/// A program in a temporary folder, which is deleted after the test.
 class Script {
  public:
   explicit Script(const std::string& lines) {
@@ -30,7 +30,7 @@ class Script {
   }
   std::filesystem::path program() const { return folder_ / "board"; }
   device::VirtualBoardOptions options() const { return {.program = program(), .elf = program()}; }
-  /// Content of the file that the script wrote; empty if the file does not exist.
+  /// Returns the content of a file that the script wrote, or an empty string.
   std::string file(const char* name) const {
     std::string line;
     std::getline(std::ifstream(folder_ / name), line);

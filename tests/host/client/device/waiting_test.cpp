@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// This device sends nothing for the requested time.
+/// A read from this device always times out.
 class SilentTransport final : public device::Transport {
  public:
   explicit SilentTransport(std::vector<std::chrono::milliseconds>& waited) : waited_(waited) {}
@@ -39,8 +39,7 @@ class SilentTransport final : public device::Transport {
 
 }  // namespace
 
-// Some nanoseconds of the last millisecond have passed when the transport is called. A timeout rounded down to 0
-// would turn a reading loop into a busy loop.
+// The remaining time is a fraction of a millisecond. Rounding this time down to 0 would cause a busy loop.
 TEST_CASE("a device is waited for also in the last millisecond") {
   std::vector<std::chrono::milliseconds> waited;
   device::Device device(std::make_unique<SilentTransport>(waited));

@@ -214,7 +214,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
                    "is in use by"));
   }
 
-  // A file with the size of the flash, but without a flash image.
+  // This file has the size of the flash but contains no flash image.
   const std::string pictures(protocol::flash_bytes, 'P');
   std::ofstream(file, std::ios::binary) << pictures;
   CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),

@@ -1,4 +1,4 @@
-// Tests updates with a debug probe: openocd's arguments, openocd's folder, and the condition for success.
+// Tests updates through openocd with a debug probe.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -79,8 +79,8 @@ std::string begin_of_flash(const protocol::ImageIdentity& identity) {
   return bytes;
 }
 
-/// A fake `openocd` script in the first folder of PATH. The script supplies the first bytes of the flash, or logs its
-/// arguments, its folder and the files in the folder.
+/// A fake `openocd` script in the first folder of PATH. The script outputs the first bytes of the flash, or logs its
+/// arguments and the files in its folder.
 class FakeOpenocd {
  public:
   explicit FakeOpenocd(const std::string& end, const std::string& flash = std::string(identity_end, '\xFF')) {
@@ -96,7 +96,7 @@ class FakeOpenocd {
     fs::permissions(program, fs::perms::owner_all);
     path_before_ = std::getenv("PATH");
     setenv("PATH", (bin.string() + ":" + path_before_).c_str(), 1);
-    // In the user's folder, openocd would search for scripts here first.
+    // openocd must not use the scripts in the user's current folder.
     folder_before_ = fs::current_path();
     fs::create_directories(directory_ / "here/interface");
     std::ofstream(directory_ / "here/interface/stlink.cfg") << "shutdown\n";

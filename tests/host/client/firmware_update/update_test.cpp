@@ -25,7 +25,7 @@ using Bytes = std::vector<std::byte>;
 
 constexpr std::uint32_t options_address = 0x1FFF'C000;
 
-/// A fake of ST's loader with the flash at one address and the option bytes at another address.
+/// A fake of ST's loader, with the flash and the option bytes at separate addresses.
 class FakeLoader final : public device::ControlChannel {
  public:
   FakeLoader() { options[1] = std::byte{0xAA}; }

@@ -11,7 +11,7 @@ using namespace inkwell::guides;
 TEST_CASE("stops give back the scale and the inkwell's angle that were wrong") {
   const JointStops expected{-0.98, 0.98};
   const double inkwell_rad = 0.1;
-  // Angle that a device shows if its encoder scale is 1.25 times too large and its inkwell angle is wrong by 0.05 rad.
+  // The device's encoder scale is 1.25 times too large, and its inkwell angle is wrong by 0.05 rad.
   const auto shown = [&](double right_rad) { return inkwell_rad + (right_rad - 0.15) * 1.25; };
   const StopsFit fit = fit_stops({shown(-0.98), shown(0.98)}, expected, inkwell_rad, true);
   CHECK(fit.scale == doctest::Approx(0.8));

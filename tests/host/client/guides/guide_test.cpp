@@ -20,7 +20,7 @@ namespace {
 
 bool no_current_was_asked(const FakeArm& arm) { return arm.pulses.empty(); }
 
-/// The last requests switched the force and the pulses off.
+/// Checks that the last requests switched the force and the pulses off.
 void check_left_safe(const FakeArm& arm) {
   REQUIRE(!arm.commands.empty());
   CHECK(arm.commands.back() == Command::disable_force);
@@ -221,7 +221,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
   for (const bool encoder_wrong : {false, true})
     for (const bool motor_wrong : {false, true}) {
       FakeArm arm;
-      // The fake's joints follow the sign of the encoder.
+      // If both signs are wrong, motor and encoder agree.
       arm.motor_turns_backward = motor_wrong != encoder_wrong;
       Guide guide = guides::directions_guide.start();
       for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
@@ -271,14 +271,14 @@ TEST_CASE("joint stops need both ends before the button counts, and trust decide
     };
     for (int ms = 0; ms < 300; ++ms) arm.pass_millisecond(guide);
     REQUIRE(guide.step_index() == 1);
-    // Joint 1: encoder 1 shows half of the travel.
+    // Encoder 1 reports half of the true travel.
     rest(1, -0.49f);
     guide.confirm();
     for (int ms = 0; ms < 10; ++ms) arm.pass_millisecond(guide);
     CHECK(guide.step_index() == 1);  // one of two stops is known
     rest(1, 0.49f);
     guide.confirm();
-    // Joint 2 is correct. Joint 3 (absolute) has stops 0.2 rad above the limits while joint 2 is at 1.0.
+    // Joint 2 is correct. The stops of joint 3 are 0.2 rad above the limits while joint 2 is at 1.0 rad.
     rest(2, 0.0f);
     rest(2, 1.75f);
     guide.confirm();

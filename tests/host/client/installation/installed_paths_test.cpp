@@ -1,4 +1,4 @@
-// Tests the file paths that programs in the build folder use. tests/installation checks installed programs.
+// Tests the installed paths for programs in the build folder.
 #include <doctest/doctest.h>
 
 #include <filesystem>

@@ -33,7 +33,7 @@ TEST_CASE("with the gimbal at zero the stylus points from the base to the user, 
 TEST_CASE("the waist takes the stylus with it") {
   auto joint_rad = hanging();
   joint_rad[0] = quarter_rad;
-  // Left is positive: a stylus that points toward the user turns toward -x.
+  // A positive angle of joint 1 turns the stylus from the user's direction toward -x.
   check_close(kinematics::stylus_rotation(joint_rad, {}, arm())[2], {-1, 0, 0});
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("yaw, pitch and roll turn about forearm, side and stylus, with the sig
   const auto stylus = [](std::array<float, 3> gimbal_rad) {
     return kinematics::stylus_rotation(hanging(), gimbal_rad, arm());
   };
-  // Direction of the back of the stylus; its tip does not move.
+  // The third column of the rotation is the direction of the back of the stylus.
   check_close(stylus({quarter_rad, 0, 0})[2], {-1, 0, 0});
   check_close(stylus({0, quarter_rad, 0})[2], {0, -1, 0});
   check_close(stylus({0, 0, quarter_rad})[2], {0, 0, 1});

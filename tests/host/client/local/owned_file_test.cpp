@@ -48,7 +48,7 @@ std::string refusal(const fs::path& file) {
 
 std::string of_this_process() { return "(process " + std::to_string(getpid()) + ")"; }
 
-/// This process calls a function and then waits for a kill signal.
+/// The child calls a function and waits until it is killed.
 class Child {
  public:
   explicit Child(const std::function<void()>& action) {
@@ -201,7 +201,7 @@ TEST_CASE("a program that was started meanwhile does not keep the file") {
     std::array<char*, 3> words{program, time, nullptr};
     REQUIRE(posix_spawn(&process, program, nullptr, nullptr, words.data(), environ) == 0);
   }
-  // The system closes the new program's files shortly after posix_spawn returns.
+  // The new program's files are closed shortly after posix_spawn returns.
   for (int tries = 0; tries < 1000 && !refusal(file).empty(); ++tries) std::this_thread::sleep_for(10ms);
   CHECK(refusal(file).empty());
   kill(process, SIGKILL);

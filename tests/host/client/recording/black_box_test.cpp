@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t step = protocol::black_box_step_periods;
 
-/// A fault in period 2047: rows before the fault, the row of the fault outside the 1 ms grid, and rows after the fault.
+/// Rows around a fault in period 2047, which is not a multiple of 1 ms.
 std::vector<BlackBoxRow> rows() {
   std::vector<BlackBoxRow> rows;
   for (const std::uint32_t period : {2000, 2020, 2040, 2047, 2067, 2087}) {

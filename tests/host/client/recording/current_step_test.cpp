@@ -1,4 +1,4 @@
-// Tests the computed figures of a current step with responses of known figures.
+// Tests the computed figures of current steps against known responses.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using recording::current_step;
 
 namespace {
 
-/// A first-order response with this time constant; the overshoot is added to the plateau's first sample.
+/// Returns a first-order response; the overshoot is added to the first sample of the plateau.
 std::vector<float> answer(double amplitude_A, double time_constant_s, std::size_t begin, std::size_t end,
                           std::size_t size) {
   std::vector<float> current_A(size, 0.0f);

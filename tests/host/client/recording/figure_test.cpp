@@ -1,4 +1,4 @@
-// Figures of recordings: panes by unit, and the drawn lines.
+// Tests the panes and lines in figures of recordings.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -60,11 +60,11 @@ Recording constant(const std::vector<std::pair<Quantity, float>>& values, std::u
   return recording;
 }
 
-// The first line colors of a pane, and the positions of the panes in the picture.
+// Line colors, and positions of the panes in the picture.
 constexpr Colour blue{0x00, 0x72, 0xb2}, vermilion{0xd5, 0x5e, 0x00}, green{0x00, 0x9e, 0x73}, purple{0xcc, 0x79, 0xa7};
 constexpr std::size_t first_pane = 120, pane_height = 320, pane_step = 360, plot_left = 190, plot_right = 1225;
 
-/// Middle row of a pane's horizontal line with this color; empty if there is no such line.
+/// Returns the middle row of a horizontal line with this color, or nothing if the line is missing.
 std::optional<double> line_at(const Image& image, std::size_t pane, Colour colour) {
   double sum = 0;
   int rows = 0;
@@ -83,7 +83,7 @@ std::optional<double> line_at(const Image& image, std::size_t pane, Colour colou
   return sum / rows;
 }
 
-/// Number of names next to a pane. A font may leave some empty rows between a name's letters and its underscores.
+/// Returns the number of names next to a pane. Some empty rows can separate a name's letters from its underscores.
 int names_beside(const Image& image, std::size_t pane) {
   constexpr std::size_t names_left = 1330, gap_between_names = 6;
   int names = 0;
@@ -119,7 +119,7 @@ TEST_CASE("samples that are far apart are drawn at their own times") {
   recording.columns[0][0] = recording.columns[0][1] = 0.0f;
   const TemporaryDirectory directory;
   draw_figure(recording, {}, directory / "a.png");
-  // The line rises within the first twentieth of the time and is level afterward.
+  // The line rises during the first 5 % of the time and then is level.
   CHECK(line_at(read_png(directory.file("a.png")), 0, blue));
 }
 

@@ -57,7 +57,8 @@ TEST_CASE("gnuplot prints a quoted text as it is, whatever is in it") {
 TEST_CASE("no name in a figure runs a command") {
   const TemporaryDirectory directory;
   const std::string marker = directory.file("marker"), command = "`touch " + marker + "`";
-  // A backslash at the end of a line makes gnuplot append the next line. A zero byte ends a line.
+  // A backslash at the end of a line makes gnuplot append the next line. gnuplot treats a zero byte as the end of a
+  // line.
   Recording base = named("arm"), over = named("arm");
   base.information.arm = std::string("joined\\\0", 8);
   over.name = command;

@@ -90,14 +90,13 @@ void put_dataset(hid_t file, const char* path, hid_t type, hid_t space, hid_t pr
   H5Dclose(dataset);
 }
 
-/// A file with a valid recording; the test changes the file.
 struct Spoilt {
   TemporaryDirectory directory;
   fs::path file = directory / "a.h5";
 
   Spoilt() { save(good_recording(), file); }
 
-  /// Error message of reading the changed file.
+  /// Changes the file, reads it and returns the error message.
   std::string after(const std::function<void(hid_t)>& change) const {
     {
       const hid_t access = H5Pcreate(H5P_FILE_ACCESS);

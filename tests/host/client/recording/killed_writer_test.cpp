@@ -72,7 +72,7 @@ void write_recording(const std::filesystem::path& file, const std::function<void
 TEST_CASE("an HDF5 recording can be opened by every program, whichever write its own was killed at") {
   const tests::TemporaryDirectory directory;
   const auto file = directory / "a.h5";
-  // A kill before a write leaves the file in the state before this write.
+  // A copy before each write equals the file of a program killed at this write.
   int copies = 0;
   const auto copy_of = [&](int number) { return directory / (std::to_string(number) + ".h5"); };
   write_recording(file, [&] { before_each_write = [&] { std::filesystem::copy_file(file, copy_of(copies++)); }; });
@@ -101,7 +101,7 @@ TEST_CASE("an HDF5 recording can be opened by every program, whichever write its
     most = std::max(most, recording.size());
   }
   CHECK(most > samples_of_a_flush * (flushes - 1));
-  // While HDF5 splits a full node of 64 chunks, the column is unreadable. In this test a node is split once per column.
+  // While HDF5 splits a full node of 64 chunks, the column is unreadable. In this test HDF5 splits one node per column.
   const std::size_t columns = 2 + about().signals.size();
   CHECK(unreadable <= columns);
 }

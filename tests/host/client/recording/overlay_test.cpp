@@ -1,4 +1,4 @@
-// Tests two recordings on a common time axis, aligned at the start or at a mark, also with gaps.
+// Tests the alignment of two recordings at the start or at a mark.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST_CASE("a mark that both hold aligns them") {
   const auto message = message_of<device::Error>([&] { Overlay(over, base, "only here"); });
   CHECK(message.find("over has no mark `only here`") != std::string::npos);
   CHECK(message.find("`only there`") != std::string::npos);
-  // With the recordings exchanged, the second recording starts earlier.
+  // After the recordings are exchanged, the second recording starts first.
   CHECK(Overlay(base, over, "touch").compared_with(over.samples(0, 1)).values[0] == 20.0f);
 }
 

@@ -1,4 +1,4 @@
-// Tests which characters of names and texts from a file are printed and written to other files.
+// Tests which characters of a file's names and texts are printed or written to other files.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -68,7 +68,7 @@ TEST_CASE("texts of a recording are plain once it is read") {
   CHECK(contains(remarks[1], "The signal ?[1m of "));
   std::ofstream(directory / "b.csv") << "# inkwell recording = 1\ntime_s,force_N\n0.0,\x1B]0;title\x07\n";
   CHECK(contains(message_of<device::Error>([&] { read(directory / "b.csv"); }), "\"?]0;title?\""));
-  // Control characters of the file name are also replaced.
+  // Control characters in a file name are replaced.
   fs::rename(directory / "a.h5", directory / "\x1B[5m.h5");
   CHECK(read(directory / "\x1B[5m.h5").name == "?[5m");
 }

@@ -58,7 +58,7 @@ device::ScopeSamples samples(std::int64_t first_period, std::size_t count) {
 
 const std::string long_text(120, 'x');  // the length that HDF5 reserves for a text
 
-/// A recording with a gap and with simulated quantities next to the signals.
+/// This recording has a gap and simulated quantities.
 Recording simulated() {
   auto recording = Recording::without_samples(about());
   recording.append(samples(300, 5000));
@@ -106,7 +106,7 @@ void check_is_whole(const Recording& recording, std::int64_t first_period, std::
   CHECK(wrong == 0);
 }
 
-/// The file is marked as incomplete, and no written sample is lost.
+/// Checks that the file is marked as incomplete and contains all written samples.
 void check_broke_off(const fs::path& file) {
   const auto recording = read(file);
   CHECK_FALSE(recording.complete);
@@ -321,7 +321,7 @@ TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") 
   CHECK_THROWS_AS(Recorder(directory / "a.h5", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "a.mat", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "missing" / "a.h5", about()), device::Error);
-  // An error that is not a full disk is not reported as a full disk.
+  // Other write errors are not reported as a full disk.
   const auto refusal = message_of<device::Error>([] { Recorder("/proc/a.h5", about()); });
   CHECK(refusal.find("the system refused access") != std::string::npos);
   CHECK(fs::file_size(directory / "a.h5") == 8);
@@ -388,7 +388,7 @@ TEST_CASE("a full disk ends the recording with a sentence and keeps what was wri
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
-      // A limit of the file size replaces a full disk, because the same system call fails.
+      // A file size limit makes the same system call fail as a full disk.
       std::signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{2'000'000, 2'000'000};
       setrlimit(RLIMIT_FSIZE, &limit);

@@ -20,7 +20,7 @@ using protocol::State;
 
 namespace {
 
-/// A board whose poses arrive one by one: a read that does not wait finds no pose.
+/// Poses arrive one by one, so a read without waiting finds no pose.
 class SlowPoses final : public device::Transport {
  public:
   explicit SlowPoses(std::vector<State> states) : states_(std::move(states)) {}

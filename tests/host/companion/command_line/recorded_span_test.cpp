@@ -1,4 +1,4 @@
-// Tests which samples belong to a recording of a given length, and how many samples are missing at its end.
+// Tests which samples a recording of a given length contains, and how many samples are missing at its end.
 #include <doctest/doctest.h>
 
 #include "host/companion/command_line/recorded_span.hpp"

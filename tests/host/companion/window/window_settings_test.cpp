@@ -1,4 +1,4 @@
-// Settings can be written and read again, and a damaged file never prevents the window from opening.
+// Tests that settings can be written and read, and that a damaged file does not prevent the window from opening.
 #include <filesystem>
 #include <iterator>
 

@@ -46,11 +46,11 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
               return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
             }) >= phases);
   }
-  // Wires have the names of the board facts. Wires to the host and to the debug probe are not included.
+  // Case names contain the wire names of the board facts. Wires to the host or to the debug probe have no cases.
   CHECK(names.contains("wire_open:encoders[1].a wall 2"));
   CHECK(names.contains("wire_high:bridge_enable rest 1"));
-  // Of three components of one kind, the second component is tested at each instant. The other two components are
-  // tested at one random instant per situation.
+  // The second of three equal components is tested at each instant. The first and the third component are tested at one
+  // random instant per situation.
   for (const char* others : {"wire_open:encoders[0].a wall 3", "wire_open:encoders[2].a starting 2",
                              "motor_hot:1 rest 3", "leg_high:3B limited 2", "encoder_slip:3=400 motion 2"})
     CHECK(names.contains(others));
@@ -63,11 +63,11 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK_FALSE(names.contains("none starting 4"));
   CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
-  // Some faults are tested with the default amount of the fault table and with another amount.
+  // Some faults have cases with the default amount and with a second amount.
   for (const char* amount : {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag",
                              "analog_sag=3.5", "main_loop_stalled", "main_loop_stalled=0.012"})
     CHECK(names.contains(std::string(amount) + " rest 1"));
-  // PendSV, and positions 1 and 18 of RM0090's vector table.
+  // 14 is PendSV, and 17 and 34 are positions 1 and 18 of RM0090's vector table.
   for (const char* exception : {"14", "17", "34"})
     CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
 }
@@ -75,7 +75,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
 TEST_CASE("every state of the board is tried") {
   for (const protocol::StateInfo& state : protocol::state_table) {
     CAPTURE(state.name);
-    // The active state is split into the situations at rest, in the wall and in motion.
+    // The active state consists of the situations `rest`, `wall` and `motion`.
     CHECK((state.name == "active" ||
            std::ranges::any_of(situations, [&](CaseSituation situation) { return name_of(situation) == state.name; })));
   }

@@ -34,7 +34,7 @@ std::string section_of(const std::string& page, const std::string& heading) {
   return page.substr(begin, page.find("\n## ", begin + 1) - begin);
 }
 
-/// Result of a case in which another fault was reported earlier.
+/// Returns the result of a case in which another fault was reported first.
 Result after_first(const std::string& fault, FirstFault first_fault) {
   Result result = seen(fault, "fault", 1);
   result.told_before = protocol::Fault::host_silent;

@@ -247,8 +247,8 @@ TEST_CASE("the plots have titles, units, a legend and the force limit") {
   CHECK(count(force, ">peak force at the hand, N</text>") == 1);
   CHECK(count(force, ">force limit 3.3 N</text>") == 1);
   CHECK(count(force, "at most this; forces without a fault: wall 2.4 N") == 1);
-  // The axis has nine classes up to the largest force. Three classes contain a case. Bars of forces that also occur
-  // without a fault are gray. Each color appears once more in the legend.
+  // The force axis has nine classes. Three of the nine classes contain cases. Bars are gray for forces that fault-free
+  // cases also reach. The legend repeats each color.
   CHECK(count(force, ">4.5</text>") == 1);
   CHECK(count(force, ">5</text>") == 0);
   CHECK(count(force, "#b9c1ca") == 3);

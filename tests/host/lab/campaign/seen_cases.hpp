@@ -18,7 +18,7 @@ inline std::string content_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The summary page and all detail pages, separated by empty headings.
+/// Returns the summary page and all detail pages as one text.
 inline std::string pages_of(const std::filesystem::path& summary) {
   std::string text = content_of(summary);
   for (const char* name : {"hand.md", "undetected.md", "second-fault.md", "by-situation.md"})

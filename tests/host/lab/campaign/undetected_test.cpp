@@ -101,7 +101,7 @@ TEST_CASE("undetected faults are listed with their result during use, compared w
   stuck_later.peak_force_in_use_N = 3.4;
   stuck_later.noticed_in_use_as = {NoticedInUse::By::fault, protocol::Fault::motor_implausible};
   stuck_later.noticed_in_use_s = 1.75;
-  // Only one of the two situations has a fault-free case at the same instant for comparison.
+  // One of the situations has no fault-free case at the same instant.
   fault_free.energy_in_use_J = 0.04;
   hot.energy_in_use_J = 0.039;
   stuck.energy_in_use_J = 0.0425;
@@ -282,7 +282,7 @@ TEST_CASE("each undetected fault has a reason in each of the three tables") {
     for (const Result& result : results) {
       CAPTURE(result.fault.name());
       CAPTURE(table.before_reason);
-      // The fault has a separate row or shares a row with faults of the same reason.
+      // Each fault is listed alone or with faults of the same reason.
       std::string reason;
       std::istringstream lines(text);
       for (std::string line; reason.empty() && std::getline(lines, line);) {
@@ -294,7 +294,7 @@ TEST_CASE("each undetected fault has a reason in each of the three tables") {
       reason.resize(reason.size() - 2);
       CHECK(reason.size() > 20);
       CHECK(reason.ends_with("."));
-      // A reason that is valid only with the bridges off is not valid while the force is on.
+      // A reason that applies only with disabled bridges must not appear while the force is on.
       if (result.situation == CaseSituation::rest)
         CHECK(reason.find("correct while the bridges are off") == std::string::npos);
     }

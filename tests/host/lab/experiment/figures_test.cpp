@@ -23,7 +23,7 @@ namespace {
 
 constexpr Colour blue{0x00, 0x72, 0xb2}, vermilion{0xd5, 0x5e, 0x00}, green{0x00, 0x9e, 0x73};
 
-/// A push into the upper z wall from 0.3 s to 0.4 s. All other signals are sine waves.
+/// A push into the upper z wall lasts from 0.3 s to 0.4 s. The unused signals are sine waves.
 recording::Recording push() {
   recording::Information about;
   about.signals = recording::signal_path();

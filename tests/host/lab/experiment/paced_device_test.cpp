@@ -34,7 +34,7 @@ class SlowTransport final : public device::Transport {
     protocol::CommandReport command;
     std::memcpy(&command, report.data(), sizeof command);
     received_.push_back(command);
-    // Commands of one bus frame are executed together, and a pose contains only the last token.
+    // The board executes all commands of one bus frame together and reports only the last token.
     const std::uint32_t due = pose_.sequence + static_cast<std::uint32_t>(latency_);
     if (latency_ > 0) waiting_.push_back({due - due % 2, command.token});
   }

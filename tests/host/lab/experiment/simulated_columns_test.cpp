@@ -1,4 +1,4 @@
-// The simulated quantities are stored next to the device's signals, one row per period.
+// Tests that simulated quantities are stored in one row per period.
 #include <doctest/doctest.h>
 
 #include "host/lab/experiment/simulated_columns.hpp"
@@ -18,7 +18,7 @@ Recording recorded(std::uint32_t first_period, std::size_t samples) {
   return recording;
 }
 
-/// A trace in the format of a virtual board. Each quantity is the period plus a thousandth of its column number.
+/// A trace in the format of a virtual board. Each quantity is the period number plus a thousandth of its column number.
 device::Trace trace_of(std::uint64_t first_period, std::size_t rows) {
   device::Trace trace;
   trace.columns = {"period", "board_time_s"};

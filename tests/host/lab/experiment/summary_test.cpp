@@ -15,7 +15,7 @@ namespace {
 using protocol::Signal;
 using recording::Recording;
 
-/// A recording with all signals of the signal path; values that `fill` does not set are zero.
+/// Signals of the recording that `fill` does not set are zero.
 Recording synthetic(std::size_t samples, const std::function<void(std::size_t, protocol::SignalValues&)>& fill) {
   recording::Information about;
   about.signals = recording::signal_path();
@@ -31,14 +31,14 @@ Recording synthetic(std::size_t samples, const std::function<void(std::size_t, p
   return recording;
 }
 
-/// A push into the upper z wall with 0.4 N at rest; the force deviates from the law by `error_N`.
+/// The probe pushes into the upper z wall, with 0.4 N at rest. The force deviates from the force law by `error_N`.
 Recording push(double error_N = 0) {
   return synthetic(20'000, [&](std::size_t i, protocol::SignalValues& values) {
     if (i < 5000 || i >= 17'000) return;
     const bool steady = i >= 6000;
     values[Signal::penetration_z_m] = -0.0005f;
     values[Signal::velocity_z_m_s] = steady ? 0.0f : 0.1f;
-    // d' = v toward the wall: F = 800 * 0.0005 + 2 * 0.1
+    // Wall force while the probe moves inward: F = 800 * 0.0005 + 2 * 0.1
     const double force_N = -(0.4 + (steady ? 0.0 : 0.2)) - error_N;
     values[Signal::force_z_N] = static_cast<float>(force_N);
     values[Signal::force_N] = static_cast<float>(std::abs(force_N));

@@ -10,7 +10,7 @@ using protocol::State;
 
 namespace {
 
-/// The oracle checks this board every 5 ms, and the board sends one pose between two checks.
+/// The oracle checks the board every 5 ms, and one pose arrives between two checks.
 struct Watched {
   Oracle oracle;
   double now_s = 1.0;

@@ -18,7 +18,7 @@ using protocol::Refusal;
 
 namespace {
 
-/// The firmware's decision about the changes.
+/// Returns the firmware's decision about the changes.
 link::ParameterCheck checked(const Changes& changes, const ParameterSet& now, bool force_is_on) {
   protocol::ParametersReport report{};
   report.report_id = protocol::ReportId::parameters;

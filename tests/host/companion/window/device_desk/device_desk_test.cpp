@@ -21,7 +21,7 @@ TEST_CASE("with several arms the desk asks, and goes to the one that is chosen")
   desk.choose("B");
   desk.follow_choice();
   CHECK(desk.wanted_serial_number() == "B");
-  // No arm answers requests in this test, so an error is shown instead of a question.
+  // No arm answers in this test, so the desk shows an error instead of a question.
   REQUIRE(eventually([&] { return !desk.refresh().status.message.empty(); }));
   CHECK_FALSE(desk.view().must_choose);
 }

@@ -51,8 +51,8 @@ TEST_CASE("an edit shows at once, is sent once, and gives way to what the device
   REQUIRE(changes.size() == 1);
   CHECK(changes[0] == ParameterChange{stiffness, 100.0f});
   CHECK(editor.take_changes().empty());
-  // The device first answers with the values of another transaction. The window shows the edit for at most one more
-  // second.
+  // The device first answers with the values of another transaction. The window shows an unconfirmed edit for at most
+  // one second.
   editor.device_holds(device.held);
   CHECK(editor.shown(stiffness) == 100.0f);
   editor.forget_unconfirmed(0.9);

@@ -1,4 +1,4 @@
-// Tests the notice about values that changed during a reconnection, and the restoration of these values.
+// Tests the notice about changed values after a reconnection, and the restoration of these values.
 #include <doctest/doctest.h>
 
 #include "host/companion/window/device_desk/returned_values.hpp"
@@ -12,7 +12,7 @@ namespace {
 constexpr Parameter stiffness = Parameter::wall_stiffness_N_per_m;
 constexpr Parameter damping = Parameter::wall_damping_Ns_per_m;
 
-/// View of a device with the values `held_before` before a reconnection and the default values after it.
+/// The device had the values `held_before` before a reconnection and has default values afterward.
 window::DeviceView returned(std::initializer_list<device::ParameterChange> held_before) {
   window::DeviceView view;
   view.status.connection = device::Connection::connected;

@@ -1,4 +1,4 @@
-// Labels that are too long are shortened with an ellipsis, and the window size depends on the text.
+// Tests the shortening of long labels and the window size for a text.
 #include <doctest/doctest.h>
 
 #include "host/companion/window/frame/ellipsis.hpp"
@@ -8,7 +8,7 @@ using namespace inkwell::window;
 
 namespace {
 
-/// Text width with one unit per character.
+/// Returns the number of characters as the text width.
 float characters(std::string_view text) {
   float count = 0;
   for (const char byte : text) count += (static_cast<unsigned char>(byte) & 0xC0u) != 0x80u ? 1.0f : 0.0f;

@@ -7,7 +7,7 @@ using namespace inkwell::window;
 
 namespace {
 
-/// Number of frames in ten seconds if a loop checks an unchanged state 60 times per second.
+/// Returns the number of frames that a loop with 60 checks per second draws in ten seconds.
 int frames_drawn(const FrameEvidence& evidence, double drawing_s = 0.0) {
   FrameRhythm rhythm;
   rhythm.took(drawing_s);

@@ -1,4 +1,4 @@
-// Tests which parts of a window are redrawn: changed parts, and parts above or below changed parts.
+// A change redraws the changed parts of a window and all parts above or below them.
 #include <doctest/doctest.h>
 
 #include <vector>

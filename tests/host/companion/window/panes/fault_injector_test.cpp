@@ -1,5 +1,5 @@
-// Tests the thread that injects faults into a virtual board. A control socket replaces the board. The test sets the
-// answers of the socket.
+// Tests the thread that injects faults into a virtual board. A fake control socket answers instead of a board. The test
+// sets the answers of the socket.
 #include "host/companion/window/panes/fault_injector.hpp"
 
 #include <doctest/doctest.h>

@@ -26,7 +26,7 @@ Injection to_come(unsigned number, double at_s) {
   return scheduled;
 }
 
-/// Answer of a board at this board time. The firmware started at `run_began_s`.
+/// Returns the board's answer at this board time. The firmware started at `run_began_s`.
 Injections answer(double board_time_s, std::vector<Injection> faults, double run_began_s = 1.0,
                   double period_s = 50e-6) {
   const double since_s = board_time_s - run_began_s;

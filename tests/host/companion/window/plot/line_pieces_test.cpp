@@ -1,4 +1,4 @@
-// A line that reverses its direction is drawn completely, in pieces.
+// Tests that a reversing line is drawn completely, in several pieces.
 #include <doctest/doctest.h>
 
 #include <span>

@@ -33,7 +33,7 @@ TEST_CASE("lost samples are left out of the statistics") {
 
 TEST_CASE("a sine stands in the spectrum at its frequency with its amplitude") {
   SignalSeries series(1 << 16);
-  // The frequency is exactly line 128 of 16384 samples, so that no energy leaks into other lines.
+  // The signal has exactly the frequency of spectral line 128, so no energy leaks into other lines.
   const double frequency_Hz = 128.0 * 20'000.0 / 16'384.0;
   for (int i = 0; i < 20'000; ++i)
     series.append(0.7f + 0.25f * static_cast<float>(std::sin(2.0 * std::numbers::pi * frequency_Hz * i / 20'000.0)));

@@ -1,4 +1,4 @@
-// The scope's history: the extremes of any range equal the extremes of the range's samples, also after overwriting.
+// Tests the extremes of ranges in the scope's history, before and after old samples are overwritten.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -14,7 +14,7 @@ namespace {
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr protocol::Signal force = protocol::Signal::force_N;
 
-/// Appends this number of force samples; the force is 1 N from the sample `rise` on.
+/// Appends `count` force samples; the force is 1 N from sample `rise` on.
 void receive(Timeline& timeline, std::size_t count, std::size_t rise = 1'000'000) {
   const auto first = static_cast<std::uint32_t>(timeline.history().end());
   device::ScopeSamples samples{{force}, first, count, {}, 0};

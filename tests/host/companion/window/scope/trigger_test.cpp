@@ -1,4 +1,4 @@
-// The trigger finds each crossing once, waits until the picture of the crossing is complete, and stores a single event.
+// Tests that the trigger finds each crossing once and waits for a complete picture.
 #include <doctest/doctest.h>
 
 #include "host/companion/window/scope/trigger.hpp"
