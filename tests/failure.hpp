@@ -7,7 +7,7 @@
 
 namespace inkwell::tests {
 
-/// Message of the `Failure` that the action throws; empty if the action does not throw.
+/// Returns the message of the `Failure` that the action throws, or an empty string.
 template <class Failure>
 std::string message_of(const std::invocable auto& action) {
   try {

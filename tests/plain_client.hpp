@@ -26,7 +26,7 @@ class PlainClient {
   }
   int descriptor() const { return socket_.number(); }
 
-  /// False if the server has closed the connection.
+  /// Returns false if the server has closed the connection.
   bool send(std::string_view text) {
     while (!text.empty()) {
       const ssize_t count = ::send(socket_.number(), text.data(), text.size(), MSG_NOSIGNAL);
@@ -35,19 +35,20 @@ class PlainClient {
     }
     return true;
   }
-  /// The next `count` bytes; fewer if the server closes the connection or sends nothing for a minute.
+  /// Returns `count` bytes, or fewer if the server closes the connection or sends nothing for a minute.
   std::string receive(std::size_t count) {
     std::string text;
     for (char letter = 0; text.size() < count && receive(letter);) text += letter;
     return text;
   }
-  /// The next line without its newline; less if the server closes the connection or sends nothing for a minute.
+  /// Returns the next line without its newline. The line is incomplete if the server closes the connection or sends
+  /// nothing for a minute.
   std::string line() {
     std::string text;
     for (char letter = 0; receive(letter) && letter != '\n';) text += letter;
     return text;
   }
-  /// Waits for the server to close the connection; false if a byte arrives first.
+  /// Returns true if the server closes the connection before it sends a byte.
   bool is_closed() {
     char letter = 0;
     const ssize_t count = ::recv(socket_.number(), &letter, 1, 0);

@@ -15,8 +15,8 @@ inline device::VirtualBoardOptions stepped_board(device::SimulationMode mode, de
   return options;
 }
 
-/// Lets the hand pull the stylus out of the inkwell and move it to a point of the workspace. Returns the board time in
-/// seconds until the stylus rests at this point.
+/// Lets the hand pull the stylus out of the inkwell and move it to a point of the workspace. Returns the duration until
+/// the stylus rests at this point, in seconds of board time.
 inline double bring_stylus(device::ControlClient& control, device::Vector3 target_m, double duration_s) {
   constexpr double comes_to_rest_s = 0.3;
   const auto truth = control.truth();

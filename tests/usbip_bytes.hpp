@@ -1,4 +1,4 @@
-// Concatenated USB/IP messages in the form that a client sends.
+// Concatenates USB/IP messages.
 #pragma once
 
 #include <cstddef>

@@ -25,8 +25,7 @@ class Hardening(unittest.TestCase):
                 self.assertEqual([], missing(path, binary))
 
     def test_each_source_is_compiled_with_each_flag(self):
-        # The binaries do not show the flags of each source, because linked libraries have some of these properties
-        # too.
+        # Linked libraries have the same properties, so a binary does not prove that each source has the flags.
         for entry in json.loads((BUILD / "compile_commands.json").read_text()):
             words = entry["command"].split()
             flags = ["-fPIC", "-fstack-protector-strong", "-fstack-clash-protection", "-D_GLIBCXX_ASSERTIONS"]

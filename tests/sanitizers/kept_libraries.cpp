@@ -1,6 +1,6 @@
-// Part of `inkwell` in sanitizer builds. At exit, LeakSanitizer searches the loaded libraries for pointers. After a
-// library such as a Mesa driver is unloaded, no pointers to its memory blocks are found, and LeakSanitizer reports
-// leaks. Therefore no library is unloaded.
+// Part of `inkwell` in sanitizer builds. At exit, LeakSanitizer searches the loaded libraries for pointers.
+// LeakSanitizer reports leaks in an unloaded library, because it finds no pointers to the library's memory. This
+// dlclose() does not unload any library.
 
 // Name of the function in the C library.
 extern "C" int dlclose(void*) { return 0; }  // NOLINT(readability-identifier-naming)

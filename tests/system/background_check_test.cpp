@@ -28,7 +28,7 @@ using protocol::State;
 
 namespace {
 
-/// Fast free motion of all joints, as in the fault campaign.
+/// Moves all joints fast in free space, as in the fault campaign.
 void swing(BoardRig& rig, int times) {
   std::vector<device::HandWaypoint> path;
   for (int i = 1; i <= times; ++i)
@@ -43,7 +43,7 @@ void check_reported(BoardRig& rig, Fault fault) {
   CHECK(protocol::info(rig.pose().fault).name == protocol::info(fault).name);
 }
 
-/// Returns the time until the bridges are off, with a resolution of a tenth of the limit.
+/// Returns the time after which the bridges are off; the resolution is a tenth of `limit_s`.
 double off_after_s(BoardRig& rig, double limit_s) {
   const double begin_s = rig.board_time_s();
   for (int i = 0; i < 20 && bridges_enabled(rig.control); ++i) rig.control.run(0.1 * limit_s);
@@ -52,7 +52,7 @@ double off_after_s(BoardRig& rig, double limit_s) {
   return after_s;
 }
 
-/// The fault cannot be cleared while its cause lasts. Afterwards the fault can be cleared.
+/// Checks that the fault cannot be cleared while its cause lasts, and can be cleared afterward.
 void check_clears_when_gone(BoardRig& rig, State then) {
   rig.command(protocol::Command::clear_fault);
   rig.run(0.02);
@@ -93,7 +93,7 @@ TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, an
     REQUIRE(protocol::force_is_on(rig.pose().state));
     swing(rig, 4);
     CHECK(off_after_s(rig, 0.25) < 0.2501);
-    // The second joint is fast, so the motor check may raise a fault first.
+    // The motor check may raise a fault first, because the second joint is fast.
     rig.run(0.01);
     const Fault reported = rig.pose().fault;
     check_reported(rig, wires[i].starts_with("encoders[1]") && reported == Fault::motor_implausible
@@ -201,7 +201,7 @@ TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coa
     const auto truth = rig.control.truth();
     return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>();
   };
-  // From this time on the half bridges are low.
+  // The half bridges are low at the end of this wait.
   for (int i = 0; i < 1'000 && pause_s() < control_period_s; ++i) rig.control.run(control_period_s / 10);
   rig.control.run(1.1 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));
@@ -215,7 +215,7 @@ TEST_CASE("an enable wire that touches ground is noticed within two control peri
   rig.control.run(2 * control_period_s);
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   check_reported(rig, Fault::heartbeat_missed);
-  // With the bridges off, low is the correct level of the enable wire.
+  // The enable wire is low while the bridges are off.
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
 }
@@ -345,8 +345,7 @@ class HonestRig : public BoardRig {
       }
   }
 
-  /// The slowest ripple reverses every 14 ms, so half of the supply's range within this time is the largest possible
-  /// ripple.
+  /// The slowest ripple reverses every 14 ms. The largest possible ripple is half of the supply's range within 14 ms.
   void look_at_supply() {
     const device::Trace trace = control.trace_read(100'000);
     const auto column = std::ranges::find(trace.columns, "true_supply_V");

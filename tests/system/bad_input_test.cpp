@@ -148,7 +148,7 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(unlike, {"no `inkwell dance`", "`inkwell --help`"});
     CHECK(unlike.err.find("Did you mean") == std::string::npos);
     check_refused(run_program("inkwell", {"--virtual", "paramters"}), {"no `inkwell paramters`", "mean parameters?"});
-    // The error for the third word proposes no command, because the third word of `plot` is not a command.
+    // The third word of `plot` is not a command, so the error proposes no command.
     check_refused(run_program("inkwell", {"plot", "push.h5", "parameters"}), {"parameters"});
     check_refused(run_program("inkwell", {"--sead", "info"}), {"--sead"});
   }
@@ -202,7 +202,7 @@ TEST_CASE("the companion refuses what it does not know") {
                   {"--layout", "`inkwell plot` opens no window"});
     check_refused(run_program("inkwell", {"--parameters", "soft.toml", "record", "push.h5"}),
                   {"--parameters", "`inkwell record` opens no window"});
-    // `replay` opens a window, so only the missing recording is an error.
+    // `replay` accepts window options, so the only error is the missing recording.
     const auto replayed = run_program("inkwell", {"replay", "nowhere.h5", "--info", "--layout", "paper"});
     check_refused(replayed, {"nowhere.h5"});
     CHECK(replayed.err.find("--layout") == std::string::npos);

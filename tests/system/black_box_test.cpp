@@ -1,4 +1,4 @@
-// Tests that the black box of the board shows the cause of a fault, also after a crash.
+// Tests that the board's black box shows the cause of a fault or a crash.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -34,7 +34,7 @@ void check_times(const protocol::BlackBoxReport& box, const std::vector<protocol
   CHECK(wrong == 0);
 }
 
-/// Checks the rows before a crash. The sphere is pressed into a wall during these rows.
+/// Checks the rows before a crash. The sphere is pressed into a wall before the crash.
 void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
   CHECK(box.is_complete == 1);
   CHECK(box.is_restart == 1);
@@ -76,7 +76,7 @@ TEST_CASE("the black box of a supply that fails shows how it fell, when the brid
   const double joint_1_rad = static_cast<double>(rig.pose().joint_rad[0]);
   CHECK(value(rows.back(), Signal::joint_1_rad) == doctest::Approx(joint_1_rad).epsilon(0.02));
 
-  // The record survives a cleared fault, another fault and a reset, until the force is on again.
+  // The record survives a cleared fault, a second fault and a reset, until the force is switched on.
   rig.control.supply(static_cast<double>(board::supply_nominal_V));
   rig.run(0.3);
   rig.command(protocol::Command::clear_fault);
@@ -210,7 +210,7 @@ TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   BoardRig rig;
   press_into_wall(rig);
   const std::uint32_t loop = endless_loop_address();
-  // The main loop runs directly after the control interrupt. Later it may sleep with masked interrupts.
+  // The main loop runs directly after the control interrupt. Later the main loop may sleep with masked interrupts.
   const board::Pin heartbeat = board::find_board("omni_driver")->bridge_heartbeat;
   const std::string pin = std::string(1, 'P') + heartbeat.port + std::to_string(heartbeat.number);
   for (const std::string level : {"high", "low"})
@@ -259,7 +259,7 @@ TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it 
   rig.control.run(0.05);
   REQUIRE(watchdog_expires(rig.control) == 1);
   expect_no_place();
-  // The main loop hangs, but an external reset precedes the watchdog.
+  // An external reset occurs after the main loop hangs and before the watchdog expires.
   rig.control.inject({"main_loop_stalled", "", 10.0});
   rig.control.run(longer_s);
   REQUIRE(watchdog_expires(rig.control) == 1);

@@ -62,7 +62,7 @@ void BoardRig::connect() {
   set({{protocol::Parameter::host_timeout_s, 2.0f}});  // the tests decide when the host is silent
 }
 
-// A run ends after the host has received everything that the device sent, so no waiting is needed here.
+// control.run() returns after the host has received everything that the device sent.
 void BoardRig::pass_slice() {
   control.run(slice_s);
   const std::size_t before = poses_.size();

@@ -1,5 +1,5 @@
-// A virtual board with the flashed firmware, and a host on its USB. Board time advances only inside `run` and while the
-// device answers a request. The same calls therefore produce the same run, also on a slow machine.
+// A virtual board with the flashed firmware, and a host on its USB. Board time advances in `run` and during requests to
+// the device. Equal calls produce equal runs, independent of the machine's speed.
 #pragma once
 
 #include <chrono>
@@ -27,15 +27,15 @@ class BoardRig {
 
   /// Advances board time in slices of 10 ms, collects all poses, and sends the host's signs of life.
   void run(double time_s);
-  /// Advances board time in the same way, without the signs of life.
+  /// Advances board time without signs of life of the host.
   void run_silent(double time_s);
   void set(std::initializer_list<device::ParameterChange> changes);
   /// Sends a command, which the device receives when board time advances.
   void command(protocol::Command command);
-  /// Sends a program's force for the newest pose and advances one millisecond. The board refuses a force for an old
-  /// pose.
+  /// Sends a program's force for the newest pose and advances board time by one millisecond. The board refuses a force
+  /// for an old pose.
   void push(const device::ForceRequest& force);
-  /// Waits at most one second of board time for the device, and opens the device.
+  /// Waits for the device for at most one second of board time, and opens the device.
   void connect();
   /// Runs until the newest pose satisfies the condition; fails the test after `limit_s` of board time.
   void run_until(const std::function<bool(const device::Pose&)>& condition, double limit_s = 3.0);
@@ -65,7 +65,7 @@ double largest_current_A(device::ControlClient& control);
 
 /// The center of the default arm's box.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
-/// Returns the point at this distance from free_point_m.
+/// Returns free_point_m plus this offset.
 constexpr device::Vector3 offset_from_free_point(double x_m, double y_m, double z_m) {
   return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
 }

@@ -1,5 +1,5 @@
-// All boards run the same firmware, built with the facts of each board. Each board starts, passes its self-test and is
-// referenced, and its current loop and walls are correct. Other files contain all tests that need only one board.
+// All boards run the same firmware, built with the facts of each board. Tests start, self-test, reference, current loop
+// and walls of each board. Tests that need only one board are in other files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -123,7 +123,7 @@ TEST_CASE("a board that nobody knows is refused with those that are known") {
       run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "feather"});
   CHECK(board.exit_code == 2);
   CHECK(board.err.find("unknown board feather. Known boards: bench_modules, omni_driver.") != std::string::npos);
-  // Output of the board is safe for a terminal.
+  // The error message contains no control characters.
   const auto hostile =
       run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "x\x1B[2J"});
   CHECK(hostile.err.find("unknown board x?[2J.") != std::string::npos);

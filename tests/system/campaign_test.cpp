@@ -41,7 +41,7 @@ const Result& result_of(const std::string& name) {
   return result;
 }
 
-/// Checks the cases of the sample whose detection is one of these.
+/// Energy exchange of a moving arm without a fault.
 void check_sample(bool (*is_chosen)(const campaign::Expected&)) {
   for (const campaign::Expected& expected : campaign::expected_cases()) {
     if (!expected.is_in_sample || !is_chosen(expected)) continue;

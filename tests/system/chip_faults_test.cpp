@@ -22,7 +22,7 @@ namespace {
 
 constexpr int control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
 
-/// True if any motor had voltage at any of 60 instants within three PWM periods.
+/// Returns true if any motor had a voltage at one of 60 instants within three PWM periods.
 bool any_motor_driven(device::ControlClient& control) {
   bool driven = false;
   for (int i = 0; i < 60; ++i) {
@@ -147,7 +147,7 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   rig.control.heal("exception_lost");
   rig.control.run(0.04);  // the restart may also have been affected by the lost interrupt
   check_fault_after_restart(rig, Fault::watchdog);
-  // A reported fault is not reported again after the next reset.
+  // The next reset does not report the same fault again.
   rig.control.reset();
   reconnect(rig);
   rig.run(0.3);
@@ -223,8 +223,8 @@ TEST_CASE("a spike of 100 ns on an encoder's wire leaves the pose alone; a long 
 }
 
 TEST_CASE("a spike on one encoder wire during a pulse on the other is no whole step of the disc") {
-  // The pulse passes the filter 0.33 us to 0.38 us late, and the spike covers the delayed end of the pulse. Without a
-  // filter on the spiked wire, both lines would pass through all four states.
+  // The filter delays the pulse by 0.33 us to 0.38 us, and the spike covers the delayed end of the pulse. Without
+  // filtering of the spike, the encoder lines would pass through all four states.
   constexpr double pulse_s = 1e-6, spike_after_s = 1.31e-6, spike_s = 0.1e-6, soon_s = 1e-6;
   BoardRig rig(device::SimulationMode::exact);  // in fast mode a spike may last for one more block of instructions
   rig.run(0.3);
@@ -233,7 +233,7 @@ TEST_CASE("a spike on one encoder wire during a pulse on the other is no whole s
     for (const std::string pulsed : {"a", "b"})
       for (const std::string pulse : {"wire_high", "wire_low"})
         for (const std::string spike : {"wire_high", "wire_low"}) {
-          // One of the four combinations inverts both wires.
+          // Pulse and spike invert both wires in one of the four combinations.
           const std::string wires = fmt::format("encoders[{}].", encoder), spiked = pulsed == "a" ? "b" : "a";
           rig.control.inject({pulse, wires + pulsed, {}, soon_s, pulse_s});
           rig.control.inject({spike, wires + spiked, {}, soon_s + spike_after_s, spike_s});

@@ -1,4 +1,4 @@
-// Terminal commands that observe the arm of a board in real time.
+// Tests the commands that observe an arm in real time.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -28,7 +28,6 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board in real time, and companion commands for this board.
 struct BoardAndCompanion {
   device::VirtualBoard board{device::VirtualBoardOptions{}};
   device::ControlClient control = board.control();
@@ -38,12 +37,12 @@ struct BoardAndCompanion {
     return command;
   }
   ProgramResult run(const std::vector<std::string>& command) { return run_program("inkwell", words(command)); }
-  /// Waits a fraction of a second for the board's start-up.
+  /// Waits until the device of the board appears.
   void wait_for_device() {
     while (!board.find()) control.run(0.1);
     control.run(0.5);
     control.resume();
-    // On a busy computer the companion may be late; no test here depends on this timeout.
+    // On a busy computer the companion may send signs of life late, so the timeout is long.
     REQUIRE(run({"parameters", "set", "host_timeout_s=2"}).exit_code == 0);
   }
 };

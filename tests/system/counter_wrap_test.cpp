@@ -1,5 +1,6 @@
-// The board's time counters wrap: control periods after 59 hours, bus frames after 49 days. The wraps must not affect
-// the hand or the program. The image near-wrap.elf starts 3 s and 4 s before these wraps.
+// The control period counter wraps after 59 hours, and the bus frame counter wraps after 49 days. The wraps must not
+// affect the hand or the program. The image near-wrap.elf starts 3 s before the first wrap and 4 s before the second
+// wrap.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,10 +28,11 @@ constexpr std::int64_t wrap = std::int64_t{1} << 32;
 constexpr std::int64_t rate_Hz = protocol::servo_rate_Hz;
 constexpr std::int64_t periods_per_frame = protocol::servo_rate_Hz / protocol::pose_rate_Hz;
 constexpr float program_N = 0.5f;
-/// Tolerance for the tremor of the hand and the noise of the sensors.
+/// Force tolerance for tremor and sensor noise.
 constexpr double force_tolerance_N = 0.05;
 constexpr device::Vector3 begin_m = offset_from_free_point(-0.025, 0, 0), end_m = offset_from_free_point(0.025, 0, 0);
-/// A minimum-jerk movement between both points. The peak speed occurs in the middle, at the first wrap.
+/// The hand moves between begin_m and end_m with minimum jerk. The speed is largest at the first wrap, in the middle of
+/// the movement.
 constexpr double moves_for_s = 1.0, fastest_m_per_s = 1.875 * 0.05 / moves_for_s;
 constexpr std::size_t frames_before = 200, frames_after = 100;
 
@@ -155,7 +157,7 @@ TEST_CASE("the count of bus frames wraps after 49 days, and no pose is lost and 
   CHECK(story().applied_at_periods > at_wrap.time_periods);
   CHECK(story().applied_at_periods < story().poses.back().time_periods);
 
-  // The program is still the driver, and the time since it became the driver is continuous.
+  // The program is still the driver after the wrap.
   REQUIRE(story().driver);
   CHECK(story().driver->is_this_device);
   const auto& poses = story().poses;

@@ -1,4 +1,4 @@
-// Figures of docs/cycles.md for the compiler of the firmware image.
+// Checks the figures of docs/cycles.md for the compiler of the firmware image.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace inkwell::tests {
 
 /// Fails the test unless the page's figure is within 5 % of `measured`. `row` selects the row, and the firmware's
-/// compiler selects the column. The test ignores a compiler without a column.
+/// compiler selects the column. Accepts any value if the page has no column for the compiler.
 void check_figure_on_cycles_page(std::string_view row, double measured);
 
 }  // namespace inkwell::tests

@@ -7,7 +7,7 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// Returns GDB's output after `commands` with the board at `port`.
+/// Runs `commands` in GDB on the board at `port` and returns the output.
 std::string gdb(const std::string& elf, const std::string& port, std::initializer_list<const char*> commands) {
   std::vector<std::string> arguments{"-nx", "-batch", elf, "-ex", "target remote 127.0.0.1:" + port};
   for (const char* command : commands) {

@@ -87,7 +87,7 @@ TEST_CASE("boards that are started by hand have serial numbers of their own, whi
     const std::string ready = board.read_line();
     port = ready.substr(ready.find("usbip=") + 6);
     port.resize(port.find(' '));
-    // On a busy machine, the arm can appear after the time limit for listing the devices.
+    // On a busy machine, the list may be complete before the arm appears.
     auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
     for (int again = 0; listed.exit_code != 0 && again < 30; ++again)
       listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
@@ -210,7 +210,7 @@ TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's"
     for (double& sum : sums) sum /= static_cast<double>(count);
     return sums;
   };
-  // Adjacent potentiometers are at opposite ends.
+  // Adjacent potentiometers are at opposite ends of their ranges.
   constexpr device::Vector3 one_way_rad{-2.3, 1.6, -2.3}, other_way_rad{2.3, -0.4, 2.3};
   const auto one_way = means(one_way_rad), other_way = means(other_way_rad);
   const double steepest_rad = rig.device->parameters()[Parameter::gimbal_3_slope_rad];
@@ -254,7 +254,7 @@ TEST_CASE(
   kill(program.process(), SIGSTOP);
   auto control = board.control();
   device::BoardStatus status;
-  // Waits without a time limit.
+  // Waits until the status names the program that the board waits for.
   do status = control.status();
   while (status.all["usb"]["waits_for"].empty());
   CHECK(status.all["usb"]["waits_for"][0] == "inkwell (process " + std::to_string(program.process()) + ")");
@@ -288,7 +288,7 @@ TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the 
   rig.connect();
   rig.run(0.01);
   const auto pose = rig.pose();
-  // The disconnection has switched the force off; the arm is still referenced.
+  // The disconnection switches the force off and leaves the arm referenced.
   CHECK(pose.state == protocol::State::fault);
   CHECK(pose.fault == protocol::Fault::usb_gone);
   rig.command(protocol::Command::clear_fault);

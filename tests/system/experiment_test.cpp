@@ -1,4 +1,4 @@
-// The experiment of the paper's section 4.3, evaluated from the recording instead of the experiment's summary.
+// Evaluates the recording of the experiment in section 4.3 of the paper.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ Spread spread(const std::vector<double>& values, std::size_t begin, std::size_t 
   return {*smallest, *largest};
 }
 
-/// Returns the start of the half second with the most constant hand force while the probe is deep in a wall.
+/// Returns the start of the half second with the steadiest hand force deep in a wall.
 std::size_t steadiest_hold(const Columns& recording, const std::string& axis, std::size_t length) {
   const auto& depth_m = recording["penetration_" + axis + "_m"];
   const auto& hand_N = recording["hand_force_" + axis + "_N"];
@@ -139,7 +139,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
     std::vector<std::string> simulated;
     while (std::getline(file, line) && line.starts_with("# "))
       if (line.starts_with("# simulated ")) simulated.push_back(line.substr(12, line.find(" = ") - 12));
-    // Signals of the device and of the simulation are distinguished.
+    // The file distinguishes simulated signals from device signals.
     CHECK(std::ranges::equal(simulated, std::span(recording.names).last(9)));
     CHECK(line.starts_with("time_s,encoder_1_counts,"));
     CHECK(std::ranges::count(line, ',') == 40);
@@ -169,7 +169,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
           continue;
         }
         ++in_contact;
-        // The proxy rests on the wall, so d' is minus the velocity. The wall never pulls.
+        // While the proxy rests on the wall, the penetration rate d' is minus the probe velocity. The wall never pulls.
         const double outward = penetration_m[i] > 0 ? 1 : -1;
         const double expected_N = outward * std::max(0.0, outward * (k * penetration_m[i] - c * velocity_m_s[i]));
         wrong += std::abs(force_N[i] - expected_N) > std::max(0.005, 0.01 * std::abs(expected_N));
@@ -220,7 +220,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
       CHECK(counts.width() <= 2);
     }
     CHECK(spread(recording["force_N"], begin, begin + length).smallest > 1.0);
-    // The summary refers to the same recording.
+    // The summary must match the recording.
     const auto& hold = summary.at("steady_hold");
     CHECK(hold.at("duration_s") >= 0.5);
     const auto from = static_cast<std::size_t>(std::lround(hold.at("from_s").get<double>() / sample_period_s));

@@ -13,14 +13,14 @@ struct FirmwareSymbol {
   bool contains(std::uint32_t place) const { return place >= address && place - address < size_bytes; }
 };
 
-/// Returns the symbol whose mangled name contains `name`; fails the test unless there is exactly one.
+/// Returns the symbol whose mangled name contains `name`, and fails the test unless exactly one symbol matches.
 FirmwareSymbol firmware_place(std::string_view name);
 inline std::uint32_t firmware_symbol(std::string_view name) { return firmware_place(name).address; }
 
 /// Returns the address of the loop in which the firmware waits for a requested reset.
 std::uint32_t endless_loop_address();
 
-/// Version of the compiler in the firmware's .comment section, without the last number, such as "12.2".
+/// Returns the compiler version without its last number, such as "12.2".
 std::string firmware_compiler_version();
 
 }  // namespace inkwell::tests

@@ -105,8 +105,8 @@ TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow
   for (const char* step : {"starting the boot loader", "erasing", "writing", "reading back", "starting the firmware"})
     CHECK(says(result, step));
 
-  // Without a board name, the program's image is written. The program finds the board although the protocol versions of
-  // program and board differ.
+  // Without --board, the command writes the program's image. The program finds the board although the protocol versions
+  // of program and board differ.
   result = board.flash({});
   CHECK(result.exit_code == 1);
   CHECK(says(result, "which is older than the installed firmware"));
@@ -172,7 +172,7 @@ TEST_CASE("a word of yes writes it all the same") {
   board.wait_until(&FreeBoard::is_in_boot_loader);
   auto identity = protocol::image_identity("omni_driver", 99, 0, 0);
   --identity.protocol_version;
-  // The content of the image is irrelevant here, because it only has to be transferred.
+  // The content of the image is irrelevant for the transfer.
   const auto result = board.flash({write_elf(directory, made_segments(identity)), "--yes"});
   CHECK(says(result, "was written and verified, but the board does not respond"));
 }
@@ -271,7 +271,7 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  // A fake openocd with an erased flash. The fake reports a verified image and prints the marker from the arguments.
+  // The fake openocd finds an erased flash. The fake reports a verified image and prints the marker from the arguments.
   std::ofstream(fake) << "#!/bin/sh\ncase \"$*\" in *dump_image*) head -c 1000 /dev/zero >installed.bin; exit;; esac\n"
                       << "for word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>" << called
                       << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";
@@ -291,8 +291,8 @@ TEST_CASE("an update by a probe writes the named board's image, and its failure 
   CHECK(failed.exit_code == 1);
   CHECK(says(failed, "the probe is connected"));
 
-  // With a board name, the image installed with this program is used. Without a board name, the board is not guessed
-  // and openocd is not called.
+  // With --board, openocd receives the installed image of this board. Without --board, the command fails before it
+  // calls openocd.
   CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
   CHECK(contains(output_of(), "6E63685F6D6F64756C6573"));  // nch_modules
   std::filesystem::remove(called);

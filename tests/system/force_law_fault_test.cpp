@@ -26,7 +26,7 @@ TEST_CASE("a force law that divides by zero switches the force off with a fault 
   const Signal periods = *protocol::find_signal("quotient_periods");
   rig.set({{Parameter::force_ramp_s, 0.0f}});
   rig.take_to(free_point_m);
-  // 0.5 / 0 is infinite, 0 / 0 is not a number.
+  // 0.5 / 0 is infinite, and 0 / 0 is not a number.
   for (const float dividend_N : {0.5f, 0.0f}) {
     rig.set({{divisor, 1.0f}, {dividend, 0.5f}});
     rig.make_active();

@@ -1,5 +1,5 @@
-// Tests an image with a user-defined force law: every table contains the parameters and signals of the law. On the
-// board and on the PC, the law computes the same force. A division by zero raises a fault.
+// Tests that every table contains the parameters and signals of a user-defined force law. On the board and on the PC,
+// the law computes the same force. A division by zero raises a fault.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using protocol::Fault;
 using protocol::Parameter;
 using protocol::State;
 
-/// Computes the force of the law on the PC with the parameters of the device.
+/// Computes the law's force on the PC from the device's parameters.
 control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const control::Vector3& position_m,
                                 float& distance_m) {
   magnet::Parameters parameters{};
@@ -98,7 +98,7 @@ TEST_CASE(
     CHECK(std::fabs(at(Signal::force_x_N, i)) > 0.3f);
   }
 
-  // The file contains the description of its columns.
+  // The file contains a description of each column.
   const auto about = run_program("inkwell", {"replay", file, "--json"});
   CHECK(about.exit_code == 0);
   const auto json = nlohmann::json::parse(about.out);

@@ -134,7 +134,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   std::thread guide([&] {
     result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip", board.usbip().text()});
   });
-  // Runs until a motor has current during the first pulses. Each pulse lasts several steps.
+  // Runs until a motor has current during the first pulses. A pulse is longer than a step, so no pulse is missed.
   constexpr double step_s = 0.002, limit_s = 60;
   bool powered = false;
   for (double passed_s = 0; passed_s < limit_s && !powered; passed_s += step_s) {

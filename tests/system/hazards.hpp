@@ -22,8 +22,7 @@ bool bridges_enabled(device::ControlClient& control);
 /// The hand presses the sphere into a wall, so that all three bridges switch and at least one motor has current.
 void press_into_wall(BoardRig& rig);
 
-/// Number of restarts or watchdog expiries since power-on, without the expiry in the watchdog test
-/// (firmware/application/watchdog_trial.hpp).
+/// Count since power-on, without the watchdog test of firmware/application/watchdog_trial.hpp.
 int restarts(device::ControlClient& control);
 int watchdog_expires(device::ControlClient& control);
 

@@ -1,4 +1,4 @@
-// Tests a core lock-up by the firmware: with --seconds the board stops and reports the location of the error.
+// After a core lock-up, a board with --seconds stops and reports the location of the error.
 #include <doctest/doctest.h>
 
 #include "host/client/device/control_client.hpp"

@@ -26,7 +26,7 @@ std::string text_of(std::uint32_t address) { return std::to_string(address); }
 
 bool is_in_fault(const device::Pose& pose) { return pose.state == State::fault; }
 
-/// Flips a bit at each address while the hand presses.
+/// Flips one bit per address while a hand presses the stylus.
 void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int bit) {
   BoardRig rig;
   press_into_wall(rig);
@@ -36,7 +36,7 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   CHECK(rig.pose().fault == Fault::memory_damaged);
   CHECK_FALSE(bridges_enabled(rig.control));
 
-  // The damage is still present, so the fault cannot be cleared.
+  // The fault cannot be cleared, because the damage remains.
   rig.command(protocol::Command::clear_fault);
   rig.run(0.05);
   CHECK(rig.pose().state == State::fault);
@@ -46,19 +46,19 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
-/// Offset of the byte with the lowest exponent bit of the force limit. This bit doubles or halves the value.
+/// Offset of a byte in the force limit. A flip of the byte's exponent bit doubles or halves the force limit.
 constexpr std::uint32_t byte_of_force_limit = sizeof(float) * static_cast<std::uint32_t>(Parameter::force_limit_N) + 2;
 
-/// The link object starts with the current parameters. The values for the next start-up follow after the ParameterStore
-/// of the link object.
+/// The current parameters are the first member of the link object. The next member after the ParameterStore contains
+/// the stored parameters.
 std::uint32_t held_force_limit() { return firmware_symbol("host_link") + byte_of_force_limit; }
 std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{sizeof(link::ParameterStore)}; }
 
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
-  // The firmware neither reads nor executes these locations in this state. Each error is therefore detected before it
-  // has an effect.
+  // The firmware does not use these locations while the hand presses. The memory check detects each error before the
+  // error has an effect.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
                                   firmware_symbol("remove_idle_torque"), firmware_symbol("nowhere")};
@@ -69,11 +69,10 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
 }
 
 TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
-  // The two copies of the settings follow the parameters; the interrupt uses one copy.
+  // Two copies of the settings follow the parameters in memory.
   const std::uint32_t settings = firmware_symbol("host_link") + sizeof(link::Guarded<protocol::ParameterSet>);
   constexpr std::uint32_t bytes = sizeof(control::Settings);
-  // The test flips the lowest bit of a limit that is not reached, so that the error is detected before it has an
-  // effect.
+  // The flipped bit belongs to a limit that is not reached, so the flip has no other effect.
   constexpr std::uint32_t limit =
       offsetof(control::Settings, limits) + offsetof(control::Limits, speed_limit_squared_m2_per_s2);
   check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
@@ -127,7 +126,7 @@ TEST_CASE("a bit that flips in what the next start would give is told, and is no
 TEST_CASE("a flash that is damaged when the board starts is found before the first pulse, and before the main loop") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });  // the self-test has driven the bridges
-  // Damages the last word that is checked. The check in the main loop alone would reach this word too late.
+  // Damages the last word that the firmware checks. The main loop's check alone would detect this error too late.
   rig.control.inject({"flash_bit", text_of(firmware_symbol("image_check")), 0});
   const double reset_s = rig.board_time_s();
   rig.control.reset();

@@ -1,5 +1,5 @@
-// Voltage, current and speed of healthy motors are consistent in all uses of the arm. The test also measures the margin
-// to a fault.
+// Tests that voltage, current and speed of healthy motors are consistent. The test measures the margin to a motor
+// fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,8 +27,7 @@ using protocol::ForceMode;
 using protocol::Parameter;
 using protocol::Signal;
 
-/// Repeats the firmware's check with the streamed signals of all three motors, because the sums of the firmware are not
-/// streamed.
+/// Computes the sums of the motor check from streamed signals, because the firmware does not stream its sums.
 class CheckedRig : public BoardRig {
  public:
   /// `hotter_K`: additional motor temperature during the self-test.
@@ -91,15 +90,14 @@ class CheckedRig : public BoardRig {
     }
   }
 
-  /// Largest sum, relative to the fault threshold MotorCheck::tolerance_sum_V.
+  /// Largest deviation sum; a fault requires MotorWatch::tolerance_sum_V.
   float nearest_V = 0.0f;
-  /// Largest difference between the voltage and the expected voltage, and the largest excess of this difference over
-  /// the tolerance.
+  /// Largest deviation from the expected voltage, and largest excess over the tolerance.
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
-  /// Largest current change per control period, and largest difference from the expected change. The fault threshold is
-  /// CurrentJump::tolerance_A.
+  /// Largest current change per control period, and its largest deviation from the expected change. A deviation above
+  /// CurrentJump::tolerance_A would be a fault.
   float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:
@@ -174,7 +172,7 @@ void check(CheckedRig& rig, const std::string& what) {
   rig.restart();
 }
 
-/// Moves the hand back and forth between two points, `times` times.
+/// Moves the hand `times` times back and forth between two points.
 void swing(CheckedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
            double stiffness_N_per_m = 1500, double damping_Ns_per_m = 12) {
   rig.control.hand({true, from_m, stiffness_N_per_m, damping_Ns_per_m});

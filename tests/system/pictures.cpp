@@ -19,7 +19,7 @@ std::string picture_file(const std::string& name) {
   return (folder == nullptr ? std::string(".") : std::string(folder)) + "/" + name + ".png";
 }
 
-/// A mouse position without an item or help text.
+/// A mouse position outside all items.
 constexpr Point aside{700, 60};
 
 /// The hand presses the sphere into the right wall and the floor, and moves the sphere along their common edge.

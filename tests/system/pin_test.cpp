@@ -14,7 +14,7 @@ TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it 
   const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
   auto control = board.control();
   CHECK(control.pin("PC10").chip_drives == "floating");
-  // The firmware drives PC10 high. After the flash erase the firmware counts falling edges of PB13 in interrupt 40.
+  // The firmware drives PC10 high. After the flash erase, interrupt 40 counts falling edges of PB13.
   control.run(0.3);
   CHECK(control.pin("PC10").chip_drives == "high");
   CHECK(control.pin("PC10").level == "high");

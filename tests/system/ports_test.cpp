@@ -1,5 +1,4 @@
-// Tests the ports of a virtual board: accepted clients, refused clients, and the remaining files after the board's
-// exit.
+// Tests which clients the ports of a virtual board accept, and which files remain after the board's exit.
 #include <doctest/doctest.h>
 
 #include <signal.h>
@@ -28,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A board with all ports. The firmware echoes received UART bytes.
+/// The firmware echoes received UART bytes.
 class BoardWithPorts {
  public:
   explicit BoardWithPorts(const std::string& port) : program_(words(port)) {
@@ -54,7 +53,7 @@ class BoardWithPorts {
   }
 
  private:
-  /// Limits the number of open files of the program.
+  /// Limits the number of files that the program can open.
   static std::vector<std::string> words(const std::string& port) {
     return {"sh", "-c",
             "ulimit -n 256; exec " + build_directory() + "/virtual-board --elf " + build_directory() +

@@ -10,8 +10,8 @@
 
 namespace inkwell::tests {
 
-/// Time limits for a whole program and for one answer. The limits only stop programs that hang, and are long enough for
-/// a heavily loaded machine.
+/// Time limits for a whole program and for one answer. The limits are long enough for a heavily loaded machine and stop
+/// programs that hang.
 inline constexpr std::chrono::seconds hang_guard{1200}, patience{300};
 
 struct ProgramResult {
@@ -20,8 +20,7 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Runs build/pc/`program`, or the program with an absolute path. Stops the program after `limit`, which a working
-/// program does not reach.
+/// Runs build/pc/`program`, or the program with an absolute path. Stops a hanging program after `limit`.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           std::chrono::seconds limit = hang_guard);
 
@@ -38,7 +37,7 @@ class RunningProgram {
   void write_line(const std::string& line);
   /// Returns the next line of standard output; throws std::runtime_error after `limit`.
   std::string read_line(std::chrono::seconds limit = patience);
-  /// Waits for the exit code. Empty if a signal stopped the program or if it still runs after `limit`.
+  /// Waits for the exit code. Returns nothing if a signal stopped the program or if it still runs after `limit`.
   std::optional<int> wait(std::chrono::seconds limit = patience);
   int process() const { return process_; }
 

@@ -25,7 +25,7 @@ struct ProgramRig : BoardRig {
     set({{Parameter::force_ramp_s, 0.0f}, {Parameter::force_limit_N, force_limit_N}});
     take_to(free_point_m);
     make_active();
-    // The expiry of the force is tested, not the host timeout.
+    // The program's force must expire before the host timeout.
     set({{Parameter::host_timeout_s, 2.0f}});
     newest = pose();
   }
@@ -52,7 +52,7 @@ struct ProgramRig : BoardRig {
 
 double length(const float (&vector)[3]) { return std::hypot(vector[0], vector[1], vector[2]); }
 
-/// Largest change of the force between two poses, per millisecond.
+/// Returns the largest force change per millisecond between two poses.
 double largest_step_N(const std::vector<device::Pose>& poses) {
   double largest_N = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -84,7 +84,7 @@ TEST_CASE("a program's force is felt, shown as its own, and gone within its expi
   const auto is_gone = [](const auto& pose) { return pose.force_N[0] == 0.0f; };
   const auto gone = std::find_if(silence.begin(), silence.end(), is_gone);
   REQUIRE(gone != silence.end());
-  // The bound includes two bus frames and two control periods.
+  // The bound of the delay is two bus frames plus two control periods.
   CHECK(gone->time_periods - last_heard <= (50 + 10 + 2) * periods_per_ms + 2);
   CHECK(gone->time_periods - last_heard >= 50 * periods_per_ms);
   CHECK(std::all_of(gone, silence.end(), is_gone));
@@ -222,7 +222,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
     rig.set({{Parameter::sphere_radius_m, 0.0f}, {Parameter::wall_stiffness_N_per_m, stiffness_N_per_m}});
     move_floor = [&](double z_m) { rig.set({{Parameter::box_minimum_z_m, static_cast<float>(z_m)}}); };
   }
-  // The hand is soft and presses with 1 N when the probe rests on the floor.
+  // A soft hand presses with 1 N on the floor.
   constexpr double hand_N_per_m = 200;
   rig.control.hand({.holds = true, .target_m = free_point_m, .stiffness_N_per_m = hand_N_per_m});
   rig.run(0.3);
@@ -234,7 +234,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   rig.run(0.8);
   CHECK(rig.pose().force_N[2] == doctest::Approx(1.0).epsilon(0.1));
   CHECK(protocol::is_felt(rig.pose().force_sources, whose));
-  // The upward move is observed for 0.3 s. The downward move is observed until the hand has followed the floor.
+  // Each upward move is observed for 0.3 s. Each downward move is observed until the hand has followed the floor.
   struct Move {
     double by_m;
     int milliseconds;

@@ -1,4 +1,4 @@
-// The companion and the firmware refuse a different protocol version and report the reason, and the arm does not move.
+// Companion and firmware refuse a different protocol version, and the arm does not move.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -115,7 +115,7 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   CHECK(transaction_report.refusal == protocol::Refusal::wrong_version);
   CHECK(std::string(info(transaction_report.refusal).remedy).find("companion") != std::string::npos);
 
-  // A command with this version is not executed, its token is not returned, and the force remains off.
+  // The board does not execute a command with the wrong protocol version.
   protocol::CommandReport enable{};
   enable.command = protocol::Command::enable_force;
   enable.version = static_cast<std::uint8_t>(next_version);
@@ -129,7 +129,7 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   }
   CHECK(largest_current_A(rig.control) < 0.02);
 
-  // The same report with the right version is accepted, so the version was the reason for the refusal.
+  // The board accepts the same report with the right protocol version.
   enable.version = static_cast<std::uint8_t>(protocol::protocol_version);
   transport->write_report(std::as_bytes(std::span(&enable, 1)));
   for (int i = 0; i < 100 && !protocol::force_is_on(pose.state); ++i)

@@ -31,7 +31,7 @@ std::string read_file(const std::string& path) {
 }  // namespace
 
 TEST_CASE("a recording holds every control period, and says where it comes from") {
-  // The recording is made once for all subcases.
+  // All subcases use the same recording.
   static const TemporaryDirectory directory;
   static const auto file = directory.file("a.h5");
   static const auto run = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--json"});

@@ -1,4 +1,4 @@
-// Tests that the same seed and the same calls produce the same run in both modes, independent of the computer's speed.
+// Tests that the same seed and the same calls produce the same run in both modes.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using protocol::Signal;
 
 namespace {
 
-/// All recorded results of a run.
+/// Recorded results of a run.
 struct Story {
   std::vector<std::string> poses;
   std::vector<float> samples;
@@ -28,7 +28,8 @@ struct Story {
   std::uint64_t instructions = 0;
 };
 
-/// Returns the bytes of the members without padding. In this comparison NaN (an unknown position) is equal to NaN.
+/// Returns the bytes of the members without padding. NaN represents an unknown position and is equal to NaN in this
+/// comparison.
 std::string bytes_of(const device::Pose& pose) {
   std::string bytes;
   const auto append = [&](const auto&... members) {
@@ -93,7 +94,7 @@ struct Cycles {
   double mean, longest;
 };
 
-/// Cycles of the control interrupt. This signal is the last signal in each recorded sample.
+/// Mean and maximum of the control interrupt's cycles. This signal is the last signal in each recorded sample.
 Cycles servo_cycles(const Story& story) {
   double sum = 0, longest = 0;
   std::size_t count = 0;

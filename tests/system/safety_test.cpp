@@ -28,7 +28,7 @@ TEST_CASE("an arm that has not been in the inkwell gets no force") {
   CHECK(rig.pose().state == State::unreferenced);
   CHECK(largest_current_A(rig.control) < 0.02);
 
-  // The arm is referenced in the inkwell again.
+  // Puts the stylus into the inkwell for a new reference.
   rig.control.dock(true);
   rig.control.hand({.holds = false});
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
@@ -145,7 +145,7 @@ TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it
 
 namespace {
 
-/// The hand continues to swing after the host has stopped sending.
+/// The hand swings while the host is silent.
 void let_host_fall_silent(BoardRig& rig) {
   rig.make_active();
   rig.take_to(free_point_m);
@@ -176,8 +176,8 @@ TEST_CASE("an arm whose host fell silent while a hand swings it is braked now an
   CHECK(on > 50);
   CHECK(off > 50);
   CHECK(largest_A > 0.1);
-  // While the hand is fast, the brake is released within one control period. A delay of half a period at either edge
-  // would be detected.
+  // While the hand is fast, the board releases the brake within one control period. A release or braking that is late
+  // by half a period fails this check.
   CHECK(longest_parts >= parts - 2);
   CHECK(longest_parts <= parts + 2);
   rig.control.run(0.5);

@@ -1,4 +1,4 @@
-// The board's self-test on the virtual board. The self-test reports faults that no other check detects. Healthy boards
+// The board's self-test on the virtual board. The self-test detects faults that no other check detects. Healthy boards
 // pass in every position, and the hand feels hardly any force.
 #include <doctest/doctest.h>
 

@@ -49,8 +49,8 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 
 namespace {
 
-/// Half of the period, plus a margin for the energy and rate limits, a simultaneous state change, and the code
-/// placement.
+/// Half of the period plus a margin. The margin covers the energy and rate limits, a simultaneous state change, and the
+/// code placement.
 constexpr std::uint32_t tolerated_cycles = board::servo_cycles / 2 + 500;
 
 }  // namespace
@@ -77,12 +77,12 @@ TEST_CASE(
   CHECK(report.servo_cycles_longest < tolerated_cycles);
   check_figure_on_cycles_page("longest control interrupt", report.servo_cycles_longest);
   CHECK(report.servo_overruns == 0);
-  // Each pose also contains the longest interrupt time, in units of 1/255 period.
+  // Each pose contains the longest interrupt time in units of 1/255 period.
   const auto largest = std::ranges::max_element(rig.poses(), {}, &device::Pose::servo_load)->servo_load;
   const double reported_cycles = largest / 255.0 * board::servo_cycles;
   CHECK(reported_cycles <= report.servo_cycles_longest);
   CHECK(reported_cycles > 0.9 * report.servo_cycles_longest);
-  // The interrupts run without flash prefetch and cache, which accelerate only the main loop.
+  // Flash prefetch and cache accelerate the main loop but not the interrupts.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
   // The alignment of the main loop's functions to cache lines changes the result by a few percent.
@@ -91,7 +91,7 @@ TEST_CASE(
 
 namespace {
 
-/// Returns the longest contact stage within the next 0.1 s.
+/// Returns the longest duration of the contact stage in the next 0.1 s.
 float contact_cycles(BoardRig& rig) {
   while (rig.device->read_scope(std::chrono::milliseconds(0))) {
   }
@@ -150,7 +150,7 @@ TEST_CASE(
   const auto heartbeat = instructions_in({"Bridges12begin_period", "Bridges10end_period"});
   const auto heat = instructions_in({"7control11update_heat"});
   const auto bounds = instructions_in({"Controller14bound_voltages"});
-  // The motor check also calls this function, once per 128 checks of a motor.
+  // The motor check calls update_resistance() once per 128 checks of a motor.
   const auto resistance = instructions_in({"Controller17update_resistance"});
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
   const auto conditioning_by = [&](std::string_view header) {
@@ -160,8 +160,8 @@ TEST_CASE(
     });
   };
   const auto jumps = conditioning_by("encoders.hpp");
-  // The debug information assigns the comparison and branch, four instructions, to the calling line. Three store
-  // instructions of other code are included.
+  // The debug information assigns four instructions of the comparison to the calling line. The count includes three
+  // store instructions of other code.
   const auto current_jumps = conditioning_by("current_jump.hpp") + 4 - 3;
   const auto change_of_state = instructions_in({"Controller12change_state", "7control7advanceERKNS0_10Supervisor"});
   MESSAGE("simulation: of ", executed.size(), " instructions ", checking, " supervise, ", heartbeat,
@@ -174,7 +174,7 @@ TEST_CASE(
   CHECK(jumps > 10);
   CHECK(current_jumps > 10);
   CHECK(heat > 10);
-  // The longest interrupt may include a change of a limit's state.
+  // A limit may change its state during the longest interrupt.
   CHECK(checking + heartbeat + jumps + current_jumps + heat + change_of_state <= (change_of_state > 0 ? 420 : 300));
   CHECK(bounds > 10);
   CHECK(bounds + resistance <= 100);
@@ -236,7 +236,7 @@ TEST_CASE("a motor that was warm before a restart is as warm after it, but not a
   rig.run(1.0);
   const auto hottest = [&] { return std::ranges::max(rig.device->information().report.motor_heat); };
   const auto is_kept = [&](float before) {
-    // With the default parameters the heat decays within many seconds.
+    // The heat decays slowly with the default parameters.
     const float after = hottest();
     MESSAGE("simulation: heat ", before, " before the restart, ", after, " after it");
     CHECK(after > 0.9f * before);
@@ -300,7 +300,7 @@ TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way t
   CHECK(protocol::force_is_on(rig.pose().state));
   CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::heat));
   CHECK(largest_current_A(rig.control) == doctest::Approx(0.5).epsilon(0.1));
-  // The force has kept its direction, and the hand has moved slightly.
+  // The force still has the same direction, but the hand has moved slightly.
   const auto now_A = currents_A();
   const double along = std::inner_product(now_A.begin(), now_A.end(), while_cool_A.begin(), 0.0);
   const auto length = [](const auto& v) { return std::hypot(v[0], v[1], v[2]); };

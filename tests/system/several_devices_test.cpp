@@ -1,4 +1,4 @@
-// Two simultaneous arms with different serial numbers do not influence each other.
+// Two arms with different serial numbers can be used at the same time without interference.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -28,14 +28,14 @@ device::VirtualBoardOptions individual(std::uint64_t seed, const board::Facts& b
   return options;
 }
 
-/// Two devices on two kinds of boards.
+/// The two devices have different kinds of boards.
 struct TwoArms {
   BoardRig first{individual(1, board::omni_driver)}, second{individual(2, board::bench_modules)};
   std::string first_number = first.device->information().serial_number,
               second_number = second.device->information().serial_number;
 };
 
-/// Returns the newest sample of the only selected signal.
+/// Returns the newest sample of the selected signal.
 float newest(device::Device& device) {
   float value = 0.0f;
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// Two programs with one arm. The first program is the driver, and the second program observes.
+// Tests two programs that share one arm. The first program is the driver, and the second program observes.
 #include <doctest/doctest.h>
 
 #include <array>

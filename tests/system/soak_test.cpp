@@ -1,5 +1,5 @@
-// Runs a short soak test with each kind of phase and the flashed firmware. tools/lab/soak runs one hour. The test also
-// checks that a soak test has the requested duration.
+// Runs a short soak test with each kind of phase and the flashed firmware. tools/lab/soak runs one hour. The soak test
+// must have the requested duration.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
     return press.at("force_N").get<double>() / press.at("limit_N").get<double>();
   };
   CHECK(part_of_limit("hardest_press") > 0.5);
-  // The bounds below are low, because the hand's force at the time of a fault varies.
+  // The force at the time of a fault varies, so the bounds are low.
   CHECK(part_of_limit("hardest_press_with_fault") > 0.01);
   CHECK(part_of_limit("hardest_press_with_fault_over_ms") > 0.01);
   CHECK(sitting.at("transactions").get<int>() > 10);
@@ -75,7 +75,7 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
   CHECK(json.at("stopped") == false);
   CHECK(soak("again.json", "2") == json);
   const auto alone = [&](const std::string& number) {
-    // The last value of a repeated option is used. Options of tools/lab/soak depend on this behavior.
+    // If an option is repeated, its last value is used, as tools/lab/soak requires.
     return run_program("inkwell-lab", {"soak", "--seconds", "3600", "--seconds", "3", "--sitting-seconds", "2",
                                        "--seed", "7", "--sitting", number, "--out", directory.file("alone.json")});
   };

@@ -18,7 +18,6 @@ using namespace inkwell::tests;
 
 namespace {
 
-/// A board with persistent flash, and companion commands for this board.
 struct RememberingBoard {
   TemporaryDirectory directory;
   std::string flash = directory.file("flash.bin");

@@ -1,5 +1,4 @@
-// Tests the detection of a stuck encoder: a current does not change the count, or the voltage shows that the motor
-// turns. Healthy encoders in the same situations raise no fault.
+// Tests the detection of a stuck encoder from motor currents and voltages. Healthy encoders must not raise a fault.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -31,8 +31,8 @@ TEST_CASE("the target's tests pass on the virtual board in fast mode") {
                         "target-tests-requests", "target-tests-streams", "target-tests-poses"});
 }
 
-// Excludes the control tests, which run for minutes of board time. The experiment covers the same control law in exact
-// mode.
+// The control tests are excluded, because they would run for minutes of board time. The experiment tests the control
+// law in exact mode.
 TEST_CASE("the target's tests pass on the virtual board in exact mode") {
   check_images("exact", {"target-tests-link", "target-tests-self-test", "target-tests-usb", "target-tests-requests",
                          "target-tests-streams", "target-tests-poses"});

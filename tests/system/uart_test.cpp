@@ -1,4 +1,4 @@
-// Tests the UARTs of the virtual board on pipes, on a pseudo-terminal and on a socket.
+// Tests the virtual board's UARTs on pipes, on a pseudo-terminal and on a socket.
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
 #include <fcntl.h>

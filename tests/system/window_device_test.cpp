@@ -127,7 +127,7 @@ TEST_CASE("a guide whose device is unplugged says so, and the parameters on tria
   WindowRig rig;
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");
-  // Each step waits for a confirmation. Trial gains are active after the first transaction.
+  // Each step waits for a confirmation. The first transaction activates the trial gains.
   const auto before = rig.look().applied_at_periods();
   rig.wait_until("gains are on trial", [&](const Sight& now) {
     if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());

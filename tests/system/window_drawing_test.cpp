@@ -1,4 +1,4 @@
-// Only changed parts of the window are redrawn, without a visible difference.
+// Tests that redrawing only the changed parts produces the same picture.
 #include <doctest/doctest.h>
 
 #include <algorithm>

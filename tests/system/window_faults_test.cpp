@@ -17,19 +17,19 @@ void look_for(WindowRig& rig, const std::string& text) {
   rig.wait_until("it says " + text, [&](const Sight& now) { return now.says(text); });
 }
 
-/// Text is lost if it is typed before the text field has the keyboard focus.
+/// Text that is typed before the field has the keyboard focus is lost.
 void wait_for_keyboard(WindowRig& rig, const std::string& field) {
   rig.wait_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
 }
 
-/// Name of the control with the keyboard focus; empty without such a control.
+/// Returns the name of the control with the keyboard focus, or an empty string.
 std::string focused_control(const Sight& sight) {
   for (const auto& each : sight.all.at("items").items())
     if (each.value().at("active")) return each.key();
   return sight.with_keyboard();
 }
 
-/// With ImGui 1.90, Tab also selects the buttons before the field.
+/// In ImGui 1.90, the Tab key selects the buttons before the text field.
 void go_by_tab(WindowRig& rig, const std::string& field) {
   constexpr int most_stops = 5;
   for (int stop = 0; stop < most_stops && !rig.look().is_active(field); ++stop) {

@@ -78,8 +78,8 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.press_mouse();
     rig.move_to({handle.x + 20, handle.y});
     rig.wait_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-    // Board time is paused while the event is generated and handled. Each attempt uses another phase of the USB frame.
-    // Only the transaction is measured, so that a busy computer does not change the result.
+    // Board time is paused while the event is generated and handled. The attempts differ in their phase relative to the
+    // USB frame. The measurement covers only the transaction, so that a busy computer does not change the result.
     rig.control.run(2e-4 * (attempt + 1));
     const auto moved_at = clock.newest_period();
     rig.control.stand_by();

@@ -35,8 +35,8 @@ void go_to_part(WindowRig& rig, const std::string& part) {
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
-/// Presses the key until the item has the keyboard focus. Returns all items with the focus during this time, including
-/// the last item.
+/// Presses the key until the item has the keyboard focus. Returns all items that had the keyboard focus, including the
+/// last item.
 std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::string& item, int steps_maximum) {
   std::set<std::string> on_the_way;
   for (int step = 0; step < steps_maximum; ++step) {
@@ -121,7 +121,8 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
     rig.wait_until("the scene turns by " + key, [&](const Sight& now) { return std::abs(x(now) - before) > 2.0; });
   };
   turns_by("shift+Right");
-  // xdotool releases Shift before the arrow. Shift must have an effect even if it was pressed in an earlier frame.
+  // xdotool releases Shift before it releases the arrow key. Shift must have an effect if it was pressed in an earlier
+  // frame than the arrow key.
   rig.hold_key("shift");
   turns_by("shift+Left");
   turns_by("shift+Prior");

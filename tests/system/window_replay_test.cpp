@@ -19,7 +19,7 @@ using protocol::Signal;
 
 namespace {
 
-/// Writes a recording of half a second in which the force oscillates between -1 N and 1 N, `times` times.
+/// Writes a recording of half a second with `times` oscillations of the force between -1 N and 1 N.
 void write_swing(const std::string& file, double times) {
   constexpr std::uint32_t periods = protocol::servo_rate_Hz / 2, first_period = 1000;
   const auto signals = recording::standard_signals();
@@ -49,7 +49,7 @@ Image picture_of(WindowRig& rig) {
   return rig.picture();
 }
 
-/// Number of different pixels in the area of the plots, below the replay bar and next to the panes.
+/// Returns the number of pixels that differ in the area of the plots.
 std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& other) {
   const Sight sight = rig.look();
   const Item bar = sight.item("replay/Close"), panes = sight.item("tabs/Tuning");
@@ -62,7 +62,7 @@ std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& othe
   return changed;
 }
 
-/// A new read can shift the curves by one sample, but this shift changes fewer pixels.
+/// A shift of the curves by one sample changes fewer pixels than this number.
 constexpr std::size_t of_a_sample = 100;
 
 }  // namespace

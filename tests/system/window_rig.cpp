@@ -39,8 +39,8 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
   return words;
 }
 
-// The display prints its number once it is ready; messages about display numbers in use are not errors. Key repeat is
-// off (-r), because a busy computer may delay the release of a key.
+// The display prints its number when it is ready. Messages about used display numbers are not errors. Key repeat is off
+// (-r), because a busy computer may delay the release of a key.
 std::vector<std::string> display_command(const std::string& screen) {
   return {"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 " + screen + "x24 -nolisten tcp 2>/dev/null"};
 }

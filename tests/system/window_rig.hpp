@@ -29,24 +29,25 @@ struct Item {
   Point centre() const { return at(0.5, 0.5); }
 };
 
-/// Contents of one frame, with the state of the device at that time.
+/// Contents of a frame and the corresponding state of the device.
 struct Sight {
   nlohmann::json all;
 
   bool connected() const { return all.at("connected"); }
   std::string state() const { return all.at("state"); }
-  /// Control period at which the window's newest transaction became active; 0 before the first transaction.
+  /// Returns the control period in which the window's newest transaction became active, or 0 before the first
+  /// transaction.
   std::int64_t applied_at_periods() const { return all.value("applied_at_periods", std::int64_t{0}); }
   bool has(const std::string& item) const { return all.at("items").contains(item); }
   /// Throws if the item is not visible. The message lists the visible items.
   Item item(const std::string& name) const;
   bool can_click(const std::string& name) const { return has(name) && item(name).enabled; }
-  /// True if the item has the keyboard focus or is held by the mouse.
+  /// Returns true if the item has the keyboard focus or if the mouse drags the item.
   bool is_active(const std::string& name) const { return has(name) && all.at("items").at(name).at("active"); }
-  /// Name of the item with the keyboard focus, such as "status/STOP". The name is empty while the mouse is used, or for
-  /// an item without a name.
+  /// Name of the item with the keyboard focus, such as "status/STOP". Returns an empty name while the mouse is used or
+  /// if the item has no name.
   std::string with_keyboard() const;
-  /// True if any text in the window contains `part`.
+  /// Returns true if any text in the window contains `part`.
   bool says(const std::string& part) const;
 };
 
@@ -54,20 +55,20 @@ class WindowRig {
  public:
   static constexpr const char* usual_screen = "1280x800";
 
-  /// Starts all programs, and waits until the window is connected and its device is referenced. `options`: options of
-  /// the window; with --flat-colours the pixels have exactly the colors of palette.hpp. `screen`: size of the display
-  /// in pixels. Without the control port the window uses the virtual board like a real board.
+  /// Starts all programs, and waits until the window is connected and its device is referenced. `options` are options
+  /// of the window. With --flat-colours the pixels have exactly the colors of palette.hpp. `screen`: size of the
+  /// display in pixels. Without the control port, the window handles the virtual board like a real board.
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
                      const std::string& screen = usual_screen);
 
-  /// Uses the board with this name and the image build/board/`image`; does not wait.
+  /// Starts the board `board_name` with the image build/board/`image`, and does not wait for the window.
   static WindowRig with_image(const std::string& image, const std::string& board_name) {
     return WindowRig(OtherImage(), image, board_name);
   }
 
-  /// Returns a frame that started after all events.
+  /// Returns the first complete frame after all events.
   Sight look();
-  /// Waits until a frame satisfies the condition; throws after a long time limit.
+  /// Waits until a frame satisfies the condition, and throws after a long time limit.
   Sight wait_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
   Image picture();
   void picture(const std::string& file);
@@ -80,7 +81,7 @@ class WindowRig {
   void click(Point point);
   /// Waits until the item can be clicked.
   void click(const std::string& item);
-  /// Moves with the button pressed in `steps` frames; the button remains pressed.
+  /// Moves the mouse in `steps` frames with the button pressed, and does not release the button.
   void drag(Point from, Point to, int steps = 8);
   void scroll_down(Point over, int steps);
   void scroll_up(Point over, int steps);
@@ -92,7 +93,7 @@ class WindowRig {
   /// the frames of a keyboard navigation step.
   void tap_key(const std::string& key);
   void type(const std::string& text);
-  /// Layout in setxkbmap's notation: "de".
+  /// Sets a keyboard layout by its setxkbmap name, such as "de".
   void set_keyboard_layout(const std::string& layout);
   /// Replaces the content of the text field.
   void enter(const std::string& field, const std::string& text);

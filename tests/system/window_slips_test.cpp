@@ -25,14 +25,14 @@ const float stiffness_at_start = protocol::info(Parameter::wall_stiffness_N_per_
 const auto force_is_on = [](const Sight& now) { return now.state() == "active"; };
 const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; };
 
-/// Makes a change and waits until the change is active in the device.
+/// Makes a change and waits until the device applies it.
 void change_and_wait(WindowRig& rig, const std::function<void()>& change) {
   const auto before = rig.look().applied_at_periods();
   change();
   rig.wait_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
 }
 
-/// Returns the device's value at the end of the test, after all pending changes.
+/// Waits for all pending changes and returns the device's stiffness.
 float stiffness_held_at_the_end(WindowRig& rig) {
   rig.control.run(0.1);
   rig.control.resume();

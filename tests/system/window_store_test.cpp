@@ -1,4 +1,4 @@
-// Tests the display of values that are not stored on the board or that differ after a reconnection.
+// Tests the display of unstored values and of values that differ after a reconnection.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -15,7 +15,7 @@ constexpr float stiff_N_per_m = 1500.0f;
 
 const auto says = [](const std::string& words) { return [words](const Sight& now) { return now.says(words); }; };
 
-/// When the window starts, it sends one value. The preset increases the number of values to three.
+/// One value is not stored after the window's start. With the preset, three values are not stored.
 void make_stiff(WindowRig& rig) {
   rig.wait_until("one value waits", says("1 value is not stored"));
   rig.click("tuning/Stiff");
@@ -27,7 +27,7 @@ void store(WindowRig& rig) {
   rig.wait_until("they are stored", says("All values are stored"));
 }
 
-/// Restarts the board as after a power cut, with the arm in its inkwell.
+/// Restarts the board with the arm in its inkwell.
 void restart(WindowRig& rig) {
   rig.control.reset();
   rig.wait_until("the window is connected again",

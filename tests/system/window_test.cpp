@@ -20,8 +20,8 @@ std::size_t count(const Image& image, window::Colour colour) {
   return image.count({colour.red, colour.green, colour.blue}, 2);
 }
 
-/// Returns the region of the picture with arm, sphere and walls. The scope is outside this region and has lines of the
-/// same colors.
+/// Returns the region of the picture with arm, sphere and walls. Lines of the scope have the same colors, so the scope
+/// is outside this region.
 Image scene_of(WindowRig& rig) {
   const Image whole = rig.picture();
   const auto scene = rig.look().item("scene/view");

@@ -9,7 +9,7 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1))
 
-# Each package of the fake dpkg is a file in the folder "packages". The file contains the status.
+# Each package of the fake dpkg is a file in the folder "packages". The file of a package contains its status.
 FAKE_PROGRAMS = {
     "apt-get": """
 case "$*" in
