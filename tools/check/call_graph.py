@@ -188,7 +188,7 @@ def read_image(elf: str) -> Image:
         parts = line.split()
         symbols[parts[-1]] = int(parts[0], 16)
         if parts[-1].startswith("_ZTV") and len(parts) == 4:
-            # Two words precede the first slot: offset to top, and type information.
+            # The first slot follows two words, the offset to top and the type information.
             words = read_words(elf, int(parts[0], 16), int(parts[1], 16) // 4)[2:]
             tables.append([by_address.get(word & ~1, "") for word in words])
     begin, end = symbols["constructors_begin"], symbols["constructors_end"]

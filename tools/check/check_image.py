@@ -15,7 +15,7 @@ import sys
 from call_graph import Image, Unreadable, read_image, readable, run
 from interrupt_rules import broken_interrupt_rules
 
-# Functions that the firmware image must not contain, and the cause of each function. Patterns of whole symbol names.
+# Functions that the firmware image must not contain, with their causes. Each key is a pattern of a whole symbol name.
 FORBIDDEN = {
     r"_?(malloc|calloc|realloc|free)(_r)?|_sbrk(_r)?": "the heap",
     r"_Zn[wa].*|_Zd[la].*": "operator new or delete",
@@ -34,7 +34,7 @@ def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
     return {name: (int(size), int(address)) for name, size, address in rows if int(address) != 0}
 
 
-# The regions of the linker script whose space is scarce, with their names in the output.
+# Scarce memory regions of the linker script, with their names in the output.
 REGIONS = {"INTERRUPT": "interrupt code", "TABLES": "interrupt tables", "RAM": "RAM", "CORE_COUPLED": "core-coupled RAM"}
 LINKER_SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "boards/facts/stm32f405.ld"
 

@@ -173,8 +173,7 @@ class Comparison:
         if views is None:
             return
         if not views:
-            # All peripherals of a kind share one description, so this peripheral may lack a register of another
-            # peripheral.
+            # Peripherals of one kind share a description, so a peripheral may lack a described register.
             if not any(self.svd_views(other, register.name) for other in kin):
                 self.differences.append(f"{label}: the SVD has no such register in {peripheral.name}")
             return

@@ -131,7 +131,7 @@ class Bound:
         calls = self.calls(function)
         dearest: dict[int, int] = {}
         for address, text in reversed(function.instructions):
-            # Even without loops, a path may jump to a lower address. The code at this address is visited first.
+            # A jump to a lower address is possible without a loop. The code at the lower address is visited first.
             self.visit(address, dict(function.instructions), paths, calls, callers, dearest)
         return dearest[addresses[0]]
 

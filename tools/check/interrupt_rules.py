@@ -22,7 +22,7 @@ LIBRARY = {
 # ---- counters --------------------------------------------------------------------------------------------------
 
 CALL = re.compile(r"blx?\t")
-# A register that changes by a step: r3 in "adds r3, #1", "sub.w r3, r3, r5", "lsls r3, r3, #1" or after an access.
+# Instructions that change a register by a step, such as "adds r3, #1", "sub.w r3, r3, r5" and "lsls r3, r3, #1".
 STEP = re.compile(r"(?:add|sub|lsl|lsr|asr)[sw]?(?:\.[nw])?\t(\w+), (?:\1, )?(?:#\d+|r\d+)$")
 STEP_OF_ACCESS = re.compile(r"\w+(?:\.\w+)?\t.*\[(\w+)(?:\], #-?\d+|, #-?\d+\]!)$|v?(?:ld|st)m\w+(?:\.w)?\t(\w+)!")
 READS_ONLY = re.compile(r"(?:v?st|cm[pn]|tst|teq|v?push|vcmp|it|nop|b|cb|dmb|dsb|isb|pld|vmsr|msr)")

@@ -105,8 +105,8 @@ class DebugInformation:
         fields = [self.field(alias, name) for alias in self.children(entry, "typedef")]
         if len(bases) == 1 and self.name(bases[0]).startswith("RegisterArray<"):
             address, stride, count = (value & 0xFFFFFFFF for value in self.template_values(bases[0]))
-            # CCR[0] is CCR1 in the timers. Other arrays start at 0, such as ISER[0] for ISER0. Four elements of a byte
-            # array are one register of the SVD.
+            # CCR[0] is CCR1 in the timers. Other arrays start at 0, such as ISER[0] for ISER0. One register of the SVD
+            # consists of four elements of a byte array.
             first = 1 if name == "CCR" else 0
             step = max(1, 4 // stride)
             return [
@@ -119,7 +119,7 @@ class DebugInformation:
         raise Unreadable(f"{name} in the peripheral at 0x{base:08X} is neither a Register nor a RegisterArray")
 
     def field(self, alias, register: str) -> Field:
-        # No object has a field type, so the debug information contains only the type's full name.
+        # The debug information contains no members of a field type, because no object has this type.
         form = re.fullmatch(r"Field<.*::(\w+), (\d+)U?, (\d+)U?>", self.name(self.type_of(alias)))
         if not form:
             raise Unreadable(f"{register}.{self.name(alias)} is not a Field")

@@ -18,8 +18,7 @@ from call_graph import Image, Unreadable, read_image, readable
 # On exception entry the processor stacks 26 words, including the floating-point registers, and one alignment word.
 EXCEPTION_FRAME_BYTES = 27 * 4
 
-# These functions set the stack pointer on purpose: the interrupted stack may be invalid, or the boot loader has a
-# separate stack.
+# fault_handler replaces an invalid stack, and enter_boot_loader switches to the boot loader's stack.
 MAY_SET_STACK = {"cpu_fault_handler", "enter_boot_loader"}
 
 

@@ -1,4 +1,4 @@
-# Defines the target `name` with the precompiled HEADERS for targets that link to LIBRARIES and compile with OPTIONS.
+# Defines the target `name`, which precompiles HEADERS for targets with the same LIBRARIES and OPTIONS.
 function(inkwell_add_precompiled_headers name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;OPTIONS")
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)

@@ -9,12 +9,12 @@ foreach(kind BIN LIB DATA)
 endforeach()
 set(INKWELL_PROGRAMS_PATH ${CMAKE_INSTALL_BINDIR})
 set(INKWELL_ARMS_PATH ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
-# Programs and images depend on the processor architecture; Debian places such files in lib/.
+# Programs and images are architecture-dependent, so Debian places them in lib/.
 set(INKWELL_FIRMWARE_PATH lib/inkwell/firmware)
 set(INKWELL_DROPINS_PATH lib/inkwell/dropins)
 
 # Creates links at the same locations in the build directory, so that built programs find their files like installed
-# programs. The target of a link may be built later.
+# programs. A link may be created before its target is built.
 function(inkwell_link_installed_paths)
   foreach(link ${INKWELL_PROGRAMS_PATH}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
                ${INKWELL_ARMS_PATH}=${PROJECT_SOURCE_DIR}/boards/arms

@@ -34,8 +34,8 @@ inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
 # CLI11 generates code in every file that includes its headers, so only the commands include CLI11.
 inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
-# Optimizing these headers takes longest, and their code is not time-critical. All targets with these precompiled
-# headers must use the same option.
+# Optimizing these headers takes long, and their code is not time-critical, so -O1 is sufficient. Targets must use the
+# same option as their precompiled headers.
 foreach(target inkwell_command_headers inkwell_command_options inkwell_command_line inkwell-lab inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()

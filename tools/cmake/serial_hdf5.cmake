@@ -1,11 +1,11 @@
 # PkgConfig::hdf5, the serial HDF5 library. The parallel library would load MPI into every program that reads a
-# recording, and into all programs that link to libinkwell. If both libraries are installed, the serial library has a
-# separate pkg-config name.
+# recording, and into all programs that link to libinkwell. If both HDF5 libraries are installed, the pkg-config name of
+# the serial library is hdf5-serial.
 find_package(PkgConfig REQUIRED)
-# File locking can be disabled since HDF5 1.10.7.
+# HDF5 can disable file locking since version 1.10.7.
 pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial>=1.10.7 hdf5>=1.10.7)
 pkg_get_variable(hdf5_includedir ${hdf5_MODULE_NAME} includedir)
-# A distribution for two word sizes has one file per word size, such as H5pubconf-64.h.
+# On systems with two word sizes, the file name contains the word size, such as H5pubconf-64.h.
 set(hdf5_configuration ${hdf5_INCLUDE_DIRS} ${hdf5_includedir})
 list(TRANSFORM hdf5_configuration APPEND "/H5pubconf*.h")
 file(GLOB hdf5_configuration ${hdf5_configuration})

@@ -18,7 +18,7 @@ function(inkwell_target_lines directory result)
         set(${property} "")
       endif()
     endforeach()
-    # The interface of a static library repeats its private libraries for the linker.
+    # For the linker, the interface of a static library repeats the private libraries.
     list(APPEND LINK_LIBRARIES ${INTERFACE_LINK_LIBRARIES})
     list(FILTER LINK_LIBRARIES EXCLUDE REGEX "LINK_ONLY")
     list(REMOVE_DUPLICATES LINK_LIBRARIES)

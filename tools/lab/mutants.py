@@ -15,7 +15,7 @@ from pathlib import Path
 REGISTER_WRITE = re.compile(
     r"(?<![\w:.>])(?:\w+::)+(?:write|modify|enable|set_high|set_low|start)\("
     r"|(?<![\w:.>])(?:connect|connect_analog|start_clocks_of|start_clock_of_stream|set_up\w*)(?:<[^;(]*>)?\(")
-# A field value among the arguments, such as "CR::PLLON(1)", but not the number of an endpoint or channel.
+# A field value in the arguments, such as "CR::PLLON(1)".
 FIELD = re.compile(r"(?:typename )?(?:\w+::)+\w+\(")
 # A store instruction in an assembly handler.
 ASSEMBLY_STORE = re.compile(r'^\s*"(?:str|cpsid|dsb)\b[^"]*"', re.MULTILINE)
