@@ -93,9 +93,9 @@ CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
 
 /// The handler first switches the motors off. This code does not use the stack, because the stack may be damaged. The
 /// handler then uses the lowest 512 bytes of the stack to create the crash record. These bytes are unused unless the
-/// stack has overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A second CPU
-/// fault in this function restarts the function as a hard fault handler. A CPU fault in the hard fault handler locks up the
-/// processor until the watchdog expires.
+/// stack has overflowed. No interrupt can preempt this function, because CPU faults have the highest priority. A second
+/// CPU fault in this function restarts the function as a hard fault handler. A CPU fault in the hard fault handler
+/// locks up the processor until the watchdog expires.
 extern "C" [[gnu::naked]] void cpu_fault_handler() {
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
