@@ -59,7 +59,7 @@ struct ParameterCheck {
 /// Applies a ParametersReport to `current` and checks the resulting parameter set as a whole.
 ///
 /// `report` starts at the report id. Bytes after the last entry are ignored, because Windows pads feature reports.
-/// While the force is on, a change of a parameter in the group "arm" is refused. `stored` is the parameter set for
+/// While the force is on, a change of a parameter with needs_force_off is refused. `stored` is the parameter set for
 /// restore_stored, or null.
 ParameterCheck check_transaction(std::span<const std::byte> report, const protocol::ParameterSet& current,
                                  bool force_is_on, const protocol::ParameterSet* stored = nullptr);

@@ -42,9 +42,10 @@ std::string help_of_bits(std::string begin, const Table& table, Bit bit) {
 }
 
 TEST_CASE("signals: the help of a sum of bits names each bit of its table") {
-  CHECK(info(Signal::force_sources).help ==
+  CHECK(std::string(info(Signal::force_sources).help) ==
         help_of_bits("Sum of the active force sources:", force_source_table, &ForceSourceInfo::source));
-  CHECK(info(Signal::limits).help == help_of_bits("Sum of the active limits:", limit_table, &LimitInfo::limit));
+  CHECK(std::string(info(Signal::limits).help) ==
+        help_of_bits("Sum of the active limits:", limit_table, &LimitInfo::limit));
 }
 
 TEST_CASE("reports: ids and usages are unique, and each is read or set") {
