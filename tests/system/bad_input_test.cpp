@@ -303,7 +303,7 @@ namespace {
 
 /// Checks the help of a program and of each command. `commands`: all commands of the program.
 void check_help(const std::string& program, const std::vector<std::string>& commands) {
-  const auto help_of = [](const std::string& command) {
+  const auto help_of = [&program](const std::string& command) {
     std::vector<std::string> words;
     std::string word;
     for (std::istringstream all(command); all >> word;) words.push_back(word);
