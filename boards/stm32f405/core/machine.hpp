@@ -20,16 +20,6 @@
 
 namespace inkwell::virtual_board {
 
-class Adcs;
-class Dma;
-class Exti;
-class FlashController;
-class Pins;
-class PowerControl;
-class Processor;
-class Rcc;
-class Timers;
-
 /// Stack space reserved for the FPU registers at exception entry, and the state of the interrupted code.
 struct FloatFrame {
   std::uint32_t address;
@@ -38,13 +28,17 @@ struct FloatFrame {
 };
 
 struct Machine {
-  Machine(Circuit& the_circuit, const ChipOptions& the_options, AddressSpace& the_memory)
-      : circuit(the_circuit), options(the_options), log(the_options.log), memory(the_memory) {}
+  Machine(Circuit& the_circuit, const ChipOptions& the_options, AddressSpace& the_memory, const CodePosition& code)
+      : circuit(the_circuit),
+        options(the_options),
+        log(the_options.log),
+        violations(log, timeline, code),
+        memory(the_memory) {}
 
   Circuit& circuit;
   ChipOptions options;
   Log log;
-  Violations violations{*this};
+  Violations violations;
   Timeline timeline;
   AddressSpace& memory;
   MemoryProtection memory_protection;
@@ -53,16 +47,6 @@ struct Machine {
   Debugging debugging;
   DebugHalt debug_halt;
   std::vector<ClockUser*> clock_users;
-
-  Adcs* adcs = nullptr;
-  Dma* dma = nullptr;
-  Exti* exti = nullptr;
-  FlashController* flash = nullptr;
-  Pins* pins = nullptr;
-  PowerControl* power = nullptr;
-  Processor* processor = nullptr;
-  Rcc* rcc = nullptr;
-  Timers* timers = nullptr;
 
   double supply_V = logic_supply_V, analog_supply_V = logic_supply_V;
   bool supply_is_low = false;        ///< the brown-out reset is active

@@ -35,7 +35,8 @@ bool is_trace(std::uint32_t address) { return address <= dwt_base + dwt.cyccnt; 
 
 }  // namespace
 
-SystemControl::SystemControl(Machine& machine) : machine_(machine), systick_(machine) {}
+SystemControl::SystemControl(Machine& machine, Processor& processor)
+    : machine_(machine), processor_(processor), systick_(machine) {}
 
 std::vector<RegisterMap> SystemControl::register_maps() {
   return {{"DWT", dwt_base, shown<dwt>()},
@@ -56,8 +57,8 @@ void SystemControl::reset() {
   configuration_ = scb.ccr.reset_value;
   machine_.traps_zero_division = false;
   machine_.memory_protection.reset();
-  machine_.processor->rights_changed();
-  machine_.processor->trap_misaligned(false);
+  processor_.rights_changed();
+  processor_.trap_misaligned(false);
   configurable_faults_ = hard_faults_ = debug_faults_ = 0;
   memory_fault_address_ = bus_fault_address_ = auxiliary_faults_ = 0;
   coprocessor_access_ = auxiliary_control_ = 0;
@@ -94,7 +95,7 @@ void SystemControl::note_float_frame(const FloatFrame& frame) {
 std::uint32_t SystemControl::cycle_count() const {
   if (!dwt.ctrl.cyccntena.in(trace_control_)) return cycle_held_;
   // The cycle counter stops in sleep unless DBGMCU_CR.DBG_SLEEP keeps the clock on.
-  const std::uint64_t cycles = machine_.processor->cycles() + machine_.processor->slept_cycles();
+  const std::uint64_t cycles = processor_.cycles() + processor_.slept_cycles();
   return static_cast<std::uint32_t>(cycles) - cycle_base_;
 }
 
@@ -102,7 +103,7 @@ std::uint32_t SystemControl::interrupt_control_state() const {
   const auto& nvic = machine_.nvic;
   const unsigned urgent = nvic.most_urgent();
   const auto& icsr = scb.icsr;
-  std::uint32_t value = icsr.vectactive.with(machine_.processor->current_exception()) | icsr.vectpending.with(urgent);
+  std::uint32_t value = icsr.vectactive.with(processor_.current_exception()) | icsr.vectpending.with(urgent);
   if (nvic.active_count() <= 1) value |= icsr.rettobase.mask();
   if (urgent >= exception_interrupt_0) value |= icsr.isrpending.mask();
   if (nvic.pending(exception_systick)) value |= icsr.pendstset.mask();
@@ -169,7 +170,7 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case fpu_cpacr_base + fpu_cpacr.cpacr: return coprocessor_access_;
     case core_debug_base + core_debug.dhcsr: return core_debug.dhcsr.c_debugen.with(machine_.debugging.attached);
     case core_debug_base + core_debug.demcr: return debug_monitor_;
-    case fpu_base + fpu.fpccr: return float_control_ | fpu.fpccr.lspact.with(machine_.processor->lazy_stacking_due());
+    case fpu_base + fpu.fpccr: return float_control_ | fpu.fpccr.lspact.with(processor_.lazy_stacking_due());
     case fpu_base + fpu.fpcar: return float_address_;
     case fpu_base + fpu.fpdscr: return float_default_;
     case fpu_base + fpu.mvfr: return 0x1011'0021;  // FPv4-SP
@@ -222,13 +223,11 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case dwt_base + dwt.ctrl:
       cycle_held_ = cycle_count();
       trace_control_ = dwt.ctrl.reset_value | (value & writable(dwt.ctrl));
-      cycle_base_ =
-          static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - cycle_held_;
+      cycle_base_ = static_cast<std::uint32_t>(processor_.cycles() + processor_.slept_cycles()) - cycle_held_;
       return;
     case dwt_base + dwt.cyccnt:
       cycle_held_ = value;
-      cycle_base_ =
-          static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - value;
+      cycle_base_ = static_cast<std::uint32_t>(processor_.cycles() + processor_.slept_cycles()) - value;
       return;
     case dwt_base + dwt.lar: return;  // the trace is never locked
     case scs_base + scs.actlr: auxiliary_control_ = value; return;
@@ -239,7 +238,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case scb_base + scb.ccr:
       configuration_ = value & writable(scb.ccr);
       machine_.traps_zero_division = scb.ccr.div_0_trp.in(value);
-      machine_.processor->trap_misaligned(scb.ccr.unalign_trp.in(value));
+      processor_.trap_misaligned(scb.ccr.unalign_trp.in(value));
       return;
     case scb_base + scb.shcsr: write_handler_control_state(value); return;
     case scb_base + scb.cfsr: configurable_faults_ &= ~value; return;
@@ -251,7 +250,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case fpu_cpacr_base + fpu_cpacr.cpacr: {
       coprocessor_access_ = value & writable(fpu_cpacr.cpacr);
       constexpr std::uint32_t none = 0;  // CP10 and CP11 have the same value (PM0214, CPACR)
-      machine_.processor->set_float_unit(coprocessor_access_ != none);
+      processor_.set_float_unit(coprocessor_access_ != none);
       return;
     }
     case core_debug_base + core_debug.dhcsr: return;
@@ -261,7 +260,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
       return;
     case fpu_base + fpu.fpccr:
       float_control_ = value & writable(fpu.fpccr) & ~fpu.fpccr.lspact.mask();
-      if (!fpu.fpccr.lspact.in(value)) machine_.processor->drop_lazy_stacking();
+      if (!fpu.fpccr.lspact.in(value)) processor_.drop_lazy_stacking();
       return;
     case fpu_base + fpu.fpcar: float_address_ = value; return;
     case fpu_base + fpu.fpdscr: float_default_ = value; return;
@@ -278,7 +277,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     // written.
     if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())
       machine_.violations.violate(Rule::region_undefined);
-    return machine_.processor->rights_changed();
+    return processor_.rights_changed();
   }
   machine_.log.note("private peripheral bus 0xE0000000", address & 0xFFFFF, true, value);
 }

@@ -33,9 +33,11 @@ class SysTick final : public TimedPart, public ClockUser, public Freezable {
   bool frozen_ = false;
 };
 
+class Processor;
+
 class SystemControl {
  public:
-  explicit SystemControl(Machine& machine);
+  SystemControl(Machine& machine, Processor& processor);
   void reset();
   std::uint32_t read(std::uint32_t address, unsigned size);
   void write(std::uint32_t address, std::uint32_t value, unsigned size);
@@ -67,6 +69,7 @@ class SystemControl {
   std::uint32_t cycle_count() const;
 
   Machine& machine_;
+  Processor& processor_;
   SysTick systick_;
   std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = scb.ccr.reset_value, reset_control_ = 0;
   std::uint32_t configurable_faults_ = 0, hard_faults_ = 0, debug_faults_ = 0;

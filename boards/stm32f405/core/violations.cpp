@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "boards/stm32f405/core/processor.hpp"
+#include "boards/stm32f405/core/log.hpp"
+#include "boards/stm32f405/core/timeline.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -24,8 +25,8 @@ void Violations::violate(Rule rule, const std::string& where) {
     ++known->count;
     return;
   }
-  list_.push_back({rule, where, machine_.processor->code_address(), machine_.timeline.now()});
-  machine_.log.say(sentence(list_.back()));
+  list_.push_back({rule, where, code_.code_address(), timeline_.now()});
+  log_.say(sentence(list_.back()));
   if (on_first) on_first(list_.back());
 }
 

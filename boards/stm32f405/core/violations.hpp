@@ -7,11 +7,21 @@
 
 namespace inkwell::virtual_board {
 
-struct Machine;
+class Log;
+class Timeline;
+
+/// Address of the running code.
+class CodePosition {
+ public:
+  virtual ~CodePosition() = default;
+  /// Address of the current instruction (fast mode: of the current block).
+  virtual std::uint32_t code_address() const = 0;
+};
 
 class Violations final : public RuleKeeper {
  public:
-  explicit Violations(Machine& machine) : machine_(machine) {}
+  Violations(Log& log, const Timeline& timeline, const CodePosition& code)
+      : log_(log), timeline_(timeline), code_(code) {}
   void violate(Rule rule, const std::string& where = {}) override;
   const std::vector<Violation>& list() const { return list_; }
 
@@ -19,7 +29,9 @@ class Violations final : public RuleKeeper {
   std::function<void(const Violation&)> on_first;
 
  private:
-  Machine& machine_;
+  Log& log_;
+  const Timeline& timeline_;
+  const CodePosition& code_;
   std::vector<Violation> list_;
 };
 

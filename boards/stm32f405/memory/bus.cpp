@@ -60,8 +60,9 @@ const BusWindow Bus::all_windows[6] = {
     window<external_base, external_bytes>(),
 };
 
-Bus::Bus(Machine& machine, SystemControl& system_control, const StartingClock& starting_clock)
+Bus::Bus(Machine& machine, Processor& processor, SystemControl& system_control, const StartingClock& starting_clock)
     : machine_(machine),
+      processor_(processor),
       system_control_(system_control),
       starting_clock_(starting_clock),
       apb_and_ahb1_(apb_bytes / 1024),
@@ -150,16 +151,16 @@ void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned si
   slot->peripheral->write(address - slot->base, value, size);
 }
 
-void Bus::synchronise() { machine_.timeline.catch_up(machine_.processor->now()); }
+void Bus::synchronise() { machine_.timeline.catch_up(processor_.now()); }
 
 void Bus::settle_processor() {
   if (machine_.nvic.changed() || machine_.timeline.wake_moved_forward() || machine_.reset_requested)
-    machine_.processor->end_slice();
+    processor_.end_slice();
 }
 
 std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
-  access_began_ = machine_.processor->cycles();
-  machine_.processor->wait_for_register(address, false);
+  access_began_ = processor_.cycles();
+  processor_.wait_for_register(address, false);
   synchronise();
   const Log::Access access(machine_.log);
   std::uint32_t value = 0;
@@ -179,8 +180,8 @@ std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
 }
 
 void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
-  access_began_ = machine_.processor->cycles();
-  machine_.processor->wait_for_register(address, true);
+  access_began_ = processor_.cycles();
+  processor_.wait_for_register(address, true);
   synchronise();
   const Log::Access access(machine_.log);
   if (address >= private_base) {

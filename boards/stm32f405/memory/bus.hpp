@@ -11,11 +11,12 @@
 
 namespace inkwell::virtual_board {
 
+class Processor;
 class SystemControl;
 
 class Bus {
  public:
-  Bus(Machine& machine, SystemControl& system_control, const StartingClock& starting_clock);
+  Bus(Machine& machine, Processor& processor, SystemControl& system_control, const StartingClock& starting_clock);
 
   /// While `*enable_register & enable_mask` is 0, the peripheral has no clock. Reads then return 0, and writes are
   /// ignored.
@@ -50,6 +51,7 @@ class Bus {
   void settle_processor();
 
   Machine& machine_;
+  Processor& processor_;
   SystemControl& system_control_;
   const StartingClock& starting_clock_;
   std::vector<Slot> apb_and_ahb1_;  ///< one per kilobyte from 0x40000000

@@ -27,13 +27,13 @@ constexpr const Times& erase_times_ms(std::uint32_t bytes) {
 
 }  // namespace
 
-FlashController::FlashController(Machine& machine)
+FlashController::FlashController(Machine& machine, Processor& processor)
     : machine_(machine),
+      processor_(processor),
       slot_(machine.timeline.add(*this)),
       option_bytes_((flash_map.optcr.reset_value & writable(flash_map.optcr) & ~flash_map.optcr.bor_lev.mask()) |
                     flash_map.optcr.bor_lev.with(3 - machine.options.brown_out_level)),
       random_(machine.options.random_seed) {
-  machine.flash = this;
   machine.clock_users.push_back(this);
 }
 
@@ -63,7 +63,7 @@ void FlashController::check_wait_states() {
   const std::uint32_t hclk_Hz = machine_.clocks.frequencies.hclk_Hz;
   const bool was_misread = machine_.flash_is_misread;
   machine_.flash_is_misread = hclk_Hz > step_Hz * (flash_map.acr.latency.of(access_) + 1);
-  if (machine_.flash_is_misread != was_misread) machine_.processor->end_slice();
+  if (machine_.flash_is_misread != was_misread) processor_.end_slice();
   if (machine_.flash_is_misread)
     machine_.violations.violate(Rule::flash_wait_states, std::to_string(flash_map.acr.latency.of(access_)) + " at " +
                                                              std::to_string(hclk_Hz) + " Hz and " +
@@ -71,7 +71,7 @@ void FlashController::check_wait_states() {
 }
 
 void FlashController::set_accelerator(std::uint32_t access) {
-  auto& accelerator = machine_.processor->flash();
+  auto& accelerator = processor_.flash();
   // A cache can be cleared only while it is off (RM0090, "FLASH_ACR").
   const bool instruction_cache = flash_map.acr.icen.in(access), data_cache = flash_map.acr.dcen.in(access);
   if (flash_map.acr.icrst.in(access) && !instruction_cache) accelerator.forget_instructions();
@@ -87,7 +87,7 @@ void FlashController::update_interrupt() {
 
 void FlashController::set_busy(bool busy) {
   status_ = busy ? status_ | flash_map.sr.bsy.mask() : status_ & ~flash_map.sr.bsy.mask();
-  machine_.processor->set_flash_busy(busy);
+  processor_.set_flash_busy(busy);
 }
 
 void FlashController::begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes) {
@@ -100,7 +100,7 @@ void FlashController::begin(Ticks typical, bool erases, std::uint32_t offset, st
     duration = static_cast<Ticks>(part(random_) * static_cast<double>(duration));
   }
   set_busy(true);
-  done_ = machine_.processor->now() + duration;
+  done_ = processor_.now() + duration;
   machine_.timeline.set(slot_, done_, done_);
 }
 
@@ -119,10 +119,9 @@ void FlashController::step(Ticks) {
 }
 
 void FlashController::hold_up() {
-  auto& processor = *machine_.processor;
   while (busy()) {
-    processor.wait(static_cast<unsigned>(processor.cycles_until(done_)));
-    machine_.timeline.catch_up(processor.now());
+    processor_.wait(static_cast<unsigned>(processor_.cycles_until(done_)));
+    machine_.timeline.catch_up(processor_.now());
   }
 }
 
@@ -142,7 +141,7 @@ void FlashController::tear() {
                : kind == 2       ? any
                                  : static_cast<std::uint8_t>(before[i] & (place[i] | any));
   }
-  machine_.processor->forget_code(flash_base + operation_->offset, static_cast<std::uint32_t>(before.size()));
+  processor_.forget_code(flash_base + operation_->offset, static_cast<std::uint32_t>(before.size()));
   operation_.reset();
 }
 
@@ -201,7 +200,7 @@ void FlashController::erase() {
   const auto erase_range = [&](std::uint32_t base, std::uint32_t bytes, Ticks typical) {
     begin(typical, true, base, bytes);
     std::memset(machine_.memory.flash() + base, 0xFF, bytes);
-    machine_.processor->forget_code_later(flash_base + base, bytes);
+    processor_.forget_code_later(flash_base + base, bytes);
   };
   if (flash_map.cr.mer.in(control_)) return erase_range(0, flash_bytes, mass_ms[parallelism] * millisecond);
   const unsigned number = flash_map.cr.snb.of(control_);

@@ -42,9 +42,11 @@ struct FlashRegisters {
 };
 inline constexpr FlashRegisters flash_map;
 
+class Processor;
+
 class FlashController final : public RegisterBlock, public TimedPart, public ClockUser, public FlashPort {
  public:
-  explicit FlashController(Machine& machine);
+  FlashController(Machine& machine, Processor& processor);
   void reset() override;
   void step(Ticks now) override;
   void before_clock_change() override {}
@@ -89,6 +91,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void update_interrupt();
 
   Machine& machine_;
+  Processor& processor_;
   Timeline::Slot slot_;
   std::uint32_t access_ = 0, status_ = 0, control_ = 0;
   unsigned unlock_step_ = 0;

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
-#include "boards/stm32f405/peripherals/dma.hpp"
-#include "boards/stm32f405/peripherals/pins.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -15,8 +13,8 @@ constexpr std::uint32_t watchdog = adc.sr.awd.mask(), end_of_conversion = adc.sr
 
 }  // namespace
 
-Adc::Adc(Machine& machine, Adcs& adcs, unsigned index)
-    : machine_(machine), adcs_(adcs), index_(index), slot_(machine.timeline.add(*this)) {}
+Adc::Adc(Machine& machine, Adcs& adcs, unsigned index, DmaRequests& requests, const PinFunctions& pins)
+    : machine_(machine), adcs_(adcs), index_(index), dma_(requests), pins_(pins), slot_(machine.timeline.add(*this)) {}
 
 void Adc::reset() {
   sr_ = cr1_ = cr2_ = ltr_ = jsqr_ = data_ = 0;
@@ -107,7 +105,7 @@ void Adc::begin_conversion(Ticks now) {
   if (group_ == Group::injected) {
     if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;
   } else {
-    const bool is_awaited = adc.cr1.ovrie.in(cr1_) || machine_.dma->interrupts_for_adc(adcs_.shares_dma() ? 0 : index_);
+    const bool is_awaited = adc.cr1.ovrie.in(cr1_) || dma_.interrupts_for_adc(adcs_.shares_dma() ? 0 : index_);
     if (adc.cr2.dma.in(cr2_) || adcs_.shares_dma()) wake = done + (is_awaited ? 0 : machine_.transfer_lag());
     const bool ends = adc.cr2.eocs.in(cr2_) || regular_rank_ + 1 >= regular_length();
     if (adc.cr1.eocie.in(cr1_) && ends) wake = done;
@@ -163,7 +161,7 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) {
   if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(logic_supply_V / 2) : 0;
   if (channel > 18) return 0;
   const AnalogPin pin = index_ == 2 ? analog_pins_3[channel] : analog_pins_12[channel];
-  const bool analog = machine_.pins->is_analog(static_cast<unsigned>(pin.port - 'A'), pin.pin);
+  const bool analog = pins_.is_analog(static_cast<unsigned>(pin.port - 'A'), pin.pin);
   if (!analog) machine_.violations.violate(Rule::analog_pin_mode, std::string{'P', pin.port} + std::to_string(pin.pin));
   if (!analog || spoilt_) return nonsense(now);
   return convert(charge(machine_.circuit.analog_V(pin.port, pin.pin, now),
@@ -236,7 +234,7 @@ void Adc::finish_regular(Ticks now) {
   idle();
   if (adcs_.shares_dma())
     adcs_.share(data_);
-  else if (adc.cr2.dma.in(cr2_) && machine_.dma->adc_request(index_))
+  else if (adc.cr2.dma.in(cr2_) && dma_.adc_request(index_))
     sr_ &= ~end_of_conversion;
   update_interrupt();
   if (over && adc.cr1.jauto.in(cr1_)) {

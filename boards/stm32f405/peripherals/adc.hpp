@@ -9,6 +9,7 @@
 
 #include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/adc_map.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -24,7 +25,7 @@ inline constexpr auto internal_reference_calibration =
 
 class Adc final : public TimedPart {
  public:
-  Adc(Machine& machine, Adcs& adcs, unsigned index);
+  Adc(Machine& machine, Adcs& adcs, unsigned index, DmaRequests& requests, const PinFunctions& pins);
   std::string name() const { return "ADC" + std::to_string(index_ + 1); }
   void reset();
   void step(Ticks now) override;
@@ -76,6 +77,8 @@ class Adc final : public TimedPart {
   Machine& machine_;
   Adcs& adcs_;
   unsigned index_;
+  DmaRequests& dma_;
+  const PinFunctions& pins_;
   Timeline::Slot slot_;
   std::uint32_t sr_ = 0, cr1_ = 0, cr2_ = 0, htr_ = 0xFFF, ltr_ = 0, jsqr_ = 0, data_ = 0;
   std::array<std::uint32_t, 2> smpr_{};
@@ -94,20 +97,20 @@ class Adc final : public TimedPart {
   bool spoilt_ = false;     ///< the conversion has no valid result
 };
 
-class Adcs final : public RegisterBlock {
+class Adcs final : public RegisterBlock, public ConverterTriggers {
  public:
-  explicit Adcs(Machine& machine);
+  Adcs(Machine& machine, DmaRequests& requests, const PinFunctions& pins, TimerEventUsers& timers);
   /// Sets the pointer to RCC_APB2ENR, which has one clock bit per converter.
   void clock_by(const std::uint32_t* enable_register) { enable_register_ = enable_register; }
   void reset() override;
-  /// Handles a timer event: a compare match of channel 1 to 4, or trigger_output (timers.hpp).
-  void timer_trigger(unsigned timer, unsigned channel) {
+  void timer_trigger(unsigned timer, unsigned channel) override {
     if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
   }
-  void external_line(unsigned line);
+  void external_line(unsigned line) override;
   Adc& converter(unsigned index) { return adcs_[index]; }
-  /// True if the processor waits for conversions started by the timer event.
-  bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
+  bool listens_to_timer(unsigned timer, unsigned channel) const override {
+    return (awaited_[timer] >> channel & 1) != 0;
+  }
   /// Call this after a change of triggers or interrupts.
   void connect_triggers();
   unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
@@ -147,6 +150,8 @@ class Adcs final : public RegisterBlock {
   unsigned group_size() const;
 
   Machine& machine_;
+  DmaRequests& dma_;
+  TimerEventUsers& timers_;
   std::deque<Adc> adcs_;
   const std::uint32_t* enable_register_ = nullptr;
   std::uint32_t ccr_ = 0;

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include "boards/stm32f405/peripherals/dma.hpp"
 #include "boards/stm32f405/peripherals/rcc_map.hpp"
-#include "boards/stm32f405/peripherals/timers.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -25,9 +23,9 @@ constexpr std::uint32_t converter_bytes = 0x100, common = 3 * converter_bytes;
 
 }  // namespace
 
-Adcs::Adcs(Machine& machine) : machine_(machine) {
-  for (unsigned i = 0; i < 3; ++i) adcs_.emplace_back(machine, *this, i);
-  machine.adcs = this;
+Adcs::Adcs(Machine& machine, DmaRequests& requests, const PinFunctions& pins, TimerEventUsers& timers)
+    : machine_(machine), dma_(requests), timers_(timers) {
+  for (unsigned i = 0; i < 3; ++i) adcs_.emplace_back(machine, *this, i, requests, pins);
 }
 
 void Adcs::reset() {
@@ -82,7 +80,7 @@ void Adcs::share(std::uint32_t result) {
     common_data_ = 0;
     for (unsigned i = 0; i < together; ++i) common_data_ |= part.with(shared_[i], i);
     shared_.erase(shared_.begin(), shared_.begin() + static_cast<std::ptrdiff_t>(together));
-    if (!machine_.dma->adc_request(0)) continue;
+    if (!dma_.adc_request(0)) continue;
     for (unsigned i = 0; i < group_size(); ++i) adcs_[i].result_taken();
   }
 }
@@ -142,7 +140,7 @@ void Adcs::connect_triggers() {
     connect(converter.injected_trigger(), injected_sources, any_injected_matters);
     connect(converter.regular_trigger(), regular_sources, any_regular_matters);
   }
-  if (connected_ != connected_before || awaited_ != awaited_before) machine_.timers->plan_again();
+  if (connected_ != connected_before || awaited_ != awaited_before) timers_.timer_events_changed();
 }
 
 std::vector<RegisterMap> Adcs::register_maps(const std::string& name, std::uint32_t base) const {

@@ -59,8 +59,8 @@ bool request_stream(Dma& controllers, const Request (&requests)[n], unsigned per
 
 }  // namespace
 
-DmaController::DmaController(Machine& machine, Bus& bus, unsigned number)
-    : machine_(machine), bus_(bus), number_(number) {}
+DmaController::DmaController(Machine& machine, Bus& bus, DmaUsers& users, unsigned number)
+    : machine_(machine), bus_(bus), users_(users), number_(number) {}
 
 void DmaController::reset() {
   streams_ = {};
@@ -148,8 +148,8 @@ void DmaController::enable(unsigned index) {
   if (dma.cr.dir.of(s.control) == memory_to_memory) {
     if (number_ == 1) return machine_.violations.violate(Rule::copy_by_first_controller);
     while (dma.cr.en.in(s.control) && s.count != 0) move_item(index);
-  } else if (on_enabled) {
-    on_enabled();
+  } else {
+    users_.serve_dma();  // a peripheral request may be pending
   }
 }
 
@@ -207,7 +207,8 @@ void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
-Dma::Dma(Machine& machine, Bus& bus) : first_(machine, bus, 1), second_(machine, bus, 2) { machine.dma = this; }
+Dma::Dma(Machine& machine, Bus& bus, DmaUsers& users)
+    : first_(machine, bus, users, 1), second_(machine, bus, users, 2) {}
 
 bool Dma::adc_request(unsigned index) { return request_stream(*this, adc_requests, index, 0); }
 bool Dma::interrupts_for_adc(unsigned index) const {

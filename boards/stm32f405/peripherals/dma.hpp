@@ -9,12 +9,13 @@
 #include "boards/stm32f405/memory/bus.hpp"
 #include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/dma_map.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
 class DmaController final : public RegisterBlock {
  public:
-  DmaController(Machine& machine, Bus& bus, unsigned number);
+  DmaController(Machine& machine, Bus& bus, DmaUsers& users, unsigned number);
   void reset() override;
   /// Handles a request on a channel of a stream. Returns false if the stream does not accept the request.
   bool request(unsigned stream, unsigned channel);
@@ -26,8 +27,6 @@ class DmaController final : public RegisterBlock {
   }
   /// Injected fault: refuses all requests.
   void stop(bool stopped) { stopped_ = stopped; }
-  /// Called after a stream has been enabled, because a peripheral request may be pending.
-  std::function<void()> on_enabled;
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -49,23 +48,22 @@ class DmaController final : public RegisterBlock {
 
   Machine& machine_;
   Bus& bus_;
+  DmaUsers& users_;
   unsigned number_;
   bool stopped_ = false;
   std::array<Stream, 8> streams_{};
 };
 
 /// Assignment of streams to peripherals (RM0090, tables "DMA1 request mapping" and "DMA2 request mapping").
-class Dma {
+class Dma final : public DmaRequests {
  public:
-  Dma(Machine& machine, Bus& bus);
+  Dma(Machine& machine, Bus& bus, DmaUsers& users);
   DmaController& controller(unsigned number) { return number == 1 ? first_ : second_; }
-  bool adc_request(unsigned index);
-  /// True if a stream for this converter has an interrupt enabled.
-  bool interrupts_for_adc(unsigned index) const;
-  /// `source` is 0 for the update event and 1 to 4 for the channels.
-  bool timer_request(unsigned timer, unsigned source);
-  bool usart_request(unsigned number, bool transmit);
-  bool spi_request(unsigned number, bool transmit);
+  bool adc_request(unsigned index) override;
+  bool interrupts_for_adc(unsigned index) const override;
+  bool timer_request(unsigned timer, unsigned source) override;
+  bool usart_request(unsigned number, bool transmit) override;
+  bool spi_request(unsigned number, bool transmit) override;
 
  private:
   DmaController first_, second_;

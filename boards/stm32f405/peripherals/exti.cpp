@@ -1,7 +1,6 @@
 #include "boards/stm32f405/peripherals/exti.hpp"
 
 #include "boards/stm32f405/core/processor.hpp"
-#include "boards/stm32f405/peripherals/adc.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -28,12 +27,12 @@ void Exti::update_interrupts() {
 void Exti::edge(unsigned line) {
   const std::uint32_t bit = 1u << line;
   if (((interrupt_mask_ | event_mask_) & bit) == 0) return;
-  if ((event_mask_ & bit) != 0) machine_.processor->set_event_register();
+  if ((event_mask_ & bit) != 0) processor_.set_event_register();
   if ((interrupt_mask_ & bit) != 0) {
     pending_ |= bit;
     machine_.nvic.set_source(position_of(line), line, true);
   }
-  machine_.adcs->external_line(line);
+  triggers_.external_line(line);
 }
 
 void Exti::pin_changed(unsigned port, unsigned pin, bool high) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "boards/stm32f405/memory/register_block.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -45,13 +46,15 @@ struct SyscfgRegisters {
 };
 inline constexpr SyscfgRegisters syscfg_registers;
 
-class Exti final : public RegisterBlock {
+class Processor;
+
+class Exti final : public RegisterBlock, public ExternalLines {
  public:
-  explicit Exti(Machine& machine) : machine_(machine), syscfg_(*this) { machine.exti = this; }
+  Exti(Machine& machine, Processor& processor, ConverterTriggers& triggers)
+      : machine_(machine), processor_(processor), triggers_(triggers), syscfg_(*this) {}
   void reset() override;
-  void pin_changed(unsigned port, unsigned pin, bool high);
-  /// Sets the level of an internal line, 16 to 22.
-  void internal_line(unsigned line, bool high);
+  void pin_changed(unsigned port, unsigned pin, bool high) override;
+  void internal_line(unsigned line, bool high) override;
   Peripheral& syscfg() { return syscfg_; }
   /// Until the next reset, SYSCFG_MEMRMP reports that the boot pins selected the boot loader (RM0090).
   void show_boot_loader_chosen() { syscfg_.show_boot_loader_chosen(); }
@@ -91,6 +94,8 @@ class Exti final : public RegisterBlock {
   void update_interrupts();
 
   Machine& machine_;
+  Processor& processor_;
+  ConverterTriggers& triggers_;
   Syscfg syscfg_;
   std::uint32_t interrupt_mask_ = 0, event_mask_ = 0, rising_ = 0, falling_ = 0, software_ = 0, pending_ = 0;
   std::uint32_t internal_ = 0;  ///< levels of the internal lines

@@ -4,9 +4,6 @@
 #include <bit>
 #include <iterator>
 
-#include "boards/stm32f405/peripherals/exti.hpp"
-#include "boards/stm32f405/peripherals/timers.hpp"
-
 namespace inkwell::virtual_board {
 void GpioPort::reset() {
   // The debug pins of ports A and B start in their alternate function (RM0090, reset values).
@@ -87,10 +84,10 @@ void GpioPort::write_word(std::uint32_t offset, std::uint32_t value) {
   pins_.reconnect(index_, 0xFFFF);
 }
 
-Pins::Pins(Machine& machine) : machine_(machine) {
+Pins::Pins(Machine& machine, TimerInputs& timers, ExternalLines& external_lines)
+    : machine_(machine), timers_(timers), external_lines_(external_lines) {
   ports_.reserve(ports);
   for (unsigned i = 0; i < ports; ++i) ports_.emplace_back(*this, machine, i);
-  machine.pins = this;
 }
 
 void Pins::reconnect(unsigned port, std::uint32_t pins) {
@@ -114,7 +111,7 @@ void Pins::reconnect(unsigned port, std::uint32_t pins) {
         s.route[s.routes++] = static_cast<std::uint8_t>(i);
         auto& output = outputs_[route.timer * timer_lines + route.line];
         if (output.count < output.pins.size()) output.pins[output.count++] = code;
-        machine_.timers->timer(route.timer).connect_input(route.line, s.input);
+        timers_.connect_input(route.timer, route.line, s.input);
       }
     update(port, pin);
   }
@@ -171,11 +168,11 @@ void Pins::update(unsigned port, unsigned pin, Ticks since) {
   if (input == s.input) return;
   s.input = input;
   pins.set_input(pin, input);
-  machine_.exti->pin_changed(port, pin, input);
+  external_lines_.pin_changed(port, pin, input);
   if (output == PinLevel::floating)
     for (unsigned i = 0; i < s.routes; ++i) {
       const TimerPin& route = timer_pins[s.route[i]];
-      machine_.timers->input_changed(route.timer, route.line, input, std::min(since, machine_.timeline.now()));
+      timers_.input_changed(route.timer, route.line, input, std::min(since, machine_.timeline.now()));
     }
 }
 

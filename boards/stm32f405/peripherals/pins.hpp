@@ -9,6 +9,7 @@
 #include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
 #include "boards/stm32f405/peripherals/gpio_map.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -46,15 +47,17 @@ class GpioPort final : public RegisterBlock {
   unsigned lock_step_ = 0;
 };
 
-class Pins final : public InputPins {
+class Pins final : public InputPins, public TimerOutputs, public PinFunctions {
  public:
   static constexpr unsigned ports = 9;
-  explicit Pins(Machine& machine);
+  Pins(Machine& machine, TimerInputs& timers, ExternalLines& external_lines);
   GpioPort& port(unsigned index) { return ports_[index]; }
-  bool has_function(unsigned port, unsigned pin, unsigned function) const {
+  bool has_function(unsigned port, unsigned pin, unsigned function) const override {
     return ports_[port].mode(pin) == GpioPort::Mode::alternate && ports_[port].alternate_function(pin) == function;
   }
-  bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
+  bool is_analog(unsigned port, unsigned pin) const override {
+    return ports_[port].mode(pin) == GpioPort::Mode::analog;
+  }
   void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
   void hold(char port, unsigned pin, PinLevel level) override;
   /// While `inverted` is true, the level from the circuit is inverted.
@@ -65,8 +68,7 @@ class Pins final : public InputPins {
   /// Called at each level change of a pin; empty by default.
   std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
-  /// Sets a timer output. Calls must be in the order of board time.
-  void timer_output(unsigned timer, unsigned line, PinLevel level) {
+  void timer_output(unsigned timer, unsigned line, PinLevel level) override {
     auto& output = outputs_[timer * timer_lines + line];
     if (output.level == level) return;
     output.level = level;
@@ -99,6 +101,8 @@ class Pins final : public InputPins {
   PinLevel outside(unsigned port, unsigned pin) const;
 
   Machine& machine_;
+  TimerInputs& timers_;
+  ExternalLines& external_lines_;
   std::vector<GpioPort> ports_;
   std::array<State, ports * 16> states_{};
   std::array<TimerOutput, 15 * timer_lines> outputs_{};

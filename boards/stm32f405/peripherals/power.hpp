@@ -2,7 +2,7 @@
 #pragma once
 
 #include "boards/stm32f405/memory/register_block.hpp"
-#include "boards/stm32f405/peripherals/exti.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 #include "boards/stm32f405/peripherals/rcc.hpp"
 
 namespace inkwell::virtual_board {
@@ -20,7 +20,8 @@ inline constexpr PowerRegisters pwr;
 
 class PowerControl final : public RegisterBlock {
  public:
-  explicit PowerControl(Machine& machine) : machine_(machine) { machine.power = this; }
+  PowerControl(Machine& machine, ExternalLines& external_lines, Rcc& rcc)
+      : machine_(machine), external_lines_(external_lines), rcc_(rcc) {}
   void reset() override {
     control_ = pwr.cr.reset_value;
     status_ = 0;
@@ -33,7 +34,7 @@ class PowerControl final : public RegisterBlock {
     constexpr unsigned exti_line = 16;
     const double threshold_V = falling_V[pwr.cr.pls.of(control_)] + (supply_is_low_ ? hysteresis_V : 0.0);
     supply_is_low_ = pwr.cr.pvde.in(control_) && machine_.supply_V < threshold_V;
-    machine_.exti->internal_line(exti_line, supply_is_low_);
+    external_lines_.internal_line(exti_line, supply_is_low_);
   }
 
  protected:
@@ -45,7 +46,7 @@ class PowerControl final : public RegisterBlock {
     if (offset == pwr.cr) {
       control_ = value & writable(pwr.cr);
       update_supply();
-      machine_.rcc->set_voltage_scale(pwr.cr.vos.in(control_));
+      rcc_.set_voltage_scale(pwr.cr.vos.in(control_));
       if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modeled, and the chip only sleeps");
     }
     if (offset == pwr.csr) status_ = value & writable(pwr.csr);
@@ -58,6 +59,8 @@ class PowerControl final : public RegisterBlock {
  private:
   bool supply_is_low_ = false;
   Machine& machine_;
+  ExternalLines& external_lines_;
+  Rcc& rcc_;
   std::uint32_t control_ = pwr.cr.reset_value, status_ = 0;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "boards/stm32f405/core/processor.hpp"
-#include "boards/stm32f405/peripherals/timers.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -33,10 +32,12 @@ constexpr unsigned apb_divider(std::uint32_t field) { return (field & 4) != 0 ? 
 
 }  // namespace
 
-Rcc::Rcc(Machine& machine, StartingClock& starting_clock)
-    : machine_(machine), starting_clock_(starting_clock), slot_(machine.timeline.add(*this)) {
-  machine.rcc = this;
-}
+Rcc::Rcc(Machine& machine, Processor& processor, StartingClock& starting_clock, CrystalFailure& failure)
+    : machine_(machine),
+      processor_(processor),
+      starting_clock_(starting_clock),
+      failure_(failure),
+      slot_(machine.timeline.add(*this)) {}
 
 void Rcc::reset() {
   words_.fill(0);
@@ -117,7 +118,7 @@ void Rcc::lose_crystal() {
   update_tree();
   crystal_failed_ = true;
   machine_.nvic.set_non_maskable(true);
-  machine_.timers->clock_failed();
+  failure_.crystal_failed();
 }
 
 std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
@@ -184,7 +185,7 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   std::uint32_t cycles = 2;
   if (offset == rcc_map.apb1enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk1_Hz;
   if (offset == rcc_map.apb2enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk2_Hz;
-  starting_clock_.start(enable_register(offset), risen, machine_.processor->cycles() + cycles);
+  starting_clock_.start(enable_register(offset), risen, processor_.cycles() + cycles);
 }
 
 void Rcc::switch_system_clock() {
@@ -305,7 +306,7 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
       return;
     case rcc_map.ahb1enr:
       word = value;
-      machine_.processor->set_core_coupled_memory(rcc_map.ahb1enr.ccmdataramen.in(word));
+      processor_.set_core_coupled_memory(rcc_map.ahb1enr.ccmdataramen.in(word));
       break;
     default: word = value; break;
   }

@@ -9,13 +9,16 @@
 #include "boards/stm32f405/core/counters.hpp"
 #include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/memory/starting_clock.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 #include "boards/stm32f405/peripherals/rcc_map.hpp"
 
 namespace inkwell::virtual_board {
 
+class Processor;
+
 class Rcc final : public RegisterBlock, public TimedPart {
  public:
-  Rcc(Machine& machine, StartingClock& starting_clock);
+  Rcc(Machine& machine, Processor& processor, StartingClock& starting_clock, CrystalFailure& failure);
 
   void reset() override;
   /// Frequency of RTCCLK; 0 until the selected oscillator is ready.
@@ -68,7 +71,9 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void update_tree();
 
   Machine& machine_;
+  Processor& processor_;
   StartingClock& starting_clock_;
+  CrystalFailure& failure_;
   Timeline::Slot slot_;
   std::array<std::uint32_t, bytes / 4> words_{};
   std::array<Ticks, oscillators> ready_at_{};

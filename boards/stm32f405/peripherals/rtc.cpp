@@ -45,7 +45,7 @@ void RealTimeClock::reset() {
   update();
 }
 
-Clock RealTimeClock::clock() const { return Clock::of(machine_.rcc->real_time_clock_Hz()); }
+Clock RealTimeClock::clock() const { return Clock::of(rcc_.real_time_clock_Hz()); }
 
 std::uint64_t RealTimeClock::cycles_per_second() const {
   return std::uint64_t{rtc.prer.prediv_a.of(prescaler_) + 1} * (rtc.prer.prediv_s.of(prescaler_) + 1);
@@ -258,9 +258,9 @@ void RealTimeClock::second_over() {
 
 // The interrupts of the clock pass through the EXTI edge detectors.
 void RealTimeClock::update() {
-  machine_.exti->internal_line(alarm_line, (rtc.cr.alraie.in(control_) && rtc.isr.alraf.in(status_)) ||
-                                               (rtc.cr.alrbie.in(control_) && rtc.isr.alrbf.in(status_)));
-  machine_.exti->internal_line(wake_up_line, rtc.cr.wutie.in(control_) && rtc.isr.wutf.in(status_));
+  external_lines_.internal_line(alarm_line, (rtc.cr.alraie.in(control_) && rtc.isr.alraf.in(status_)) ||
+                                                (rtc.cr.alrbie.in(control_) && rtc.isr.alrbf.in(status_)));
+  external_lines_.internal_line(wake_up_line, rtc.cr.wutie.in(control_) && rtc.isr.wutf.in(status_));
 }
 
 }  // namespace inkwell::virtual_board

@@ -5,6 +5,8 @@
 #include <array>
 
 #include "boards/stm32f405/memory/register_block.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
+#include "boards/stm32f405/peripherals/rcc.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -59,7 +61,8 @@ inline constexpr RtcRegisters rtc;
 
 class RealTimeClock final : public RegisterBlock, public Freezable {
  public:
-  RealTimeClock(Machine& machine, Scheduler& events) : machine_(machine), events_(events) {
+  RealTimeClock(Machine& machine, Scheduler& events, const Rcc& rcc, ExternalLines& external_lines)
+      : machine_(machine), events_(events), rcc_(rcc), external_lines_(external_lines) {
     constexpr unsigned stop_bit = 10;  // DBG_RTC_STOP
     machine.debug_halt.add(*this, DebugHalt::apb1, stop_bit);
   }
@@ -91,6 +94,8 @@ class RealTimeClock final : public RegisterBlock, public Freezable {
 
   Machine& machine_;
   Scheduler& events_;
+  const Rcc& rcc_;
+  ExternalLines& external_lines_;
   std::uint32_t control_ = 0, status_ = 0, prescaler_ = 0, reload_ = 0, written_time_ = 0, written_date_ = 0;
   std::array<std::uint32_t, 2> alarms_{};
   std::array<std::uint32_t, 20> backup_{};

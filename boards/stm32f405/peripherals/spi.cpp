@@ -1,7 +1,5 @@
 #include "boards/stm32f405/peripherals/spi.hpp"
 
-#include "boards/stm32f405/peripherals/dma.hpp"
-
 namespace inkwell::virtual_board {
 namespace {
 constexpr std::uint32_t spi_receive_full = spi.sr.rxne.mask(), spi_transmit_empty = spi.sr.txe.mask(),
@@ -43,9 +41,9 @@ void Spi::end_frame() {
 }
 
 void Spi::serve_dma() {
-  if (spi.cr2.rxdmaen.in(control2_) && (status_ & spi_receive_full) != 0) machine_.dma->spi_request(number_, false);
+  if (spi.cr2.rxdmaen.in(control2_) && (status_ & spi_receive_full) != 0) dma_.spi_request(number_, false);
   if (spi.cr2.txdmaen.in(control2_))
-    while ((status_ & spi_transmit_empty) != 0 && machine_.dma->spi_request(number_, true)) {
+    while ((status_ & spi_transmit_empty) != 0 && dma_.spi_request(number_, true)) {
     }
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "boards/stm32f405/memory/register_block.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -36,8 +37,8 @@ inline constexpr SpiRegisters spi;
 
 class Spi final : public RegisterBlock {
  public:
-  Spi(Machine& machine, Scheduler& events, unsigned number, unsigned position, bool on_apb2)
-      : machine_(machine), events_(events), number_(number), position_(position), on_apb2_(on_apb2) {}
+  Spi(Machine& machine, Scheduler& events, DmaRequests& requests, unsigned number, unsigned position, bool on_apb2)
+      : machine_(machine), events_(events), dma_(requests), number_(number), position_(position), on_apb2_(on_apb2) {}
   void reset() override;
   /// Serves pending DMA requests. Call this when a DMA stream has been enabled.
   void serve_dma();
@@ -58,6 +59,7 @@ class Spi final : public RegisterBlock {
 
   Machine& machine_;
   Scheduler& events_;
+  DmaRequests& dma_;
   unsigned number_, position_;
   bool on_apb2_;
   std::uint32_t control1_ = 0, control2_ = 0, status_ = spi.sr.reset_value, polynomial_ = spi.crcpr.reset_value,

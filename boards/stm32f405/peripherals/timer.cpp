@@ -1,15 +1,14 @@
 #include <algorithm>
 
-#include "boards/stm32f405/peripherals/adc.hpp"
-#include "boards/stm32f405/peripherals/dma.hpp"
-#include "boards/stm32f405/peripherals/pins.hpp"
 #include "boards/stm32f405/peripherals/timer_map.hpp"
 #include "boards/stm32f405/peripherals/timers.hpp"
 
 namespace inkwell::virtual_board {
 
-Timer::Timer(Machine& machine, const TimerTraits& traits)
+Timer::Timer(Machine& machine, Timers& timers, const TimerLines& lines, const TimerTraits& traits)
     : machine_(machine),
+      timers_(timers),
+      lines_(lines),
       traits_(traits),
       slot_(machine.timeline.add(*this)),
       limit_(traits.bits == 32 ? 0xFFFF'FFFF : 0xFFFF) {
@@ -127,9 +126,9 @@ void Timer::matched(unsigned i) {
   if (centre_mode == 1 && !down_) return;
   if (centre_mode == 2 && down_) return;
   raise(tim.sr.ccif.mask(i));
-  if (tim.dier.ccde.in(dier_, i)) machine_.dma->timer_request(traits_.number, i + 1);
+  if (tim.dier.ccde.in(dier_, i)) lines_.dma.timer_request(traits_.number, i + 1);
   if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
-  machine_.adcs->timer_trigger(traits_.number, i + 1);
+  lines_.converters.timer_trigger(traits_.number, i + 1);
 }
 
 bool Timer::repetitions_over() {
@@ -168,7 +167,7 @@ void Timer::update_event(bool by_software) {
   for (auto& channel : channels_) channel.active_compare = channel.compare;
   if (!by_software || !tim.cr1.urs.in(cr1_)) {
     raise(tim.sr.uif.mask());
-    if (tim.dier.ude.in(dier_)) machine_.dma->timer_request(traits_.number, 0);
+    if (tim.dier.ude.in(dier_)) lines_.dma.timer_request(traits_.number, 0);
   }
   if (tim.bdtr.aoe.in(bdtr_) && !tim.bdtr.moe.in(bdtr_)) {
     bdtr_ |= tim.bdtr.moe.mask();
@@ -220,8 +219,8 @@ void Timer::step(Ticks now) {
 
 bool Timer::update_needed() const {
   return tim.dier.uie.in(dier_) || tim.dier.ude.in(dier_) || tim.cr1.opm.in(cr1_) ||
-         (master_mode() == master_update && (machine_.adcs->listens_to_timer(traits_.number, trigger_output) ||
-                                             machine_.timers->has_slave(traits_.number)));
+         (master_mode() == master_update &&
+          (lines_.converters.listens_to_timer(traits_.number, trigger_output) || timers_.has_slave(traits_.number)));
 }
 
 Ticks Timer::update_time() const {
@@ -240,8 +239,8 @@ void Timer::plan() {
   for (unsigned i = 0; i < traits_.channels; ++i) {
     const auto& channel = channels_[i];
     const bool to_processor = tim.dier.ccie.in(dier_, i) || tim.dier.ccde.in(dier_, i) ||
-                              machine_.adcs->listens_to_timer(traits_.number, i + 1) ||
-                              (master_mode() >= master_compare_pulse && machine_.timers->has_slave(traits_.number));
+                              lines_.converters.listens_to_timer(traits_.number, i + 1) ||
+                              (master_mode() >= master_compare_pulse && timers_.has_slave(traits_.number));
     any_needed |= to_processor;
     if (channel.match == no_match || channel.match <= accounted_) continue;
     if (channel.needed || to_processor) next_tick_ = std::min(next_tick_, channel.match);
@@ -261,8 +260,8 @@ void Timer::plan_again() {
 }
 
 void Timer::trigger_out(bool level, bool is_pulse) {
-  machine_.timers->trigger_from(traits_.number, level, is_pulse);
-  if (level) machine_.adcs->timer_trigger(traits_.number, trigger_output);
+  timers_.trigger_from(traits_.number, level, is_pulse);
+  if (level) lines_.converters.timer_trigger(traits_.number, trigger_output);
 }
 
 }  // namespace inkwell::virtual_board

@@ -1,7 +1,4 @@
 // Compare references and outputs of a timer, break input, captures, encoder and slave modes.
-#include "boards/stm32f405/peripherals/adc.hpp"
-#include "boards/stm32f405/peripherals/dma.hpp"
-#include "boards/stm32f405/peripherals/pins.hpp"
 #include "boards/stm32f405/peripherals/timer_map.hpp"
 #include "boards/stm32f405/peripherals/timers.hpp"
 
@@ -26,9 +23,9 @@ void Timer::set_reference(unsigned i, bool level) {
 
 void Timer::drive_outputs(unsigned i) {
   const auto& channel = channels_[i];
-  machine_.pins->timer_output(traits_.number, i, channel.reference ? channel.when_active : channel.when_inactive);
+  lines_.outputs.timer_output(traits_.number, i, channel.reference ? channel.when_active : channel.when_inactive);
   if (i < traits_.complementary)
-    machine_.pins->timer_output(traits_.number, complementary_1 + i,
+    lines_.outputs.timer_output(traits_.number, complementary_1 + i,
                                 channel.reference ? channel.complement_when_active : channel.complement_when_inactive);
 }
 
@@ -106,7 +103,7 @@ void Timer::capture(unsigned i) {
   if (tim.sr.ccif.in(sr_, i)) sr_ |= tim.sr.ccof.mask(i);
   channel.compare = channel.active_compare = count_now();
   raise(tim.sr.ccif.mask(i));
-  if (tim.dier.ccde.in(dier_, i)) machine_.dma->timer_request(traits_.number, i + 1);
+  if (tim.dier.ccde.in(dier_, i)) lines_.dma.timer_request(traits_.number, i + 1);
   if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
 }
 

@@ -1,9 +1,6 @@
 // Register accesses of a timer, and the class Timers.
 #include <utility>
 
-#include "boards/stm32f405/peripherals/adc.hpp"
-#include "boards/stm32f405/peripherals/dma.hpp"
-#include "boards/stm32f405/peripherals/pins.hpp"
 #include "boards/stm32f405/peripherals/timer_map.hpp"
 #include "boards/stm32f405/peripherals/timers.hpp"
 
@@ -304,12 +301,11 @@ void Timer::listen() {
   const bool listens = traits_.slave && (slave_mode() >= reset_mode || captures) && source < input_1_edge;
   const bool is_remapped = traits_.number == 2 && source == 1 && itr1_remap.in(or_);
   const unsigned master = listens && !is_remapped ? traits_.internal_triggers[source] : 0;
-  if (std::exchange(master_, master) != master) machine_.timers->set_slave(traits_.number, master);
+  if (std::exchange(master_, master) != master) timers_.set_slave(traits_.number, master);
 }
 
-Timers::Timers(Machine& machine) {
-  for (const auto& traits : timer_traits) timers_.emplace_back(machine, traits);
-  machine.timers = this;
+Timers::Timers(Machine& machine, const TimerLines& lines) {
+  for (const auto& traits : timer_traits) timers_.emplace_back(machine, *this, lines, traits);
   // DBGMCU_APB1_FZ and APB2_FZ: DBG_TIMx_STOP.
   constexpr unsigned stop_bits[14] = {0, 0, 1, 2, 3, 4, 5, 1, 16, 17, 18, 6, 7, 8};
   for (auto& timer : timers_)

@@ -13,6 +13,7 @@
 #include "boards/stm32f405/memory/register_block.hpp"
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
 #include "boards/stm32f405/peripherals/input_filter.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 #include "boards/stm32f405/peripherals/timer_map.hpp"
 
 namespace inkwell::virtual_board {
@@ -41,9 +42,18 @@ struct TimerTraits {
 /// ADC trigger source for the trigger output of a timer. The values 1 to 4 are the timer channels.
 inline constexpr unsigned trigger_output = 0;
 
+/// Lines from the timers to other peripherals.
+struct TimerLines {
+  DmaRequests& dma;
+  ConverterTriggers& converters;
+  TimerOutputs& outputs;
+};
+
+class Timers;
+
 class Timer final : public RegisterBlock, public TimedPart, public ClockUser, public Freezable {
  public:
-  Timer(Machine& machine, const TimerTraits& traits);
+  Timer(Machine& machine, Timers& timers, const TimerLines& lines, const TimerTraits& traits);
   void reset() override;
   void step(Ticks now) override;
   void before_clock_change() override;
@@ -169,6 +179,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void raise(std::uint32_t flags);
 
   Machine& machine_;
+  Timers& timers_;
+  const TimerLines lines_;
   const TimerTraits traits_;
   Timeline::Slot slot_;
   std::uint32_t limit_;  ///< 2^bits - 1
@@ -189,12 +201,15 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
 };
 
-class Timers final : public TriggerLines {
+class Timers final : public TriggerLines, public TimerInputs {
  public:
-  explicit Timers(Machine& machine);
+  Timers(Machine& machine, const TimerLines& lines);
   Timer& timer(unsigned number) { return timers_[number - 1]; }
-  void input_changed(unsigned timer_number, unsigned line, bool high, Ticks when) {
+  void input_changed(unsigned timer_number, unsigned line, bool high, Ticks when) override {
     timer(timer_number).input_changed(line, high, when);
+  }
+  void connect_input(unsigned timer_number, unsigned line, bool high) override {
+    timer(timer_number).connect_input(line, high);
   }
   void trigger_from(unsigned master, bool level, bool is_pulse);
   /// True if the trigger output of `master` starts or steps the counter of a slave timer.

@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "boards/stm32f405/peripherals/alternate_functions.hpp"
-#include "boards/stm32f405/peripherals/dma.hpp"
-#include "boards/stm32f405/peripherals/pins.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -16,8 +14,15 @@ static_assert(idle_line == usart_map.cr1.idleie.mask() && usart_receive_full == 
               complete == usart_map.cr1.tcie.mask() && usart_transmit_empty == usart_map.cr1.txeie.mask());
 }  // namespace
 
-Usart::Usart(Machine& machine, unsigned number, unsigned position, bool on_apb2)
-    : machine_(machine), number_(number), position_(position), on_apb2_(on_apb2), slot_(machine.timeline.add(*this)) {}
+Usart::Usart(Machine& machine, DmaRequests& requests, const PinFunctions& pins, unsigned number, unsigned position,
+             bool on_apb2)
+    : machine_(machine),
+      dma_(requests),
+      pins_(pins),
+      number_(number),
+      position_(position),
+      on_apb2_(on_apb2),
+      slot_(machine.timeline.add(*this)) {}
 
 void Usart::reset() {
   status_ = usart_map.sr.reset_value;
@@ -52,10 +57,9 @@ void Usart::update() {
 }
 
 void Usart::serve_dma() {
-  if (usart_map.cr3.dmar.in(control3_) && (status_ & usart_receive_full) != 0)
-    machine_.dma->usart_request(number_, false);
+  if (usart_map.cr3.dmar.in(control3_) && (status_ & usart_receive_full) != 0) dma_.usart_request(number_, false);
   if (usart_map.cr3.dmat.in(control3_))
-    while ((status_ & usart_transmit_empty) != 0 && machine_.dma->usart_request(number_, true)) {
+    while ((status_ & usart_transmit_empty) != 0 && dma_.usart_request(number_, true)) {
     }
 }
 
@@ -78,7 +82,7 @@ bool Usart::is_heard() const {
     return false;
   }
   for (const auto& [usart, port, pin, function] : transmit_pins)
-    if (usart == number_ && machine_.pins->has_function(static_cast<unsigned>(port - 'A'), pin, function)) return true;
+    if (usart == number_ && pins_.has_function(static_cast<unsigned>(port - 'A'), pin, function)) return true;
   machine_.violations.violate(Rule::usart_pin, name());
   return false;
 }

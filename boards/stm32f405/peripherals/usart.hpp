@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "boards/stm32f405/memory/register_block.hpp"
+#include "boards/stm32f405/peripherals/lines.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -43,7 +44,8 @@ inline constexpr UsartRegisters usart_map;
 
 class Usart final : public RegisterBlock, public TimedPart {
  public:
-  Usart(Machine& machine, unsigned number, unsigned position, bool on_apb2);
+  Usart(Machine& machine, DmaRequests& requests, const PinFunctions& pins, unsigned number, unsigned position,
+        bool on_apb2);
   void reset() override;
   void step(Ticks now) override;
   void receive(std::uint8_t byte);
@@ -71,6 +73,8 @@ class Usart final : public RegisterBlock, public TimedPart {
   void update();
 
   Machine& machine_;
+  DmaRequests& dma_;
+  const PinFunctions& pins_;
   unsigned number_, position_;
   bool on_apb2_;
   Timeline::Slot slot_;

@@ -39,7 +39,7 @@ inline constexpr WindowWatchdogRegisters wwdg;
 
 class IndependentWatchdog final : public RegisterBlock, public TimedPart, public Freezable {
  public:
-  explicit IndependentWatchdog(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
+  IndependentWatchdog(Machine& machine, Rcc& rcc) : machine_(machine), rcc_(rcc), slot_(machine.timeline.add(*this)) {
     constexpr unsigned stop_bit = 12;  // DBG_IWDG_STOP
     machine.debug_halt.add(*this, DebugHalt::apb1, stop_bit);
   }
@@ -93,7 +93,7 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart, public
     unlocked_ = key == 0x5555;
     if (key == 0xCCCC) {
       runs_ = true;
-      machine_.rcc->start_low_speed_internal();
+      rcc_.start_low_speed_internal();
     }
     if ((key == 0xAAAA || key == 0xCCCC) && runs_) restart();
   }
@@ -103,6 +103,7 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart, public
     machine_.timeline.set(slot_, end_, end_);
   }
   Machine& machine_;
+  Rcc& rcc_;
   Timeline::Slot slot_;
   std::uint32_t prescaler_ = 0, reload_ = iwdg.rlr.reset_value;
   Ticks prescaler_taken_at_ = 0, reload_taken_at_ = 0;

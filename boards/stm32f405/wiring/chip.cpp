@@ -2,7 +2,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "boards/stm32f405/peripherals/power.hpp"
 #include "boards/stm32f405/wiring/boot_loader.hpp"
 #include "boards/stm32f405/wiring/execution.hpp"
 #include "boards/stm32f405/wiring/parts.hpp"
@@ -78,11 +77,11 @@ void Chip::reset(ResetCause cause) {
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
 void Chip::start_by_boot_loader() {
   jump(loader_go);
-  parts_->machine.exti->show_boot_loader_chosen();
+  parts_->exti.show_boot_loader_chosen();
 }
 void Chip::start_boot_loader() {
   jump(loader_entry);
-  parts_->machine.exti->show_boot_loader_chosen();
+  parts_->exti.show_boot_loader_chosen();
 }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
@@ -106,7 +105,7 @@ std::uint64_t Chip::flash_operations() const { return parts_->flash.operations()
 void Chip::set_supply_V(double volts) {
   auto& machine = parts_->machine;
   machine.supply_V = machine.analog_supply_V = volts;
-  machine.power->update_supply();
+  parts_->power.update_supply();
   const auto threshold = parts_->flash.brown_out();
   const bool was_low = machine.supply_is_low;
   machine.supply_is_low = volts < (was_low ? threshold.rising_V : threshold.falling_V);

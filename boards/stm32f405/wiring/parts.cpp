@@ -7,7 +7,6 @@
 #include "boards/stm32f405/peripherals/crc.hpp"
 #include "boards/stm32f405/peripherals/dac.hpp"
 #include "boards/stm32f405/peripherals/i2c.hpp"
-#include "boards/stm32f405/peripherals/power.hpp"
 #include "boards/stm32f405/peripherals/random_numbers.hpp"
 #include "boards/stm32f405/peripherals/rtc.hpp"
 #include "boards/stm32f405/peripherals/watchdogs.hpp"
@@ -88,8 +87,7 @@ void ChipParts::put(std::uint32_t base, const std::string& name, Peripheral& per
   rcc.add_reset(reset_register_of(clock.enable_register), clock.mask, peripheral);
 }
 
-ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options, memory) {
-  machine.processor = &processor;
+ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options, memory, *this) {
   machine.log.code = [this] {
     const std::uint32_t address = processor.code_address();
     char text[64];
@@ -100,16 +98,11 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
     return function.empty() ? text : text + (" " + function);
   };
   for (unsigned i = 0; i < std::size(usart_places); ++i)
-    usarts.emplace_back(machine, i + 1, usart_places[i].position,
+    usarts.emplace_back(machine, dma, pins, i + 1, usart_places[i].position,
                         usart_places[i].place.clock.enable_register == rcc_map.apb2enr);
   for (unsigned i = 0; i < std::size(spi_places); ++i)
-    spis.emplace_back(machine, events, i + 1, spi_places[i].position,
+    spis.emplace_back(machine, events, dma, i + 1, spi_places[i].position,
                       spi_places[i].place.clock.enable_register == rcc_map.apb2enr);
-  for (unsigned number : {1u, 2u})
-    dma.controller(number).on_enabled = [this] {
-      for (auto& usart : usarts) usart.serve_dma();
-      for (auto& one : spis) one.serve_dma();
-    };
   put_peripherals();
 
   // Electronic signature (RM0090, "Device electronic signature"), and option bytes with their factory values.
@@ -129,11 +122,11 @@ void ChipParts::put_peripherals() {
   put(0x4002'3C00, "FLASH", flash);
   put(0x4001'3C00, "EXTI", exti);
   put(0x4001'3800, "SYSCFG", exti.syscfg(), gate(rcc_map.apb2enr, rcc_map.apb2enr.syscfgen));
-  put(0x4000'7000, "PWR", make<PowerControl>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.pwren));
+  put(0x4000'7000, "PWR", power, gate(rcc_map.apb1enr, rcc_map.apb1enr.pwren));
   put(0x4002'3000, "CRC", make<CrcUnit>(), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.crcen));
   put(0x5006'0800, "RNG", make<RandomNumbers>(machine.options.random_seed),
       gate(rcc_map.ahb2enr, rcc_map.ahb2enr.rngen));
-  put(0x4000'3000, "IWDG", make<IndependentWatchdog>(machine));
+  put(0x4000'3000, "IWDG", make<IndependentWatchdog>(machine, rcc));
   put(0x4000'2C00, "WWDG", make<WindowWatchdog>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.wwdgen));
   for (unsigned i = 0; i < std::size(timer_places); ++i)
     put(timer_places[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_places[i].clock);
@@ -158,7 +151,7 @@ void ChipParts::put_peripherals() {
     if (first_can == nullptr) first_can = &one;
   }
   put(0x4000'7400, "DAC", make<Dac>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.dacen));
-  put(0x4000'2800, "RTC", make<RealTimeClock>(machine, events));
+  put(0x4000'2800, "RTC", make<RealTimeClock>(machine, events, rcc, exti));
   for (unsigned i = 0; i < Pins::ports; ++i)
     put(0x4002'0000 + 0x400 * i, "GPIO" + std::string(1, static_cast<char>('A' + i)), pins.port(i),
         gate(rcc_map.ahb1enr, rcc_map.ahb1enr.gpioen, i));

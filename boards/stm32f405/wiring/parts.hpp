@@ -2,6 +2,7 @@
 
 // To add a peripheral, first write a header like crc.hpp, with a RegisterBlock and a register map.
 // Register and field names must match RM0090.
+// The constructor receives the parts that the peripheral uses. lines.hpp declares the lines between peripherals.
 // Add a line to ChipParts::put_peripherals(), with base address, name and clock.
 // In tests/boards/stm32f405, add a test firmware to firmware/ and a case to peripherals_test.cpp.
 // Run `INKWELL_SVD=FILE tools/test` to compare the map with the manufacturer's chip description.
@@ -22,6 +23,7 @@
 #include "boards/stm32f405/peripherals/dma.hpp"
 #include "boards/stm32f405/peripherals/exti.hpp"
 #include "boards/stm32f405/peripherals/pins.hpp"
+#include "boards/stm32f405/peripherals/power.hpp"
 #include "boards/stm32f405/peripherals/rcc.hpp"
 #include "boards/stm32f405/peripherals/spi.hpp"
 #include "boards/stm32f405/peripherals/timers.hpp"
@@ -36,32 +38,42 @@ struct ClockGate {
   std::uint32_t enable_register, mask;
 };
 
-struct ChipParts : ChipState {
+struct ChipParts : ChipState,
+                   private CodePosition,
+                   private FlashPort,
+                   private CrystalFailure,
+                   private DmaUsers,
+                   private TimerEventUsers,
+                   private PinFunctions,
+                   private TimerOutputs {
   ChipParts(Circuit& circuit, const ChipOptions& options);
   void add_outside_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
 
   std::uint32_t hclk_Hz() const override { return machine.clocks.frequencies.hclk_Hz; }
   std::uint32_t usb_Hz() const override { return machine.clocks.frequencies.usb_Hz; }
   bool has_function(char port, unsigned pin, unsigned alternate_function) const override {
-    return machine.pins->has_function(static_cast<unsigned>(port - 'A'), pin, alternate_function);
+    return pins.has_function(static_cast<unsigned>(port - 'A'), pin, alternate_function);
   }
 
+  // Each part is constructed after the parts that it uses. Where two parts use each other, the earlier part receives
+  // the later part through one of the lines below.
   Memory memory;
   StartingClock starting_clock;
   Machine machine;
   EventQueue events{machine.timeline};
-  SystemControl system_control{machine};
-  Bus bus{machine, system_control, starting_clock};
-  Rcc rcc{machine, starting_clock};
-  FlashController flash{machine};
-  Exti exti{machine};
-  Adcs adcs{machine};
-  Dma dma{machine, bus};
-  Timers timers{machine};
-  Pins pins{machine};
+  Processor processor{machine, Bus::windows_of(bus), *this};
+  SystemControl system_control{machine, processor};
+  Bus bus{machine, processor, system_control, starting_clock};
+  Rcc rcc{machine, processor, starting_clock, *this};
+  FlashController flash{machine, processor};
+  Dma dma{machine, bus, *this};
+  Adcs adcs{machine, dma, *this, *this};
+  Exti exti{machine, processor, adcs};
+  Timers timers{machine, {dma, adcs, *this}};
+  Pins pins{machine, timers, exti};
+  PowerControl power{machine, exti, rcc};
   std::deque<Usart> usarts;  ///< by number - 1
   std::deque<Spi> spis;      ///< by number - 1
-  Processor processor{machine, Bus::windows_of(bus), flash};
   Execution execution{machine, processor, bus, flash, system_control, rcc};
   ChipDebugPort debug_port{machine, processor, execution, bus, system_control};
 
@@ -79,6 +91,24 @@ struct ChipParts : ChipState {
     return made;
   }
   void put_peripherals();
+
+  // Lines to parts that are constructed later.
+  std::uint32_t code_address() const override { return processor.code_address(); }
+  std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size) override {
+    return flash.program(address, value, size);
+  }
+  void hold_up() override { flash.hold_up(); }
+  void crystal_failed() override { timers.clock_failed(); }
+  void serve_dma() override {
+    for (auto& usart : usarts) usart.serve_dma();
+    for (auto& one : spis) one.serve_dma();
+  }
+  void timer_events_changed() override { timers.plan_again(); }
+  bool has_function(unsigned port, unsigned pin, unsigned alternate_function) const override {
+    return pins.has_function(port, pin, alternate_function);
+  }
+  bool is_analog(unsigned port, unsigned pin) const override { return pins.is_analog(port, pin); }
+  void timer_output(unsigned timer, unsigned line, PinLevel level) override { pins.timer_output(timer, line, level); }
 
   std::vector<std::unique_ptr<Peripheral>> standalone_parts_;
 };
