@@ -173,8 +173,8 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case fpu_base + fpu.fpccr: return float_control_ | fpu.fpccr.lspact.with(processor_.lazy_stacking_due());
     case fpu_base + fpu.fpcar: return float_address_;
     case fpu_base + fpu.fpdscr: return float_default_;
-    case fpu_base + fpu.mvfr: return 0x1011'0021;  // FPv4-SP
-    case fpu_base + fpu.mvfr + 4: return 0x1100'0011;
+    case fpu_base + fpu.mvfr0: return fpu.mvfr0.reset_value;
+    case fpu_base + fpu.mvfr1: return fpu.mvfr1.reset_value;
     case dbg_base + dbg.idcode: return dbg.idcode.reset_value;
     case dbg_base + dbg.cr: return dbg.cr.dbg_sleep.with(machine_.sleep_counts_cycles);
     case dbg_base + dbg.apb1_fz: return machine_.debug_halt.stops(DebugHalt::apb1);

@@ -143,7 +143,7 @@ struct FloatContextRegisters {
   struct : Register {
     Field address{"ADDRESS", 3, 29};
   } fpcar{{"FPCAR", 0x04}};
-  Register fpdscr{"FPDSCR", 0x08}, mvfr{"MVFR#", 0x0C, 0, {2, 4}};
+  Register fpdscr{"FPDSCR", 0x08}, mvfr0{"MVFR0", 0x0C, 0x1011'0021}, mvfr1{"MVFR1", 0x10, 0x1100'0011};
 };
 inline constexpr FloatContextRegisters fpu;
 inline constexpr std::uint32_t fpu_base = 0xE000'EF34;

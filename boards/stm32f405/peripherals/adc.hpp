@@ -80,7 +80,7 @@ class Adc final : public TimedPart {
   DmaRequests& dma_;
   const PinFunctions& pins_;
   Timeline::Slot slot_;
-  std::uint32_t sr_ = 0, cr1_ = 0, cr2_ = 0, htr_ = 0xFFF, ltr_ = 0, jsqr_ = 0, data_ = 0;
+  std::uint32_t sr_ = 0, cr1_ = 0, cr2_ = 0, htr_ = adc.htr.reset_value, ltr_ = 0, jsqr_ = 0, data_ = 0;
   std::array<std::uint32_t, 2> smpr_{};
   std::array<std::uint32_t, 3> sqr_{};
   std::array<std::uint32_t, 4> offset_{}, injected_data_{};

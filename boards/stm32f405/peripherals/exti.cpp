@@ -99,8 +99,17 @@ std::uint32_t Exti::Syscfg::read_word(std::uint32_t offset) {
 void Exti::Syscfg::write_word(std::uint32_t offset, std::uint32_t value) {
   if (offset == syscfg_registers.memrmp && syscfg_registers.memrmp.mem_mode.in(value))
     exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
-  if (offset >= bytes) return exti_.machine_.log.note("SYSCFG", offset, true, value);
-  words_[offset / 4] = value & (offset == syscfg_registers.pmc ? writable(syscfg_registers.pmc) : 0xFFFF);
+  const auto store = [&](std::uint32_t mask) { words_[offset / 4] = value & mask; };
+  switch (offset) {
+    case syscfg_registers.memrmp: return store(writable(syscfg_registers.memrmp));
+    case syscfg_registers.pmc: return store(writable(syscfg_registers.pmc));
+    case syscfg_registers.exticr1: return store(writable(syscfg_registers.exticr1));
+    case syscfg_registers.exticr2: return store(writable(syscfg_registers.exticr2));
+    case syscfg_registers.exticr3: return store(writable(syscfg_registers.exticr3));
+    case syscfg_registers.exticr4: return store(writable(syscfg_registers.exticr4));
+    case syscfg_registers.cmpcr: return store(writable(syscfg_registers.cmpcr));
+    default: return exti_.machine_.log.note("SYSCFG", offset, true, value);
+  }
 }
 
 }  // namespace inkwell::virtual_board

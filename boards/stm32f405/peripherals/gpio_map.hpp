@@ -5,19 +5,21 @@
 
 namespace inkwell::virtual_board {
 
+/// The arguments are the reset values of MODER, OSPEEDR and PUPDR.
+template <std::uint32_t mode, std::uint32_t speed, std::uint32_t pull>
 struct GpioRegisters {
   struct : Register {
     Field moder{"MODER#", 0, 2, Access::rw, {16, 2}};
-  } moder{{"MODER", 0x00}};
+  } moder{{"MODER", 0x00, mode}};
   struct : Register {
     Field ot{"OT#", 0, 1, Access::rw, {16, 1}};
   } otyper{{"OTYPER", 0x04}};
   struct : Register {
     Field ospeedr{"OSPEEDR#", 0, 2, Access::rw, {16, 2}};
-  } ospeedr{{"OSPEEDR", 0x08}};
+  } ospeedr{{"OSPEEDR", 0x08, speed}};
   struct : Register {
     Field pupdr{"PUPDR#", 0, 2, Access::rw, {16, 2}};
-  } pupdr{{"PUPDR", 0x0C}};
+  } pupdr{{"PUPDR", 0x0C, pull}};
   struct : Register {
     Field idr{"IDR#", 0, 1, Access::r, {16, 1}};
   } idr{{"IDR", 0x10}};
@@ -37,6 +39,9 @@ struct GpioRegisters {
     Field afr{"AFRH#", 0, 4, Access::rw, {8, 4, 8}};
   } afrh{{"AFRH", 0x24}};
 };
-inline constexpr GpioRegisters gpio;
+inline constexpr GpioRegisters<0, 0, 0> gpio;
+// The debug pins of ports A and B start in their alternate function (RM0090, GPIOx_MODER).
+inline constexpr GpioRegisters<0xA800'0000, 0x0C00'0000, 0x6400'0000> gpio_a;
+inline constexpr GpioRegisters<0x0000'0280, 0x0000'00C0, 0x0000'0100> gpio_b;
 
 }  // namespace inkwell::virtual_board

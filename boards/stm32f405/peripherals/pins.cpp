@@ -6,10 +6,17 @@
 
 namespace inkwell::virtual_board {
 void GpioPort::reset() {
-  // The debug pins of ports A and B start in their alternate function (RM0090, reset values).
-  moder_ = index_ == 0 ? 0xA800'0000 : index_ == 1 ? 0x0000'0280 : 0;
-  pupdr_ = index_ == 0 ? 0x6400'0000 : index_ == 1 ? 0x0000'0100 : 0;
-  ospeedr_ = index_ == 0 ? 0x0C00'0000 : index_ == 1 ? 0x0000'00C0 : 0;
+  const auto configure = [this](const auto& map) {
+    moder_ = map.moder.reset_value;
+    pupdr_ = map.pupdr.reset_value;
+    ospeedr_ = map.ospeedr.reset_value;
+  };
+  if (index_ == 0)
+    configure(gpio_a);
+  else if (index_ == 1)
+    configure(gpio_b);
+  else
+    configure(gpio);
   otyper_ = odr_ = lckr_ = 0;
   afr_ = {};
   lock_step_ = 0;

@@ -33,7 +33,9 @@ class GpioPort final : public RegisterBlock {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
-  std::span<const MapEntry> registers() const override { return shown<gpio>(); }
+  std::span<const MapEntry> registers() const override {
+    return index_ == 0 ? shown<gpio_a>() : index_ == 1 ? shown<gpio_b>() : shown<gpio>();
+  }
 
  private:
   void write_configuration(std::uint32_t& target, std::uint32_t value, const Field& field);
