@@ -1,4 +1,4 @@
-// Options that select a device or a virtual board, and the connection to the selected device.
+// Command-line options that select a device or a virtual board.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +15,18 @@
 
 namespace inkwell::command_line {
 
-/// A mistake in the command line; the exit code is 2.
+/// The command line is wrong. The program exits with code 2.
 class UsageError : public device::Error {
  public:
   using Error::Error;
 };
 
-/// Pace of a virtual board's time. --real-time has priority.
+/// Selects when the time of a virtual board advances. The option --real-time overrides this selection.
 enum class BoardPace : std::uint8_t {
   as_it_can,
   real_time,  ///< synchronized with wall time
-  lock_step,  ///< only while the command, in one thread, waits for a pose or a request
-  as_asked,   ///< stopped from the first instruction on, except when OpenArm::control lets it pass
+  lock_step,  ///< advances while the command waits for the board
+  as_asked,   ///< advances only on request through OpenArm::control
 };
 
 struct DeviceOptions {
@@ -45,27 +45,23 @@ struct DeviceOptions {
   bool is_strict = false;  ///< a virtual board exits when the firmware violates a rule of the chip
 
   void add_to(CLI::App& app);
-  /// Adds only the options of virtual boards that a program starts itself, and --json.
   void add_board_to(CLI::App& app);
   /// Throws UsageError.
   device::Address address() const;
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the selected device. With --take-over, takes over the arm. With --arm, a virtual board receives the parameters
-/// of the arm description.
+/// Opens the selected device.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 
-/// A parsed value. If the parser opened the device, `connection` is the open device.
 template <class Value>
 struct Typed {
   Value value;
   std::optional<device::OpenArm> connection;
 };
 
-/// Parses with `read()`. Reports a mistake without opening the device. An unknown name requires the device, because the
-/// name may belong to the device's force law.
+/// Parses with `read()`. Opens the device only for an unknown name, which the device's force law may define.
 template <class Read>
 Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
                                              BoardPace pace = BoardPace::as_it_can) {

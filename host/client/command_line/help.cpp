@@ -21,7 +21,6 @@ class HelpStyle final : public CLI::Formatter {
   HelpStyle() { column_width_ = name_width; }
 
  private:
-  /// Returns type, default and repetition of an option. The option descriptions state ranges and dependent options.
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_type_size() == 0) return {};
     std::string text;
@@ -38,7 +37,6 @@ class HelpStyle final : public CLI::Formatter {
 
   std::string make_description(const CLI::App* app) const override { return app->get_description() + "\n\n"; }
 
-  /// A list of commands shows only the first line of each description.
   std::string make_subcommand(const CLI::App* command) const override {
     const std::string description = command->get_description();
     return fmt::format("  {:<{}}{}\n", command->get_name(), name_width - 2,
@@ -110,12 +108,11 @@ CLI::Validator not_empty() {
 
 namespace {
 
-/// A command of the program, or a subcommand.
+/// A command or a subcommand.
 struct Below {
   std::string_view name;
 };
 
-/// The innermost command on the command line, or the program itself.
 struct Innermost {
   const CLI::App* command;
   std::string words;  ///< "inkwell parameters"

@@ -5,8 +5,8 @@
 
 namespace inkwell::command_line {
 
-/// While a guard exists, SIGINT and SIGTERM are recorded instead of terminating the program. A second signal terminates
-/// the program.
+/// While an InterruptGuard exists, the first SIGINT or SIGTERM is only recorded. A second signal terminates the
+/// program.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -7,12 +7,10 @@
 
 namespace inkwell::command_line {
 
-/// The action of the chosen command; returns the exit code.
 using Action = std::function<int()>;
 
-/// Parses the arguments of main() and runs the action that the chosen command has set. `check` is called after parsing
-/// and may throw UsageError. Prints errors to standard error, with the program name. Returns the exit code: 0 success,
-/// 1 failure, 2 wrong usage.
+/// Parses the arguments of main(), runs `action`, and prints errors to standard error. `check` is called after parsing
+/// and may throw UsageError. Returns exit code 0 for success, 1 for failure and 2 for wrong usage.
 int run_program(CLI::App& program, int argument_count, char** arguments, const Action& action,
                 const std::function<void()>& check = {});
 

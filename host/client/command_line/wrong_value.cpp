@@ -12,7 +12,6 @@
 namespace inkwell::command_line {
 namespace {
 
-/// An option or argument on the command line, and its command.
 struct GivenOption {
   const CLI::Option* option;
   std::string command;
@@ -34,8 +33,7 @@ std::string name_of(const CLI::Option& option) {
   return name;
 }
 
-/// Returns the message for a value that is not a valid number. Only numbers are converted. If the value is a number,
-/// the option requires a non-negative integer.
+/// Returns the message for an invalid number.
 std::string of_conversion(const GivenOption& given) {
   const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
   const auto& values = given.option->results();
@@ -43,7 +41,7 @@ std::string of_conversion(const GivenOption& given) {
   if (given.option->get_items_expected_max() == 0)
     return fmt::format("{} accepts no value, but got {}. Omit the value; {}", name, CLI::detail::join(values, " "),
                        help);
-  // CLI11 does not report which of several values is wrong.
+  // CLI11 does not report which value is wrong.
   const auto no_number = std::ranges::find_if_not(values, is_number);
   if (no_number != values.end())
     return fmt::format("{} is not a number for {}. Give a number such as 12; {}", *no_number, name, help);
@@ -51,7 +49,7 @@ std::string of_conversion(const GivenOption& given) {
                      CLI::detail::join(values, " "), name, help);
 }
 
-/// Handles CLI11 texts such as "--seconds: 1 required SECONDS missing".
+/// Handles a CLI11 text such as "--seconds: 1 required SECONDS missing".
 std::optional<std::string> of_missing_value(const CLI::App& program, std::string_view raw) {
   if (!raw.ends_with(" missing") || raw.find(" required ") == std::string_view::npos) return std::nullopt;
   const std::string name(raw.substr(0, raw.find(':')));

@@ -1,4 +1,4 @@
-// Converts CLI11's messages about values to sentences.
+// Converts CLI11 error messages to sentences.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace inkwell::command_line {
 
-/// The sentence names the value, its option or argument, and the expected value.
+/// The returned sentence names the wrong value, its option and the expected value.
 std::string sentence_of(const CLI::App& program, const CLI::ParseError& error);
 
 }  // namespace inkwell::command_line

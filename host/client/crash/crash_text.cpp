@@ -9,8 +9,7 @@
 namespace inkwell::crash {
 namespace {
 
-/// A bit of CFSR and its meaning (ARMv7-M, B3.2.15). A stack error also explains other bits that are set at the same
-/// time.
+/// A bit of CFSR and its meaning (ARMv7-M, B3.2.15).
 struct CpuFaultBit {
   unsigned bit;
   const char* meaning;
@@ -86,7 +85,7 @@ std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) 
   const auto addresses = chain(crash);
   if (addresses.empty()) lines += "  at an unknown address, because the stack could not be read\n";
   for (std::size_t i = 0; i < addresses.size(); ++i) {
-    // The call instruction is directly before its return address.
+    // A return address points after its call instruction.
     const std::string name = image == nullptr ? "" : image->source_location(i == 0 ? addresses[i] : addresses[i] - 2);
     lines += fmt::format("  {} 0x{:08x}{}{}\n",
                          i == 0   ? "at  "

@@ -9,17 +9,17 @@
 
 namespace inkwell::crash {
 
-/// One sentence: the kind of fault and, if known, the affected address.
+/// Returns one sentence with the kind of CPU fault and, if known, the affected address.
 std::string cause(const protocol::CrashFacts& crash);
 
-/// Address of the crash and return addresses of its callers, innermost first; empty if the stack could not be read. All
-/// addresses after the first are guesses, because old return addresses on the stack look valid.
+/// Returns the crash address and then the return addresses, innermost first. The return addresses are guesses, because
+/// old return addresses on the stack look valid. Returns an empty list if the board could not read the stack.
 std::vector<std::uint32_t> chain(const protocol::CrashFacts& crash);
 
-/// Throws device::Error unless `image` is the image that crashed.
+/// Throws device::Error if the crash occurred in another image.
 void require_image_of(const protocol::CrashFacts& crash, const FirmwareImage& image);
 
-/// Several lines with cause, call chain and registers. An image adds names to the call chain.
+/// Returns several lines with cause, call chain and registers. The lines contain function names if `image` is given.
 std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image);
 
 }  // namespace inkwell::crash

@@ -22,7 +22,6 @@ int no_other_file(Dwfl_Module*, void**, const char*, Dwarf_Addr, const char*, co
   return -1;
 }
 
-/// Debug information is read only from the given file.
 const Dwfl_Callbacks callbacks{.find_elf = dwfl_build_id_find_elf,
                                .find_debuginfo = no_other_file,
                                .section_address = dwfl_offline_section_address,
@@ -46,7 +45,7 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& elf) : reader_(std::ma
   const int file = open(elf.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0)
     throw device::Error(fmt::format("Cannot read {}: {}. Check its name.", elf.string(), std::strerror(errno)));
-  // The module owns the file, and closing the session closes the file.
+  // The module owns the open file.
   dwfl_report_begin(reader_->session.get());
   reader_->module = dwfl_report_offline(reader_->session.get(), elf.c_str(), elf.c_str(), file);
   if (reader_->module == nullptr) close(file);

@@ -1,4 +1,4 @@
-// The firmware's ELF file: names and source locations of addresses.
+// Reads the names and source locations of addresses from the firmware's ELF file.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,16 @@ namespace inkwell::crash {
 
 class FirmwareImage {
  public:
-  /// Throws device::Error if the file cannot be read or is not a program for an ARM processor.
+  /// Throws device::Error if the file is not a readable ARM program.
   explicit FirmwareImage(const std::filesystem::path& elf);
   ~FirmwareImage();
   FirmwareImage(FirmwareImage&&) noexcept;
 
-  /// Checksum from the build; std::nullopt if the image has no checksum.
+  /// Returns the checksum from the build, or std::nullopt if the image has no checksum.
   std::optional<std::uint32_t> check() const;
 
-  /// Function, file and line of an instruction, as far as the ELF file contains them; empty if there is no function.
+  /// Returns function, file and line of an instruction, as far as they are known. Returns an empty text outside all
+  /// functions.
   std::string source_location(std::uint32_t address) const;
 
  private:
