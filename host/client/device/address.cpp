@@ -13,8 +13,7 @@ namespace {
 constexpr std::string_view usbip_scheme = "usbip:", board_scheme = "virtual:", own_board = "virtual",
                            board_options = "virtual?", this_computer = "127.0.0.1";
 
-/// A server that answers may belong to a board that has just started. The firmware connects to USB after 0.1 s of board
-/// time, and board time may run slowly.
+/// A server may list its arm late, because the firmware connects to USB only after 0.1 s of board time.
 constexpr auto start_patience = std::chrono::seconds(2);
 constexpr auto look_again = std::chrono::milliseconds(20);
 

@@ -1,4 +1,4 @@
-// Addresses of arms, as users and programs write them.
+// Parses the addresses of arms.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,7 @@ class NoDevice : public Error {
   using Error::Error;
 };
 
-/// More than one arm is connected, and the address does not select one. `what()` lists the serial numbers of the
-/// connected arms.
+/// More than one connected arm matches the address. `what()` lists the serial numbers of these arms.
 class SeveralArms : public NoDevice {
  public:
   using NoDevice::NoDevice;
@@ -34,13 +33,13 @@ class SeveralArms : public NoDevice {
 /// Forms of an address:
 ///
 ///     (nothing)          The only arm on USB.
-///     `NUMBER`           The arm on USB with this serial number.
-///     `usbip:HOST:PORT`  The arm of a USB/IP server, such as a running virtual board.
-///     `usbip:unix:PATH`  The arm of a USB/IP server at a Unix socket.
+///     `NUMBER`           An arm on USB, selected by serial number.
+///     `usbip:HOST:PORT`  An arm on a USB/IP server (TCP).
+///     `usbip:unix:PATH`  An arm on a USB/IP server (Unix socket).
 ///     `virtual`          A new virtual board.
 ///     `virtual:FILE`     A new virtual board with the arm description FILE.
 ///     `virtual?seed=7&arm=FILE&elf=FILE`
-///                        A new virtual board with this noise seed, arm description and firmware, in any combination.
+///                        A new virtual board with noise seed, arm description and firmware. All three are optional.
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
@@ -53,18 +52,18 @@ struct Address {
 
 /// Throws BadAddress.
 Address parse_address(std::string_view text);
-/// Parses a server address: HOST:PORT, PORT on this computer, or unix:PATH. Throws BadAddress.
+/// Parses HOST:PORT, PORT (on this computer) or unix:PATH. Throws BadAddress.
 SocketAddress parse_socket(std::string_view text);
-/// The address of the arm at a USB/IP server. Throws BadAddress.
+/// Returns the address of the arm on a USB/IP server. Throws BadAddress.
 Address parse_server(std::string_view text);
-/// The address of an endpoint. Open the device before this call, because the serial number is unknown until then.
+/// Returns the address of an endpoint. The serial number is known only after the device was opened.
 std::string address_of(const Endpoint& endpoint);
 
-/// Returns the arms that match the address. Returns an empty list for a virtual board that is not started yet. Throws
+/// Returns the arms that match the address. Returns an empty list if the address demands a new virtual board. Throws
 /// Error if a server does not answer.
 std::vector<Endpoint> find_arms(const Address& address);
-/// Returns the only arm that matches the address. If a server answers, waits up to two seconds until the server lists
-/// the arm. Throws NoDevice, or SeveralArms if several arms match.
+/// Returns the only arm that matches the address. Waits up to two seconds for the arm of a server. Throws NoDevice, or
+/// SeveralArms if several arms match.
 Endpoint find_arm(const Address& address);
 
 }  // namespace inkwell::device

@@ -9,7 +9,7 @@ using protocol::Command;
 using protocol::StoreReport;
 using protocol::StoreResult;
 
-/// Limit in board time. Storing a parameter set takes a fraction of this limit.
+/// Time limit for a flash operation, in board time.
 constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
 
 constexpr std::string_view was_not_stored = "The parameters were not stored.";
@@ -23,7 +23,7 @@ std::int64_t board_periods(Device& device) {
   return bus_frame->time_periods;
 }
 
-/// The command counter distinguishes the result of this command from the previous result.
+/// Waits until the command counter changes, because an unchanged counter belongs to the previous result.
 StoreReport carry_out(Device& device, Command command, std::string_view failure) {
   const std::uint32_t commands_before = device.store_report().commands;
   device.carry_out(command);

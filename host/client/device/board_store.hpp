@@ -1,4 +1,4 @@
-// The stored parameters of the board, and commands to change these parameters.
+// Reads and changes the stored parameters of the board.
 #pragma once
 
 #include <vector>
@@ -15,10 +15,10 @@ struct BoardStore {
 
 BoardStore read_store(Device& device);
 
-/// Returns the parameters whose current values differ from the stored values, in the order of the table.
+/// Returns the parameters whose current values differ from their stored values.
 std::vector<protocol::Parameter> not_stored(const protocol::ParameterSet& held, const BoardStore& store);
 
-/// The board did not store or erase the parameters. The previous stored parameters are intact.
+/// The board did not store or erase the parameters. The previously stored parameters are intact.
 class NotStored : public Error {
  public:
   NotStored(std::string_view what, const protocol::StoreReport& report);
@@ -26,9 +26,10 @@ class NotStored : public Error {
 };
 
 /// Stores the current parameters and waits until they are in flash memory. Throws NotStored with the remedy if the
-/// board refuses, for example while the force is on. Throws Error if the board does not carry out the command.
+/// board refuses the command. Throws Error if the board does not execute the command.
 protocol::StoreReport store_parameters(Device& device);
-/// Erases the stored parameters and sets every parameter to its default. Throws the errors of store_parameters().
+/// Erases the stored parameters and sets every parameter to its default. Throws NotStored or Error like
+/// store_parameters().
 protocol::StoreReport factory_reset(Device& device);
 
 }  // namespace inkwell::device

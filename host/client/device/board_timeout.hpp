@@ -1,4 +1,4 @@
-// A time limit for the behavior of the board.
+// A time limit in board time.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace inkwell::device {
 
-/// The limit counts board time, so that the speed of a virtual board and the load of the computer do not matter. Wall
-/// time counts only while the board is silent, paused or disconnected.
+/// Counts board time, so that a slow computer does not shorten the limit. Wall time counts only while board time does
+/// not advance.
 class BoardTimeout {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,8 +19,8 @@ class BoardTimeout {
   BoardTimeout(double limit_s, Clock::duration silence)
       : limit_periods_(std::llround(limit_s * protocol::servo_rate_Hz)), silence_(silence) {}
 
-  /// Whether the limit is exceeded. `now_periods` is the newest known board time, if any. The first call starts the
-  /// limit.
+  /// Returns true if the limit is exceeded. The first call starts the limit. `now_periods` is the newest known board
+  /// time.
   bool is_over(std::optional<std::int64_t> now_periods, Clock::time_point now = Clock::now()) {
     const std::int64_t newest = now_periods.value_or(unknown);
     if (!is_started_ || newest != newest_periods_) heard_at_ = now;

@@ -8,7 +8,6 @@ double BusClock::periods_between(const Moment& from, const Moment& to) {
 
 void BusClock::note(const BusFrame& bus_frame) {
   const Moment moment{bus_frame.sequence, bus_frame.time_periods, bus_frame.time_cycles / cycles_per_period_};
-  // The sequence decreases only when the board restarts.
   if (newest_ && moment.sequence < newest_->sequence) oldest_.reset();
   newest_ = moment;
   if (!oldest_) oldest_ = moment;

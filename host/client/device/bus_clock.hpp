@@ -1,4 +1,4 @@
-// Converts board time to the clock of the USB host, so that a computer can align the data of several devices.
+// Converts board time to the clock of the USB host. With this clock, a computer can align the data of several devices.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@ namespace inkwell::device {
 
 class BusClock {
  public:
-  /// `cycles_per_period`: processor cycles per control period, from the InformationReport.
+  /// `cycles_per_period` is the number of processor cycles per control period.
   explicit BusClock(double cycles_per_period) : cycles_per_period_(cycles_per_period) {}
 
-  /// Call this regularly with the newest bus frame, for instance once per second.
+  /// Call this regularly with the newest bus frame, for example once per second.
   void note(const BusFrame& bus_frame);
 
-  /// Time of a control period, measured with the bus frames, in seconds since the start of the bus. None before the
-  /// first frame. Before the second frame the nominal rate is used.
+  /// Returns the time of a control period in seconds since the start of the bus. Returns std::nullopt before the first
+  /// bus frame. Uses the nominal rate before the second bus frame.
   std::optional<double> host_time_s(std::int64_t time_periods) const;
 
  private:

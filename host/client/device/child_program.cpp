@@ -19,7 +19,7 @@
 namespace inkwell::device {
 namespace {
 
-constexpr int killed_by = 128;  // as shells report a signal
+constexpr int killed_by = 128;  // a shell also returns this number plus the signal
 
 pid_t spawn(const ChildProgram& program, int output) {
   std::vector<std::string> words = program.words;
@@ -62,7 +62,7 @@ int run_child_program(const ChildProgram& program, const std::function<void(std:
   const local::Descriptor from_child(ends[0]);
   local::Descriptor to_parent(ends[1]);
   const pid_t child = spawn(program, to_parent.number());
-  to_parent = local::Descriptor();  // so that read() reports the end of the child's output
+  to_parent = local::Descriptor();
   std::array<char, 4096> chunk;
   for (;;) {
     const ssize_t length = read(from_child.number(), chunk.data(), chunk.size());

@@ -1,9 +1,8 @@
-// Runs third-party programs such as gnuplot and openocd and waits for them. No shell reads the arguments of these
-// programs.
+// Runs third-party programs such as gnuplot without a shell.
 #pragma once
 
-// Start every child program with run_child_program(). If the program reads a script, run it in a folder from
-// make_private_folder(). Quote texts for gnuplot with recording::gnuplot_text().
+// All child programs must be started with run_child_program(). A child program that reads a script must run in a folder
+// from make_private_folder(). Texts for gnuplot must be quoted with recording::gnuplot_text().
 
 #include <filesystem>
 #include <functional>
@@ -25,9 +24,9 @@ struct ChildProgram {
   std::string advice;              ///< sentence for the user if the program cannot be started
 };
 
-/// Runs the program until it exits, with an empty standard input. `on_output` receives the standard output and standard
-/// error in pieces. Returns the exit code, or 128 plus the number of the fatal signal. Throws Error if the program
-/// cannot be started.
+/// Runs the program with an empty standard input until it exits. Passes pieces of standard output and standard error to
+/// `on_output`. Returns the exit code, or 128 plus the number of the fatal signal. Throws Error if the program cannot
+/// be started.
 int run_child_program(const ChildProgram& program, const std::function<void(std::string_view)>& on_output);
 
 }  // namespace inkwell::device

@@ -24,7 +24,6 @@ bool is_left_by_a_host(protocol::Fault fault) {
   return fault == protocol::Fault::usb_gone || fault == protocol::Fault::host_silent;
 }
 
-// If the cause remains, the board latches the fault again.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next) {
   device.carry_out(protocol::Command::clear_fault);
   if (now.state != State::fault) return;

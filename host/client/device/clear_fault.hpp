@@ -1,4 +1,4 @@
-// Clears a fault and checks whether the fault returns because its cause remains.
+// Clears a fault and checks that the fault does not return.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace inkwell::device {
 
-/// The fault was cleared, but its cause has raised the fault again. `what()` names the fault and its remedy.
+/// The fault was cleared and has returned, because its cause remains. `what()` contains the fault and its remedy.
 class FaultStays : public Error {
  public:
   using Error::Error;
@@ -24,17 +24,17 @@ struct ShownFault {
   protocol::Fault fault;
 };
 
-/// One line with the name, cause and remedy of the fault. For a failed self-test the line lists the failed items, which
-/// are read from the device.
+/// Returns one line with the name, cause and remedy of the fault. For a failed self-test, the line lists the failed
+/// items.
 std::string fault_line(protocol::Fault fault, Device& device);
 
-/// Whether the board raises this fault when its host disconnects or falls silent while the force is on. A program that
-/// finds this fault at its start can clear the fault, because the previous program caused the fault.
+/// Returns true if the board raises this fault when its host disconnects or sends nothing. A program that starts can
+/// clear such a fault, because the previous program caused it.
 bool is_left_by_a_host(protocol::Fault fault);
 
-/// Clears the fault, and checks for 0.2 s of board time that the fault does not return. If a self-test follows, the
-/// check lasts until the self-test has finished. Returns immediately if `now` shows no fault. `next` waits for the next
-/// pose. Throws FaultStays.
+/// Clears the fault and checks for 0.2 s of board time that it does not return. If the board runs a self-test, the
+/// check lasts until the self-test finishes. Returns immediately if `now` shows no fault. Calls `next` to wait for the
+/// next pose. Throws FaultStays.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next);
 
 }  // namespace inkwell::device

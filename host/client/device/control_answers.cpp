@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns the value of `read`. Throws Error with `sentence` if a value has the wrong JSON type.
+/// Calls `read`. Throws Error with `sentence` if a JSON value has the wrong type.
 template <class Read>
 auto read_or_fail(const char* sentence, Read read) {
   try {
@@ -24,7 +24,7 @@ auto read_or_fail(const char* sentence, Read read) {
 
 constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build the virtual board again.";
 
-/// nlohmann::json converts any number to an unsigned number. The conversion of a number out of range is undefined.
+/// Checks type and range, because nlohmann::json converts without these checks.
 template <class Whole>
 Whole whole_number(const json& value, const char* sentence) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Whole>::max())

@@ -1,4 +1,4 @@
-// Parses the answers on the control socket of a virtual board. Each answer is one line.
+// Parses the answers on the control socket of a virtual board.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace inkwell::device {
 
-/// Returns the answer to a command. Throws CommandRefused if the board refuses the command, and Error if the line is
-/// not an answer of a board.
+/// Parses the answer to a command. Throws CommandRefused if the board refused the command. Throws Error if the line is
+/// not a valid answer.
 nlohmann::json parse_answer(std::string_view line, std::string_view command);
 
-// The functions below read the content of an answer. A missing value is zero or empty; a trace and the list of injected
-// faults are required. Each function throws Error if a value has the wrong type.
+// These functions read the values in an answer. A missing value becomes zero or empty, but traces and injected faults
+// are required. A value of the wrong type throws Error.
 BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);
 Injection injection_of(const nlohmann::json& answer, const protocol::InjectionRequest& request);

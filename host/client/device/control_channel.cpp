@@ -21,12 +21,11 @@ constexpr std::uint8_t boot_loader_interface = 0, set_interface = 11;
 /// DFU 1.1, sections 3 and 6.1.2.
 constexpr std::uint8_t detach_request = 0, get_status_request = 3, status_vendor_error = 0x0B;
 constexpr std::uint16_t status_length = 6;
-constexpr unsigned timeout_ms = 20'000;  // a sector erase takes a few seconds at most
+constexpr unsigned timeout_ms = 20'000;  // longer than any sector erase
 constexpr char in_use[] =
     "Another program is updating this board's firmware. Wait until the update is finished, or close that program.";
 constexpr char refused[] = "The board refused a firmware update request.";
 
-/// Converts requests to setup packets, for USB and for USB/IP.
 class Channel : public ControlChannel {
  public:
   explicit Channel(std::uint8_t interface_number) : interface_(interface_number) {}
@@ -144,7 +143,7 @@ std::unique_ptr<ControlChannel> open_boot_loader(const Endpoint& endpoint) {
 
 namespace {
 
-/// True if the firmware refuses to detach because the force is on. A firmware often does not answer while it detaches.
+/// Returns true if the firmware reports that the force prevents the detach. A detaching firmware may not answer.
 bool has_refused(ControlChannel& channel) {
   try {
     const auto status = channel.read({get_status_request}, status_length);
@@ -156,7 +155,7 @@ bool has_refused(ControlChannel& channel) {
 
 void detach(ControlChannel& channel) {
   constexpr std::uint16_t within_ms = 1000;
-  channel.write({detach_request, within_ms}, {});  // firmware of protocol 15 refuses this with a stall
+  channel.write({detach_request, within_ms}, {});  // firmware with protocol 15 refuses this request with a stall
   if (has_refused(channel)) throw Stalled(refused);
 }
 

@@ -14,7 +14,7 @@ namespace inkwell::device {
 using nlohmann::json;
 
 namespace {
-/// The longest answer is a trace: 100,000 rows of 30 numbers with up to 25 characters each.
+/// A trace is the longest answer. It has 100,000 rows of 30 numbers, and each number has up to 25 characters.
 constexpr std::size_t line_maximum = 128u << 20;
 }  // namespace
 

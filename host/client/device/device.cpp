@@ -33,19 +33,18 @@ using protocol::Command;
 using protocol::ReportId;
 
 constexpr std::int64_t heartbeat_periods = protocol::servo_rate_Hz / 100;
-/// Time limit for a request that the board refuses only temporarily.
+/// Time limit while the board is busy.
 BoardTimeout busy_limit() { return {2.0, 2s}; }
 constexpr auto claim_poll_interval = 5ms;
-/// Time limits for the execution of a command and for the decrease of the force to zero.
+/// Time limits in board time. During the second limit, the force decreases to zero.
 constexpr std::int64_t command_patience_periods = protocol::servo_rate_Hz / 2;
 constexpr std::int64_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
-/// The counter in the self-test report is not extended to 64 bits, because only its differences are used.
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
-/// A claim that is not renewed expires within this time.
+/// A claim without signs of life expires within this time.
 BoardTimeout claim_limit() { return {1.5 * static_cast<double>(protocol::claim_expiry_s), 2s}; }
 
-/// Claims of the Device objects of this process. The claims show which object drives the arm if a program has opened an
-/// arm twice. Objects on different virtual boards with the same seed have the same claim.
+/// Claims of the Device objects in this process. They show which Device object drives the arm. Two virtual boards with
+/// the same seed have the same claim.
 class OwnClaims {
  public:
   void add(std::uint32_t digest, int object) {
@@ -69,7 +68,8 @@ class OwnClaims {
 
 std::atomic<OwnClaims*> claims_of_process = nullptr;
 
-/// Never destroyed, because destructors of static objects may close arms. A forked child starts without claims.
+/// This object is never destroyed, because destructors of static objects may close arms. A forked child creates an
+/// empty object.
 OwnClaims& own_claims() {
   static const bool is_made = [] {
     claims_of_process = new OwnClaims;
@@ -80,7 +80,7 @@ OwnClaims& own_claims() {
   return *claims_of_process;
 }
 
-/// False if no process on this computer has this number. The driver may also run on another computer or in a container.
+/// Returns false if this computer has no process with this number.
 bool may_exist(std::uint32_t process_id) { return kill(static_cast<pid_t>(process_id), 0) == 0 || errno != ESRCH; }
 
 int next_object() {
@@ -88,7 +88,7 @@ int next_object() {
   return ++opened;
 }
 
-/// Request numbers of this object, which differ from those of other objects.
+/// The members differ between Device objects.
 struct OwnNumbers {
   std::uint32_t claim, ticket;
   std::uint16_t transaction_ticket;
@@ -134,22 +134,22 @@ struct Device::Implementation {
   const std::uint32_t own_claim;
   const process::Origin origin;
   std::atomic<bool> drives = false;
-  std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
+  std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object claimed the arm
   std::atomic<std::uint32_t> newest_sequence = 0;
-  std::mutex feature_mutex;  ///< keeps a transaction and its report together
+  std::mutex feature_mutex;  ///< guards each transaction until its report is read
   std::mutex output_mutex;   ///< guards the next four members
   std::uint32_t ticket;
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   std::int64_t last_output_period = 0;
-  std::atomic<std::int64_t> newest_period = 0;  ///< from the poses
+  std::atomic<std::int64_t> newest_period = 0;  ///< newest board time from a report
   WideCounter time_periods, sequence;
   std::uint16_t transaction_ticket;  ///< guarded by feature_mutex
-  mutable std::mutex scope_mutex;    ///< one thread selects signals, another reads the frames
+  mutable std::mutex scope_mutex;    ///< guards the scope's selection and decoder
   ScopeDecoder decoder;
-  mutable std::mutex link_mutex;  ///< guards `link`; locked last
+  mutable std::mutex link_mutex;  ///< guards `link` and is locked last
   std::shared_ptr<Transport> link;
-  SleepInhibitor sleep_inhibitor;  ///< active while this object drives a real arm whose force is on
+  SleepInhibitor sleep_inhibitor;  ///< prevents sleep while this object drives a real arm with force
 
   explicit Implementation(std::unique_ptr<Transport> transport)
       : Implementation(OwnNumbers(transport->endpoint().seed), std::move(transport)) {}
@@ -159,7 +159,7 @@ struct Device::Implementation {
         transaction_ticket(numbers.transaction_ticket),
         link(std::move(transport)) {}
 
-  /// The current link. The returned pointer keeps the link alive during a call.
+  /// Returns the current link. The returned pointer keeps the link alive.
   std::shared_ptr<Transport> transport() const {
     const std::lock_guard lock(link_mutex);
     return link;
@@ -168,7 +168,7 @@ struct Device::Implementation {
   ForceLaw read_force_law() {
     protocol::ForceLawReport header{};
     get(header, "force law");
-    // The device pads its report to the requested length, so only the required length is requested.
+    // The device pads its report to the requested length.
     std::vector<std::byte> report(std::clamp<std::size_t>(header.size, 1, protocol::force_law_report_maximum));
     report[0] = static_cast<std::byte>(ReportId::force_law);
     report.resize(std::min(report.size(), transport()->get_feature(report)));
@@ -181,8 +181,8 @@ struct Device::Implementation {
     if (length < sizeof report) throw too_short(what, length, sizeof report);
   }
 
-  /// Reads the rows from `first_row` on. Requires feature_mutex. Another program may select other rows between the
-  /// request and the read.
+  /// Reads black-box rows from `first_row` on. Requires feature_mutex. Repeats the request if another program has
+  /// requested other rows in the meantime.
   protocol::BlackBoxRowsReport rows_from(std::size_t first_row) {
     constexpr int tries = 100;
     const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
@@ -198,11 +198,11 @@ struct Device::Implementation {
     throw InUse("Another program reads the black box continuously. Close that program and try again.");
   }
 
-  /// Assigns the command its token and sends it. `before` runs between the assignment and the transmission.
+  /// Assigns a token to the command, calls `before`, and sends the command.
   template <class Before>
   std::uint8_t send(protocol::CommandReport& command, Before before) {
     const std::lock_guard lock(output_mutex);
-    token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0 means that no command was sent yet
+    token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0: no command yet
     command.report_id = ReportId::command;
     command.version = protocol::protocol_version;
     command.token = token;
@@ -215,14 +215,14 @@ struct Device::Implementation {
     return send(command, [] {});
   }
 
-  /// Every output report is a sign of life. Requires output_mutex.
+  /// Requires output_mutex. Each output report counts as a sign of life.
   template <class Report>
   void write(const Report& report) {
     transport()->write_report(std::as_bytes(std::span(&report, 1)));
     last_output_period = newest_period;
   }
 
-  /// The claim in the reports of this object. The claim is 0 while this object does not drive the arm.
+  /// Returns 0 while this object does not drive the arm.
   std::uint32_t claim() const { return drives ? own_claim : 0; }
 
   /// Reads the board time. Requires feature_mutex.
@@ -285,8 +285,8 @@ struct Device::Implementation {
     return driver_report();
   }
 
-  /// Waits until the claim of a killed program has expired. Returns false if the claim is renewed, or if the program
-  /// may still exist.
+  /// Waits until the claim of a killed program has expired. Returns false if the claim is renewed or the program may
+  /// still exist.
   bool outlives(const protocol::DriverReport& driven) {
     if (may_exist(driven.process_id)) return false;
     auto limit = claim_limit();
@@ -319,7 +319,7 @@ struct Device::Implementation {
     own_claims().remove(protocol::digest_of(own_claim), object);
   }
 
-  /// Waits for an input report. Releases the sleep inhibitor if the device is disconnected.
+  /// Reads an input report. Releases the sleep inhibitor if the device is disconnected.
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) {
     try {
       return transport()->read_report(report, timeout);
@@ -329,11 +329,10 @@ struct Device::Implementation {
     }
   }
 
-  /// Reads the claim if the pose's driver parity is not the expected parity. The driver may have changed since the pose
-  /// was sent.
+  /// Compares the driver parity of the pose with the expected parity. Reads the claim if the parities differ.
   void check_claim(const protocol::PoseReport& pose) {
     if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
-    // In lock step the owner of the mutex may wait for the next pose, so this function must not wait for the mutex.
+    // This function must not wait for the mutex, because the mutex owner may wait for the next pose in lock step.
     const std::unique_lock lock(feature_mutex, std::try_to_lock);
     if (!lock) return;  // the next pose also shows the parity
     const auto report = driver_report(lock);
@@ -356,8 +355,8 @@ struct Device::Implementation {
   /// Requires output_mutex.
   std::uint32_t next_ticket() { return ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1; }
 
-  /// None if the report contains no result of this request, because the board has not received the request or because
-  /// newer results have replaced the result.
+  /// Returns std::nullopt if the report contains no result of this request. The board may not have received the
+  /// request, or newer results may have replaced the result.
   static std::optional<protocol::RequestResult> result_in(const protocol::RequestResultsReport& report,
                                                           std::uint32_t of_ticket) {
     const auto* entry = std::ranges::find(report.entries, of_ticket, &protocol::RequestResultEntry::ticket);
@@ -369,7 +368,7 @@ struct Device::Implementation {
     return Error(fmt::format("The board refused {}. {} {}", what, row.meaning, row.remedy));
   }
 
-  /// Sends the command and reads the results until the result of this command is final.
+  /// Sends the command and waits for its final result.
   protocol::RequestResult result_of(protocol::CommandReport& command) {
     send(command, [&] { command.ticket = next_ticket(); });
     std::optional<std::uint32_t> begin_periods;
@@ -383,7 +382,6 @@ struct Device::Implementation {
     }
   }
 
-  /// Repeats the command while the board is busy.
   void carry_out(protocol::CommandReport& command) {
     using enum protocol::RequestResult;
     auto limit = busy_limit();
@@ -405,7 +403,7 @@ struct Device::Implementation {
       transport()->set_feature(
           std::as_bytes(std::span(&shapes, 1)).first(protocol::shapes_report_size(shapes.plane_count)));
     }
-    // If newer results have replaced the result of the shapes, the shapes are sent again.
+    // If the result is missing, the caller sends the shapes again.
     return result_in(request_results(), shapes.ticket).value_or(protocol::RequestResult::busy);
   }
 
@@ -416,7 +414,6 @@ struct Device::Implementation {
     return report;
   }
 
-  /// Reads the current or the stored parameters.
   protocol::ParameterSet read_parameters(ReportId id) {
     const std::lock_guard lock(feature_mutex);
     protocol::ParametersReport report{};
@@ -435,7 +432,7 @@ struct Device::Implementation {
     return set;
   }
 
-  /// Sends a transaction without entries, because the operation sets every parameter.
+  /// The transaction has no entries, because the operation sets every parameter.
   AcceptedTransaction transact(protocol::ParameterOperation operation) {
     protocol::ParametersReport report{};
     report.report_id = ReportId::parameters;
@@ -444,8 +441,8 @@ struct Device::Implementation {
     return transact(report);
   }
 
-  /// The device processes a transaction before it acknowledges the data, so the next report belongs to this
-  /// transaction. Reading a report first would delay a slider change by one bus frame.
+  /// The device processes a transaction before it acknowledges the data. The report that is read next therefore belongs
+  /// to this transaction.
   AcceptedTransaction transact(protocol::ParametersReport& report) {
     report.claim = claim();
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
@@ -456,8 +453,8 @@ struct Device::Implementation {
       transport()->set_feature(bytes);
       const auto result = transaction_report();
       if (result.ticket != report.ticket) {
-        // Another program has sent a transaction in the meantime. The result of this transaction is unknown, so this
-        // transaction is sent again.
+        // Another program has sent a transaction in the meantime, so the result is unknown. The loop sends this
+        // transaction again.
         if (limit.is_over(now_periods()))
           throw InUse("Other programs change parameters continuously. Close these programs.");
         continue;
@@ -497,7 +494,7 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     "arm or recording, or use a separate program for each force law.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
-  // If the board reports no bus frame, no program has read samples since the start of the board.
+  // Without a known bus frame, the scope contains no old samples.
   if (const auto bus_frame = device->bus_frame())
     device->implementation_->decoder.forget_before(static_cast<std::uint32_t>(bus_frame->time_periods));
   return device;
@@ -509,7 +506,7 @@ Device::Device(std::unique_ptr<Transport> transport)
 Device::~Device() {
   try {
     release();
-  } catch (const Error&) {  // the device is gone, and so is the claim
+  } catch (const Error&) {  // the claim was lost with the device
   }
 }
 
@@ -588,16 +585,16 @@ void Device::take_link_of(Device& opened) {
   if (self.force_law && other.force_law && *self.force_law->report != *other.force_law->report)
     throw Error(fmt::format("The reconnected board has the force law {} instead of {}. Open the arm again.",
                             other.force_law->name, self.force_law->name));
-  std::shared_ptr<Transport> before;  // destroyed after the locks are released, because closing may take long
+  std::shared_ptr<Transport> before;  // destroyed after the locks are released, because closing may be slow
   const std::scoped_lock lock(self.feature_mutex, self.output_mutex, self.scope_mutex);
   self.decoder = other.decoder;
-  self.lose_claim();  // the restarted board has no claim of this object
+  self.lose_claim();
   opened.continue_time(self.newest_period);
   self.time_periods = other.time_periods;
   self.sequence = other.sequence;
   self.newest_period = self.time_periods.newest();
   self.newest_sequence = other.newest_sequence.load();
-  self.last_output_period = self.newest_period - heartbeat_periods;  // the board has not received an output report yet
+  self.last_output_period = self.newest_period - heartbeat_periods;  // the next heartbeat is due immediately
   const std::lock_guard link_lock(self.link_mutex);
   before = std::exchange(self.link, std::move(other.link));
 }
@@ -655,7 +652,7 @@ void Device::keep_alive() {
   auto& self = *implementation_;
   {
     const std::lock_guard lock(self.output_mutex);
-    // While board time is stopped, heartbeats would queue up ahead of the next command.
+    // While board time is stopped, heartbeats would delay the next command.
     if (self.newest_period - self.last_output_period < heartbeat_periods) return;
   }
   send(Command::heartbeat);
@@ -787,7 +784,7 @@ protocol::SelfTestReport Device::self_test() {
     return !condition();
   };
   const auto it_runs = [&] { return report.is_running != 0; };
-  wait_while(it_runs);  // the self-test after the start
+  wait_while(it_runs);  // wait for the end of a running self-test
   const std::uint32_t begun_before = report.tests_begun;
   carry_out(Command::self_test);
   if (!wait_while([&] { return report.tests_begun == begun_before; }))

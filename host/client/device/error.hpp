@@ -1,4 +1,4 @@
-// Errors of a device, and of the code that uses the device.
+// Errors of the device code.
 #pragma once
 
 #include <stdexcept>
@@ -8,20 +8,19 @@
 
 namespace inkwell::device {
 
-/// Base class of all errors of this library. `what()` states the problem and the remedy. The text may quote a file, a
-/// device or another program, and is safe to print.
+/// Base class of all errors. `what()` states the problem and the remedy, and is safe to print.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
-/// The device is gone (unplugged, board stopped). A Session reconnects automatically.
+/// The device was unplugged, or its board has stopped. A Session reconnects automatically.
 class Disconnected : public Error {
  public:
   using Error::Error;
 };
 
-/// The device answered a request with a stall: the request is unknown or not accepted.
+/// The device refused a request with a stall.
 class Stalled : public Error {
  public:
   using Error::Error;
@@ -33,7 +32,7 @@ class InUse : public Error {
   using Error::Error;
 };
 
-/// The device is connected, but this user may not open it. `what()` contains the udev rule to install.
+/// The user has no permission to open the connected device. `what()` contains the required udev rule.
 class NoPermission : public Error {
  public:
   using Error::Error;

@@ -1,4 +1,4 @@
-// Events of a device: the rows of the log in a session and in recordings.
+// Events of a device for logs and recordings.
 #pragma once
 
 #include <cstdint>
@@ -14,49 +14,47 @@
 namespace inkwell::device {
 
 enum class EventKind : std::uint8_t {
-  mark,        ///< set by the user
+  mark,        ///< set by a user
   connection,  ///< a device was connected or disconnected
   force,       ///< the force was switched on or off
   fault,       ///< the device entered or left the fault state
-  parameter,   ///< a parameter changed, or a change was refused
-  loss,        ///< samples or poses were lost during transfer
+  parameter,   ///< a parameter was changed, or a change was refused
+  loss,        ///< samples or poses were lost
 };
 inline constexpr std::size_t event_kind_count = static_cast<std::size_t>(EventKind::loss) + 1;  // the last entry
 
-/// "parameter", as in recordings.
+/// Returns a name such as "parameter".
 std::string_view name_of(EventKind kind);
-/// None if no kind has this name.
+/// Returns std::nullopt if no kind has this name.
 std::optional<EventKind> find_event_kind(std::string_view name);
 
 struct Event {
   EventKind kind;
   std::string text;       ///< one line
-  std::string clock_utc;  ///< computer time of the event, in the format of clock_utc_now()
-  /// Control period of the device; none if no device was connected.
+  std::string clock_utc;  ///< computer time of the event, formatted by clock_utc_now()
+  /// Control period of the event, or std::nullopt if no device was connected.
   std::optional<std::int64_t> at_periods;
 };
 
-/// "2026-11-23T22:15:34.123Z"
+/// Returns a text such as "2026-11-23T22:15:34.123Z".
 std::string clock_utc_now();
-/// An event with the current time.
 Event event_now(EventKind kind, std::string text, std::optional<std::int64_t> at_periods);
 
-/// A line of a log: clock, seconds, kind, text. A dash replaces an unknown clock or time.
+/// Formats a log line with clock, seconds, kind and text. Replaces an unknown clock or time by a dash.
 std::string log_line(std::string_view clock_utc, std::optional<double> time_s, EventKind kind, std::string_view text);
-/// Uses the board time of the event.
 std::string line_of(const Event& event);
 
-/// Events from one pose to the next: force on or off, fault raised or cleared. If `before` is missing, the earlier pose
-/// counts as a pose without force and fault. `noticed_at_periods`: more accurate time of the current fault, if known.
+/// Returns the events between two poses, such as a switched force or a raised fault. Without `before`, assumes an
+/// earlier pose without force and fault. `noticed_at_periods` is the exact time of the current fault, if known.
 std::vector<Event> events_between(const std::optional<Pose>& before, const Pose& now,
                                   std::optional<std::int64_t> noticed_at_periods);
 
-/// One event per changed parameter, such as "wall_stiffness_N_per_m = 600.0, was 800.0". `whose` is appended to the
-/// text.
+/// Returns one event per changed parameter, such as "wall_stiffness_N_per_m = 600.0, was 800.0". Appends `whose` to
+/// each text.
 std::vector<Event> events_of_change(const protocol::ParameterSet& before, const protocol::ParameterSet& now,
                                     std::optional<std::int64_t> at_periods, std::string_view whose = {});
 
-/// The newest events. Each event has a number, counted from the start of the log.
+/// Stores the newest events. Event numbers count from the start of the log.
 class EventLog {
  public:
   static constexpr std::size_t kept_maximum = 5000;

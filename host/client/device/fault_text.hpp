@@ -1,4 +1,4 @@
-// Fault texts from the protocol's table, with the board's values inserted.
+// Formats fault texts with the values of the board.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ struct FaultText {
 };
 
 FaultText fault_text(protocol::Fault fault);
-/// Cause and remedy of a fault; for self_test_failed, the failed items and their remedies.
+/// Returns cause and remedy of a fault. For self_test_failed, returns the failed items and their remedies.
 FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test);
 
-/// One line with the fault's name, its cause and its remedy.
+/// Returns one line with name, cause and remedy of a fault.
 std::string fault_line(protocol::Fault fault);
 std::string fault_line(protocol::Fault fault, const protocol::SelfTestReport& test);
 

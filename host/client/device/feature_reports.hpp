@@ -15,11 +15,11 @@ std::span<std::byte> writable_bytes(Report& report) {
   return std::as_writable_bytes(std::span(&report, 1));
 }
 
-/// The error for a report of `length` bytes.
+/// Returns the error for a truncated report.
 Incompatible too_short(const char* what, std::size_t length, std::size_t wanted);
 
-/// Reads the information report. The protocol version of the device may differ. In this case, only members at the same
-/// position are read, and the rest is 0. Throws Incompatible if these members are missing.
+/// Reads the information report of any protocol version. If the version differs, reads only the members whose positions
+/// never change and sets the rest to 0. Throws Incompatible if these members are missing.
 protocol::InformationReport read_information(Transport& transport);
 
 }  // namespace inkwell::device

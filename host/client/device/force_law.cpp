@@ -17,7 +17,6 @@ Error damaged() {
   return Error("The device's description of its force law is damaged. Build its firmware again and flash it.");
 }
 
-/// Reads the rows of a report from its beginning.
 class RowReader {
  public:
   explicit RowReader(std::span<std::byte> left) : left_(left) {}
@@ -27,7 +26,7 @@ class RowReader {
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
   }
-  /// Returns a zero-terminated text. Unprintable characters are replaced in the report itself.
+  /// Returns a zero-terminated text. Replaces unprintable characters in the report.
   std::string_view text() {
     auto* begin = reinterpret_cast<char*>(left_.data());
     const std::size_t length = strnlen(begin, left_.size());
@@ -35,8 +34,7 @@ class RowReader {
     std::ranges::copy(protocol::plain_text({begin, length}), begin);
     return {begin, length};
   }
-  /// The firmware build allows only letters, digits and underscores. The name is a key in files and a column name in
-  /// plot scripts.
+  /// Allows only letters, digits and underscores, because the name is used in files and plot scripts.
   std::string_view name() {
     const auto name = text();
     const auto is_allowed = [](char c) {
@@ -75,7 +73,7 @@ const process::HeldAtFork joined_at_fork(joined_mutex);
 std::list<Joined> joined;                                        // the last entry is in the tables
 std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // users of the law that is in the tables
 
-/// Adds the rows of a law to the tables; null removes the added rows.
+/// Adds the rows of `law` to the tables. Null removes the added rows.
 void show(const Joined* law) {
   protocol::added_rows<protocol::ParameterInfo>.store(law ? &law->parameters : nullptr, std::memory_order_release);
   protocol::added_rows<protocol::SignalInfo>.store(law ? &law->signals : nullptr, std::memory_order_release);
@@ -123,7 +121,7 @@ bool join_tables(const ForceLaw& law) {
   }
   if (joined.empty() || *joined.back().law.report != *law.report) {
     if (!users.empty()) return false;
-    // The report is parsed again, so that the tables use a separate copy of the texts.
+    // The tables need a separate copy of the texts.
     auto& fresh = joined.emplace_back(Joined{parse_force_law(*law.report), {}, {}});
     fresh.parameters = fresh.law.parameters;
     fresh.signals = fresh.law.signals;

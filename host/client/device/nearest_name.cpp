@@ -6,8 +6,7 @@
 
 namespace inkwell::device {
 
-// Computes only table cells whose indices differ by at most `most`, because all other cells exceed `most`. If every
-// cell of a row exceeds `most`, the distance also exceeds `most`.
+// Computes only the table cells that can be at most `most`.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
   const std::size_t beyond = most + 1;
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return beyond;
@@ -29,7 +28,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t mo
 }
 
 bool is_near(std::string_view name, std::string_view typed) {
-  constexpr std::size_t telling = 3;  // many names contain the same one or two letters
+  constexpr std::size_t telling = 3;  // many names share one or two letters
   if (typed.size() < telling) return false;
   const auto is_within = [&](std::string_view other, std::size_t edits) {
     return edit_distance(typed, other, edits) <= edits;

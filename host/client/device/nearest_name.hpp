@@ -1,4 +1,4 @@
-// Finds the intended name for a misspelled name.
+// Suggests similar names for misspelled names.
 #pragma once
 
 #include <algorithm>
@@ -11,22 +11,21 @@
 
 namespace inkwell::device {
 
-/// A name is missing in all tables. The name may belong to the force law of a device that was not opened yet.
+/// No table contains this name. An unopened device may have a force law with this name.
 class UnknownName : public Error {
  public:
   using Error::Error;
 };
 
-/// Levenshtein distance: the number of insertions, removals and replacements. A distance above `most` is returned as
-/// `most` + 1.
+/// Returns the Levenshtein distance. Returns `most` + 1 if the distance is larger than `most`.
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
-/// Whether the user probably meant `name`. Returns true if `name` contains the typed text, or if few edits change the
-/// typed text to `name` or to its beginning.
+/// Returns true if the user probably meant `name`. The name must contain the typed text, or its beginning must be
+/// similar to the typed text.
 bool is_near(std::string_view name, std::string_view typed);
 
-/// " Did you mean NAME?" with the most similar name of the table. A name that contains the typed text has priority over
-/// a name that differs by few edits. Empty if no name is similar.
+/// Returns " Did you mean NAME?" with the most similar name, or an empty text. A name that contains the typed text has
+/// priority over all other names.
 template <class Table>
 std::string suggestion(const Table& table, std::string_view typed) {
   const std::string_view* nearest = nullptr;

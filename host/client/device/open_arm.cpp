@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double show_limit_s = 2.0;  // board time; the firmware connects to USB after 0.1 s
+constexpr double show_limit_s = 2.0;  // board time limit; the firmware connects to USB after 0.1 s
 constexpr double step_s = 0.01;
 constexpr auto look_again = 5ms;
 
@@ -28,7 +28,6 @@ Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bo
   }
 }
 
-/// Throws Error with the line number of a mistake.
 arms::Description read_description(const std::filesystem::path& file) {
   try {
     return arms::read(file);

@@ -1,5 +1,4 @@
-// Parameters as TOML files for users to read and compare. Arm descriptions (boards/arms/*.toml) are also accepted;
-// their other sections are ignored.
+// Reads and writes parameters in TOML files. A parameter file may also be an arm description.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +14,7 @@ namespace inkwell::device {
 
 struct ParameterFile {
   std::vector<ParameterChange> changes;  ///< in the order of the table
-  std::vector<std::string> unknown;      ///< names that this version does not know
+  std::vector<std::string> unknown;      ///< names that this version does not define
 };
 
 struct ParameterDifference {
@@ -24,31 +23,31 @@ struct ParameterDifference {
   float in_device;
 };
 
-/// Reads the [parameters] section. Throws Error with the line or key if the file is not TOML, or a value is not a
-/// number or is out of range. Unknown names are returned, so that files of other versions remain usable.
+/// Reads the [parameters] section. Throws Error with the line or key if the file is not TOML or a value is not a number
+/// in the allowed range. Returns unknown names, because other versions may define them.
 ParameterFile parse_parameters(std::string_view toml, const std::string& file_name);
 ParameterFile load_parameters(const std::filesystem::path& file);
 
-/// Lists all parameters by group. Comments state their unit, range and help.
+/// Formats all parameters by group. Comments state unit, range and help.
 std::string format_parameters(const protocol::ParameterSet& parameters);
-/// Writes a temporary file first and then renames it, so that a full disk does not destroy the old file.
+/// Writes a temporary file and renames it. A full disk therefore does not destroy the old file.
 void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters);
 
 std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device);
 
-/// Returns the shortest text that parses to exactly this value.
+/// Returns the shortest text that represents this value exactly.
 std::string format_value(protocol::Parameter parameter, float value);
-/// None if the text is not a number with a decimal point.
+/// Returns std::nullopt if the text is not a number with a decimal point.
 std::optional<float> parse_number(std::string_view text);
-/// Parses a value with a decimal point. Throws Error if the text is not a number or is out of range.
+/// Parses a value with a decimal point. Throws Error if the value is not a number in the allowed range.
 float parse_value(protocol::Parameter parameter, std::string_view number);
-/// Parses "NAME=VALUE". Throws Error with the most similar name or with the allowed range if the text is invalid.
+/// Parses "NAME=VALUE". Throws Error with the most similar name or with the allowed range.
 ParameterChange parse_change(std::string_view text);
-/// Throws Error if no parameter has this name. The error contains the most similar name, if any.
+/// Throws Error with the most similar name if no parameter has this name.
 protocol::Parameter parameter_named(std::string_view name);
-/// " Did you mean NAME?" with a similar known name; empty if there is none.
+/// Returns " Did you mean NAME?" with the most similar name, or an empty text.
 std::string parameter_suggestion(std::string_view name);
-/// Throws Error with the range if the value is not finite, is out of range, or is a fraction for an integer parameter.
+/// Throws Error with the allowed range if a value is not allowed.
 void check_value(protocol::Parameter parameter, float value);
 
 }  // namespace inkwell::device

@@ -17,7 +17,7 @@ void ParameterRequests::add(const std::vector<ParameterChange>& later) {
 }
 
 void ParameterRequests::put_before(ParameterRequests unsent) {
-  if (restore_defaults) return;  // the newer defaults overwrite the unsent changes
+  if (restore_defaults) return;  // the restored defaults overwrite the unsent changes
   unsent.add(changes);
   *this = std::move(unsent);
 }

@@ -1,4 +1,4 @@
-// The parameter changes that a session has queued and not sent yet.
+// Queued parameter changes of a session.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,15 @@
 
 namespace inkwell::device {
 
-/// Requests for the defaults of all parameters, then for individual values.
+/// The defaults are restored before the changes are sent.
 struct ParameterRequests {
   bool restore_defaults = false;
-  std::vector<ParameterChange> changes;  ///< each parameter once, as a transaction requires
+  std::vector<ParameterChange> changes;  ///< contains each parameter at most once
 
-  /// A later value of a parameter replaces the earlier value.
+  /// A later value replaces the earlier value of the same parameter.
   void add(const std::vector<ParameterChange>& later);
-  /// Inserts unsent requests before the requests of this object.
   void put_before(ParameterRequests unsent);
-  /// The parameter values of the device after these requests.
+  /// Returns the parameter values of the device after these requests.
   protocol::ParameterSet applied_to(const protocol::ParameterSet& held) const;
 };
 

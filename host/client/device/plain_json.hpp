@@ -10,7 +10,7 @@
 
 namespace inkwell::device {
 
-/// Returns the JSON value with texts that are safe to print. Throws nlohmann::json::exception.
+/// Parses JSON and makes its texts safe to print. Throws nlohmann::json::exception.
 inline nlohmann::json parse_plain_json(std::string_view text) {
   return nlohmann::json::parse(text, [](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
     if (event == nlohmann::json::parse_event_t::value && parsed.is_string())

@@ -6,12 +6,12 @@
 namespace inkwell::device {
 namespace {
 
-/// The comparison is also correct if the period counter wraps.
+/// Also returns the correct result when the period counter wraps.
 bool is_before(std::uint32_t period, std::uint32_t other) { return period - other > 0x8000'0000u; }
 
 using protocol::SignalWire;
 
-/// Reads consecutive values. At the end of the data, `ok` becomes false.
+/// Reads consecutive values. Sets `ok_` to false at the end of the data.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -51,7 +51,7 @@ void read_full(Reader& reader, ScopeSamples& samples) {
     for (auto signal : samples.signals) samples.values.push_back(reader.take_signal(info(signal).wire));
 }
 
-/// False if a mask contains signals that were not selected, or if the first sample is incomplete.
+/// Returns false if a mask contains unselected signals, or if the first mask does not contain all selected signals.
 bool read_changes(Reader& reader, ScopeSamples& samples) {
   const std::size_t signal_count = samples.signals.size();
   const std::uint32_t every_signal = static_cast<std::uint32_t>((std::uint64_t{1} << signal_count) - 1);
@@ -90,7 +90,7 @@ std::optional<ScopeSamples> ScopeDecoder::refuse_all_but_a_rest() {
 
 std::uint64_t ScopeDecoder::lost_before(const protocol::ScopeFrameHeader& header) const {
   if (!next_period_) return header.sequence;
-  return header.first_period - *next_period_;  // unsigned: valid across the wrap of the period counter
+  return header.first_period - *next_period_;  // valid when the unsigned period counter wraps
 }
 
 std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> scope_frame) {
@@ -107,8 +107,8 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> scop
       header.sample_count == 0 || signals_.empty())
     return refuse();
 
-  // If the period decreases, either this frame or the previous frame is wrong. The decoder refuses this frame and
-  // compares the next frame with this frame.
+  // A decreasing period means that this frame or the previous frame is wrong. The decoder refuses this frame and
+  // compares the next frame with it.
   const bool runs_backwards = next_period_ && is_before(header.first_period, *next_period_);
   if (runs_backwards) {
     next_period_ = header.first_period + header.sample_count;

@@ -52,7 +52,7 @@ void Session::set_parameters(std::vector<ParameterChange> changes) {
 
 void Session::restore_default_parameters() {
   const std::lock_guard lock(implementation_->mutex);
-  implementation_->requests.parameters = {.restore_defaults = true};  // overwrites all queued changes
+  implementation_->requests.parameters = {.restore_defaults = true};  // the defaults overwrite all queued changes
 }
 
 void Session::store_parameters() {

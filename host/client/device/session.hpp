@@ -1,5 +1,5 @@
-// A client that connects and reconnects automatically, sends the sign of life, and stores the newest pose. Separate
-// threads access the device, so calls never wait for the device.
+// A client that connects automatically, sends heartbeats and stores the newest pose. Its calls do not wait for the
+// device, because separate threads access the device.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,31 @@ namespace inkwell::device {
 
 enum class Connection : std::uint8_t { searching, connected, incompatible, no_permission };
 
-/// The current fault of the device.
 struct NoticedFault {
   protocol::Fault fault;
-  /// The control period in which the fault was raised. If a fault is reported only after a restart, this is the period
-  /// of the first pose with the fault.
+  /// The control period in which the fault was raised. If this period is unknown, the control period of the first pose
+  /// with this fault.
   std::int64_t at_periods;
   bool operator==(const NoticedFault&) const = default;
 };
 
 struct SessionStatus {
   Connection connection = Connection::searching;
-  std::string message;                     ///< a sentence for the user, with the remedy if there is one
-  std::optional<Information> information;  ///< read every second
-  std::string board_name;                  ///< also of an incompatible device; empty: not reported
-  bool is_simulation = false;              ///< connected to a virtual board
-  /// The control period at which the newest transaction of this session took effect; none before the first transaction.
+  std::string message;                     ///< a message for the user
+  std::optional<Information> information;  ///< updated once per second
+  std::string board_name;                  ///< also set for an incompatible device; empty: not reported
+  bool is_simulation = false;              ///< the device is a virtual board
+  /// The control period in which the newest transaction took effect; std::nullopt before the first transaction.
   std::optional<std::int64_t> applied_at_periods;
-  std::optional<NoticedFault> fault;                  ///< none: the device is not in the fault state
-  std::optional<protocol::SelfTestReport> self_test;  ///< the results that led to the fault self_test_failed
-  std::optional<BoardStore> store;                    ///< read once per second and after each request to change it
-  bool is_storing = false;                            ///< a request to store or erase parameters is pending
-  /// Why the newest request to store or erase parameters failed; none after a new request.
+  std::optional<NoticedFault> fault;                  ///< std::nullopt outside the fault state
+  std::optional<protocol::SelfTestReport> self_test;  ///< results of the failed self-test
+  std::optional<BoardStore> store;                    ///< updated once per second and after each store request
+  bool is_storing = false;                            ///< a request to store or erase the parameters is pending
+  /// The reason why the newest store request failed. A new request resets this value.
   std::optional<std::string> store_problem;
-  /// The driver of the arm, updated every second and on each change; none if no program drives the arm.
+  /// The driver of the arm, updated once per second and after each change; std::nullopt without a driver.
   std::optional<Driver> driver;
-  /// Why the newest command had no effect; none after a command was carried out.
+  /// The reason why the newest command had no effect. The next executed command resets this value.
   std::optional<std::string> command_problem;
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
@@ -53,16 +52,15 @@ struct SessionStatus {
   std::uint64_t scope_frames_malformed = 0;
 };
 
-/// The lost device after its reconnection.
 struct Reconnection {
-  std::uint64_t number = 0;         ///< increases with each reconnection
-  protocol::ParameterSet before{};  ///< values when the device was lost, including pending changes
-  protocol::ParameterSet after{};   ///< values after the reconnection; they differ if the device lost power
+  std::uint64_t number = 0;         ///< increases by 1 with each reconnection
+  protocol::ParameterSet before{};  ///< parameter values before the disconnection, with all pending changes
+  protocol::ParameterSet after{};   ///< parameter values after the reconnection
 };
 
 class Session {
  public:
-  /// While no device is connected, `find` is called repeatedly to find a device.
+  /// Calls `find` repeatedly while no device is connected.
   explicit Session(std::function<std::optional<Endpoint>()> find);
   /// Sends the queued requests if a device is connected.
   ~Session();
@@ -70,39 +68,39 @@ class Session {
   SessionStatus status() const;
   std::optional<Pose> newest_pose() const;
 
-  /// Queues a command, which is sent within a millisecond. A command that may move the arm first claims the arm for
-  /// this session. The session releases the arm once the force is off. While another program drives the arm,
-  /// disable_force acts as stop.
+  /// Queues a command, which is sent within a millisecond. Before a command that may move the arm, the session claims
+  /// the arm. The session releases the arm after the force was switched off. If another program drives the arm,
+  /// disable_force acts like stop.
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
 
-  /// Queues a takeover of the arm from its current driver.
+  /// Queues a takeover from the program that drives the arm.
   void take_over();
 
-  /// The current parameters of the device; `parameters_revision` increases with each connection, transaction and
-  /// change.
+  /// Returns the current parameters of the device. `parameters_revision` increases with each connection, transaction
+  /// and change.
   std::optional<protocol::ParameterSet> parameters() const;
   std::uint64_t parameters_revision() const;
-  /// Queues one transaction. Changes that were queued since the last transaction are merged into one transaction.
+  /// Queues the changes. All queued changes are sent in one transaction.
   void set_parameters(std::vector<ParameterChange> changes);
   void restore_default_parameters();
-  /// Stores the board's parameters after the pending changes were sent. The request has no effect without a device and
-  /// is not repeated after a disconnection.
+  /// Stores the parameters of the board after all pending changes were sent. Without a device, the request is ignored.
+  /// A disconnection cancels the request.
   void store_parameters();
   /// Erases the stored parameters and sets every parameter to its default.
   void factory_reset();
-  /// The newest reconnection of the connected device. None before the first reconnection, without a device, or if the
-  /// connected device is not the lost device.
+  /// Returns the newest reconnection to the connected device. Returns std::nullopt if the device is new or not
+  /// connected.
   std::optional<Reconnection> reconnection() const;
-  /// The refusal of the newest transaction; empty after an accepted transaction.
+  /// Returns the reason why the newest transaction was refused, or an empty optional if the transaction was accepted.
   std::optional<std::string> refusal() const;
 
-  /// The events since the last call; if there are too many, only the newest events.
+  /// Returns the events since the last call. If the log is full, the oldest events are missing.
   std::vector<Event> take_events();
 
-  /// Selects these signals for every control period. The selection is repeated after each reconnection.
+  /// Selects signals for every control period. The session repeats the selection after each reconnection.
   void select_signals(std::vector<protocol::Signal> signals);
-  /// The session's scope thread calls `receive` with every frame. Set `receive` before the first selection.
+  /// The session's scope thread calls `receive` for every frame. Call on_scope() before the first selection.
   void on_scope(std::function<void(const ScopeSamples&)> receive);
 
  private:

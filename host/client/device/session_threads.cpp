@@ -16,13 +16,13 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-/// The parameters are read again after this interval, because another program may change the parameters. The interval
-/// is in board time, because requests must not queue up ahead of a change by the user while board time is stopped.
+/// Another program may change the parameters, so they are read again after this interval. Board time is used because
+/// requests would accumulate while board time is stopped.
 constexpr std::int64_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
 
-/// The arm stays claimed between two test pulses of a guide.
+/// The claim remains for this time between test pulses.
 constexpr std::int64_t idle_claim_periods = 2 * protocol::servo_rate_Hz;
 
 bool may_move_arm(protocol::Command command) {
@@ -98,8 +98,7 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
                                    information.serial_number, information.firmware_version),
                        std::nullopt));
   requests.select = !signals.empty();
-  // Commands for the lost device must not reach another device, so the commands are discarded. Parameter changes stay
-  // queued.
+  // The commands were queued for the lost device and must not reach another device.
   requests.commands.clear();
   requests.take_over = false;
   requests.store.reset();
@@ -156,14 +155,14 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       if (scope_denied) requests.select = true;  // the other program may have released the scope
     }
   }
-  send_requests(*served);  // the last requests, such as a parameter restore
+  send_requests(*served);  // includes final requests, such as a parameter restore
   if (served->drives() && Clock::now() - last_pose < silence_limit) let_force_fall(*served);
 }
 
 void Session::Implementation::let_force_fall(Device& device) {
   try {
     device.disable_force();
-  } catch (const InUse&) {  // another program has taken over the arm
+  } catch (const InUse&) {  // another program drives the arm now
   }
 }
 
@@ -205,7 +204,7 @@ namespace {
 std::optional<protocol::SelfTestReport> self_test_of(Device& device) {
   try {
     return device.read_self_test();
-  } catch (const Stalled&) {  // then the generic fault text is used
+  } catch (const Stalled&) {  // the caller then uses the generic fault text
     return std::nullopt;
   }
 }
@@ -242,7 +241,7 @@ std::int64_t Session::Implementation::noticed_at_periods(Device& device, const P
     if (box.fault == pose.fault && box.is_restart == 0 && fault_periods <= pose.time_periods &&
         (!before_periods || fault_periods > *before_periods))
       return fault_periods;
-  } catch (const Stalled&) {  // then the pose provides the time
+  } catch (const Stalled&) {  // the pose then provides the time
   }
   return pose.time_periods;
 }
@@ -266,8 +265,7 @@ void Session::Implementation::send_requests(Device& device) {
     restore_defaults = false;
     if (!changes.empty()) transact(device, [&device, &wanted = changes] { return device.set_parameters(wanted); });
   } catch (const Stalled&) {
-    // The board would refuse the same request again, so the request is discarded. Requests that were not sent yet stay
-    // queued.
+    // The board refused the request and would refuse it again. Only this request is discarded.
     if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
     put_back(std::move(taken.parameters));
     throw;
@@ -452,7 +450,7 @@ void Session::Implementation::scope_loop() {
       }
     } catch (const Error&) {
       const std::lock_guard lock(mutex);
-      if (shared_device == reading) lost = true;  // the report thread reconnects, unless it already has
+      if (shared_device == reading) lost = true;  // the report thread may have reconnected already
     }
   }
 }

@@ -1,4 +1,4 @@
-// The two threads of a session and their shared state.
+// Threads and shared state of a session.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ struct QueuedCommand {
 
 enum class StoreTask : std::uint8_t { store, forget };
 
-/// Requests of the caller, not yet sent by the report thread.
+/// Requests that are waiting for the report thread.
 struct Requests {
   std::vector<QueuedCommand> commands;
   ParameterRequests parameters;
@@ -39,24 +39,25 @@ struct Session::Implementation {
   void serve(const std::shared_ptr<Device>& served);
   void take_pose(const Pose& pose, std::optional<std::int64_t>& sequence);
   void note_events(const std::optional<Pose>& before, const Pose& pose);
-  /// Logs the losses of one rate window as one event, so that a bad cable does not fill the log. Requires the mutex.
+  /// Logs all losses of one rate window as one event, because a bad cable could fill the log. Requires the mutex.
   void note_losses(std::int64_t at_periods);
-  /// `before_periods`: time of the previous pose, if any.
+  /// `before_periods` is the time of the previous pose, if any.
   void follow_fault(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
-  /// Reads the exact period of the fault from the black box, unless the black box still contains an older fault.
+  /// Returns the period of the fault from the black box. If the black box contains another fault, returns the time of
+  /// the pose.
   static std::int64_t noticed_at_periods(Device& device, const Pose& pose, std::optional<std::int64_t> before_periods);
   void send_requests(Device& device);
-  /// A refusal by the board is shown to the user and does not close the connection.
+  /// Shows a refusal to the user. A refusal does not close the connection.
   void carry_out(Device& device, const QueuedCommand& queued);
   void take_over(Device& device);
   void show_problem(const InUse& error);
-  /// Fades the force out when a session that drives the arm closes, so that the board does not raise a fault.
+  /// Fades the force out before a session closes. Otherwise the board would raise a fault.
   void let_force_fall(Device& device);
-  /// Releases the arm after this session has not needed it for some time.
+  /// Releases the arm if this session has not used it recently.
   void release_idle(Device& device, const Pose& pose);
-  /// Queues unsent requests for the next connection, ahead of newer requests.
+  /// Queues unsent requests again before newer requests.
   void put_back(ParameterRequests unsent);
-  /// A refusal by the board is shown to the user and does not close the connection.
+  /// Shows a refusal to the user. A refusal does not close the connection.
   void carry_out(Device& device, StoreTask task);
   void select(Device& device, const std::vector<protocol::Signal>& selection);
   template <class Transaction>
@@ -81,15 +82,14 @@ struct Session::Implementation {
     ++revision;
   }
   void refresh_parameters(Device& device);
-  /// Only counters and motor heat are updated.
   void refresh_information(Device& device);
   void refresh_driver(Device& device);
-  /// The stored values change only together with the record count.
+  /// Reads the stored values only if the report has changed.
   void refresh_store(Device& device);
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
   void set_connection(Connection connection, const std::string& message, const std::string& board_name = {});
   void forget_device();
-  /// Requires the mutex. Without a device the request is dropped, because the request might reach another device later.
+  /// Requires the mutex. Ignores the request if no device is connected.
   void queue_store_task(StoreTask task);
 
   // ---- scope thread
@@ -107,9 +107,9 @@ struct Session::Implementation {
   std::optional<Pose> newest;
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
-  std::int64_t claimed_at_periods = 0;    ///< time at which this session last needed the arm
+  std::int64_t claimed_at_periods = 0;    ///< time when this session last needed the arm
   std::string served_serial_number;       ///< of the current or last device
-  std::int64_t served_until_periods = 0;  ///< time of its newest pose
+  std::int64_t served_until_periods = 0;  ///< time of the newest pose from this device
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;
@@ -119,7 +119,7 @@ struct Session::Implementation {
   std::vector<protocol::Signal> signals;
   bool scope_denied = false;  ///< another program uses the scope
   std::function<void(const ScopeSamples&)> receive_scope;
-  std::thread report_thread, scope_thread;  ///< last: the threads use all other members
+  std::thread report_thread, scope_thread;  ///< declared last, because the threads use all other members
 };
 
 }  // namespace inkwell::device

@@ -19,15 +19,15 @@
 namespace inkwell::device {
 namespace {
 
-/// systemd-inhibit blocks sleep while `cat` runs. `cat` exits when the other end of the pipe is closed.
+/// systemd-inhibit prevents sleep while `cat` runs. `cat` exits when its input pipe is closed.
 constexpr std::array<const char*, 6> inhibitor_command{"systemd-inhibit", "--what=sleep:idle",
                                                        "--who=Inkwell",   "--why=The force of the haptic arm is on",
                                                        "--mode=block",    "cat"};
 
 class SpawnAttributes {
  public:
-  /// The child runs in a separate session, so that Ctrl-C does not stop the child and the child cannot ask for a
-  /// password on the terminal. The child does not inherit the program's signal handling.
+  /// Runs the child in a separate session. Ctrl-C then does not stop the child, and the child cannot ask for a password
+  /// on the terminal. Restores the default signal handling for the child.
   SpawnAttributes() {
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;
@@ -46,7 +46,7 @@ class SpawnAttributes {
   posix_spawnattr_t attributes_{};
 };
 
-/// Returns the child, or 0 if it cannot be started.
+/// Returns the process number of the child, or 0 if the child cannot be started.
 pid_t spawn(int input) {
   SpawnActions actions;
   posix_spawn_file_actions_adddup2(actions.get(), input, STDIN_FILENO);
@@ -75,9 +75,9 @@ class RunningInhibitor {
     child_ = spawn(from_here.number());
   }
   ~RunningInhibitor() {
-    // The program may have reaped all its children. The process number may then belong to another process.
+    // If the program has already reaped the child, its process number may belong to another process.
     if (child_ != 0 && waitpid(child_, nullptr, WNOHANG) == 0) {
-      kill(child_, SIGKILL);  // the child may wait for logind
+      kill(child_, SIGKILL);  // the child may still wait for logind
       while (waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
       }
     }
@@ -87,15 +87,15 @@ class RunningInhibitor {
 
  private:
   local::Descriptor to_child_;
-  process::OwnDescriptor own_;  ///< otherwise a forked child would keep the inhibitor active
+  process::OwnDescriptor own_;  ///< closes the pipe in forked children
   pid_t child_ = 0;
 };
 
-/// This thread inherits the priority of its creator, which may be a real-time thread.
+/// Resets the priority and blocks signals, because a new thread inherits both from its creator.
 void become_ordinary_thread() {
   sigset_t all;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, nullptr);  // other threads of the program handle signals
+  pthread_sigmask(SIG_SETMASK, &all, nullptr);  // signals are handled by other threads
   const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
   const sched_param ordinary{};
   if (policy == SCHED_FIFO || policy == SCHED_RR) sched_setscheduler(0, SCHED_OTHER, &ordinary);
@@ -107,7 +107,7 @@ void become_ordinary_thread() {
 
 SleepInhibitor::~SleepInhibitor() {
   if (!origin_.is_here()) {
-    static_cast<void>(thread_.release());  // the thread does not exist in the child
+    static_cast<void>(thread_.release());  // the thread does not run in a forked child
     return;
   }
   if (!thread_) return;
@@ -120,7 +120,7 @@ void SleepInhibitor::prepare() {
   std::call_once(is_prepared_, [this] {
     try {
       thread_ = std::make_unique<std::thread>([this] { serve(); });
-    } catch (const std::system_error&) {  // without the thread there is no inhibitor
+    } catch (const std::system_error&) {  // without the thread, sleep is not prevented
     }
   });
 }

@@ -1,5 +1,5 @@
-// Prevents computer sleep while the force is on. A suspended computer would send no sign of life, and the board would
-// raise a fault.
+// Prevents computer sleep while the force is on. A sleeping computer sends no heartbeats, so the board would raise a
+// fault.
 #pragma once
 
 #include <atomic>
@@ -11,20 +11,20 @@
 
 namespace inkwell::device {
 
-/// One logind inhibitor, held by the program systemd-inhibit. If that program is missing or logind refuses, the
-/// computer may sleep. The inhibitor is released whenever the process exits.
+/// Runs the program systemd-inhibit. The computer may still sleep if that program is missing or logind refuses the
+/// request. The computer may sleep again when this process exits.
 class SleepInhibitor {
  public:
   SleepInhibitor() = default;
-  /// Releases the inhibitor. A forked child does not release the parent's inhibitor.
+  /// Releases the inhibitor, except in a forked child.
   ~SleepInhibitor();
   SleepInhibitor(const SleepInhibitor&) = delete;
   SleepInhibitor& operator=(const SleepInhibitor&) = delete;
 
-  /// Starts the thread that follow() needs. Only the first call has an effect. Any thread may call this function.
+  /// Starts the thread for follow(). Later calls have no effect. Any thread may call this function.
   void prepare();
-  /// Acquires or releases the inhibitor asynchronously. Any thread may call this function. Has no effect before
-  /// prepare() was called, or in a forked child.
+  /// Acquires or releases the inhibitor asynchronously. Has no effect before prepare() or in a forked child. Any thread
+  /// may call this function.
   void follow(bool is_wanted) { request(is_wanted ? Request::hold : Request::release); }
 
  private:

@@ -19,7 +19,7 @@ namespace inkwell::device {
 
 namespace {
 
-/// A signal interrupts connect(), but the connection attempt continues.
+/// If a signal interrupts connect(), this function waits for the connection.
 bool has_connected(int descriptor, const addrinfo& address) {
   if (connect(descriptor, address.ai_addr, address.ai_addrlen) == 0) return true;
   if (errno != EINTR) return false;
@@ -33,7 +33,7 @@ bool has_connected(int descriptor, const addrinfo& address) {
   return reason == 0;
 }
 
-/// On failure the descriptor is not open and errno is set.
+/// If the connection fails, the returned descriptor is not open and errno is set.
 local::Descriptor connect_to_port(const SocketAddress& server) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
@@ -46,7 +46,7 @@ local::Descriptor connect_to_port(const SocketAddress& server) {
   for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
     local::Descriptor descriptor(socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol));
     if (descriptor.is_open() && has_connected(descriptor.number(), *address)) {
-      const int yes = 1;  // requests are small and each is awaited, so low latency matters more than packing
+      const int yes = 1;  // avoids the delay for small requests
       setsockopt(descriptor.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
       return descriptor;
     }

@@ -1,4 +1,4 @@
-// A client connection over TCP or a Unix socket. The destructor closes it.
+// A client connection over TCP or a Unix socket.
 #pragma once
 
 #include <chrono>
@@ -19,20 +19,20 @@ class Socket {
   /// Throws Error if no server answers.
   explicit Socket(const SocketAddress& server);
 
-  /// Sets the longest wait for received bytes. A longer wait throws Error. By default the wait is unlimited.
+  /// Limits the waiting time for received bytes. A time-out throws Error. By default there is no limit.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
 
-  /// send(), receive() and receive_some() throw Disconnected when the peer has closed the connection.
+  /// These functions throw Disconnected after the peer has closed the connection.
   void send(std::span<const std::byte> bytes);
-  void receive(std::span<std::byte> bytes);  ///< fills `bytes`
+  void receive(std::span<std::byte> bytes);  ///< receives until `bytes` is full
   std::size_t receive_some(std::span<std::byte> bytes);
 
-  /// Interrupts a receive() that waits in another thread.
+  /// Interrupts a receive() call of another thread.
   void shut_down();
 
  private:
   local::Descriptor descriptor_;
-  process::OwnDescriptor own_;  ///< otherwise a forked child could shut down the parent's connection
+  process::OwnDescriptor own_;  ///< closes the connection in forked children
   std::string peer_;
 };
 

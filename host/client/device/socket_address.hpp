@@ -1,4 +1,4 @@
-// The address of a USB/IP server or of the control socket of a virtual board.
+// The address of a USB/IP server or control socket.
 #pragma once
 
 #include "host/client/local/socket_address.hpp"

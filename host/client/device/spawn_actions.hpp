@@ -1,4 +1,4 @@
-// Steps of a child process before its program starts (posix_spawn).
+// Actions in a child process before it executes its program (posix_spawn).
 #pragma once
 
 #include <spawn.h>

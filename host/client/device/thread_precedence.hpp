@@ -1,5 +1,4 @@
-// Raises the priority of the threads that send the sign of life, because these threads must run in time on a busy
-// computer.
+// Raises the priority of threads that send heartbeats.
 #pragma once
 
 #include <sys/resource.h>
@@ -7,7 +6,7 @@
 
 namespace inkwell::device {
 
-/// Raises the priority of the calling thread. Without permission the priority does not change.
+/// Raises the priority of the calling thread. Has no effect without permission.
 inline void request_priority() {
   constexpr int precedence = -10;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), precedence);

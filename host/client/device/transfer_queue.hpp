@@ -1,4 +1,4 @@
-// Queue of finished transfers between the receiving thread and the reading thread.
+// A queue between the thread that receives transfers and the thread that reads them.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ class TransferQueue {
     changed_.notify_one();
   }
 
-  /// Queued transfers can still be read. After the last queued transfer, `pop` throws Disconnected with `reason`.
+  /// Queued transfers remain readable. Afterwards, `pop` throws Disconnected with `reason`.
   void close(std::string reason) {
     const std::lock_guard lock(mutex_);
     if (!closed_) closed_ = std::move(reason);

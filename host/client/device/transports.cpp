@@ -27,7 +27,7 @@ std::unique_ptr<Transport> open_transport(const Endpoint& endpoint) {
 }
 
 std::string permission_message(const std::string& path) {
-  // The system's rule file number 73 applies uaccess, so the number of this file must be lower than 73.
+  // The file number must be lower than 73, because the system's rule file 73 applies uaccess.
   return fmt::format(
       "You have no permission to open the arm at {}. Install Inkwell's package, which contains the udev rule, and plug "
       "the arm in again. Without the package, first write this line into /etc/udev/rules.d/60-inkwell.rules: {}",

@@ -1,4 +1,4 @@
-// The two kinds of transport. open_transport() selects one.
+// Selects one of the two transports.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace inkwell::device {
 
 inline constexpr char unplugged[] = "The device was unplugged. Connect the device again.";
 
-/// Pending scope transfers. 128 KiB last more than 100 ms on a full-speed bus.
+/// Number of pending scope transfers. They have 128 KiB, which a full-speed bus needs more than 100 ms to fill.
 inline constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
-/// Unread scope frames: 4 MiB.
+/// Largest number of unread scope frames (4 MiB).
 inline constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
 
 inline constexpr char scope_in_use[] =
@@ -23,7 +23,7 @@ inline constexpr char scope_in_use[] =
 std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint);
 std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint);
 
-/// The message for a user who may not open the device, with the required udev rule.
+/// Returns the message and the udev rule for a user without permission to open the device.
 std::string permission_message(const std::string& path);
 
 }  // namespace inkwell::device

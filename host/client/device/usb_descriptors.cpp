@@ -31,7 +31,7 @@ UsbLayout parse_configuration(std::span<const std::byte> descriptor) {
     } else if (at(1) == type_endpoint && length >= 7) {
       const std::uint8_t address = at(2), transfer = at(3) & 3u;
       const bool is_in = (address & 0x80u) != 0;
-      // Uses the first HID interface, because the second HID interface is the game controller.
+      // The second HID interface is the game controller, so only the first HID interface is used.
       const bool has_hid = layout.hid_in_endpoint != 0 || layout.hid_out_endpoint != 0;
       if (interface_class == class_hid && transfer == transfer_interrupt &&
           (!has_hid || interface_number == layout.hid_interface)) {

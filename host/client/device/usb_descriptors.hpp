@@ -8,24 +8,22 @@
 
 namespace inkwell::device {
 
-/// Numbers of the HID and scope interfaces and their endpoints.
 struct UsbLayout {
   std::uint8_t configuration = 0;
   std::uint8_t hid_interface = 0;
-  std::uint8_t hid_in_endpoint = 0;  ///< including the direction bit
+  std::uint8_t hid_in_endpoint = 0;  ///< includes the direction bit
   std::uint8_t hid_out_endpoint = 0;
   std::uint8_t scope_interface = 0;
-  std::uint8_t scope_in_endpoint = 0;  ///< including the direction bit
+  std::uint8_t scope_in_endpoint = 0;  ///< includes the direction bit
 };
 
-/// Throws Error if the descriptor is damaged, or if the HID interface or the scope interface is missing.
+/// Throws Error if the descriptor is damaged or a required interface is missing.
 UsbLayout parse_configuration(std::span<const std::byte> descriptor);
 
-/// The text of a string descriptor. Characters outside ASCII become '?'.
+/// Returns the text of a string descriptor. Replaces characters outside ASCII by '?'.
 std::string parse_string(std::span<const std::byte> descriptor);
 
-/// String index of the name of an alternate setting; 0 if the setting has no name. Parsing stops at a damaged
-/// descriptor.
+/// Returns the string index of an alternate setting's name, or 0 without a name. Parsing stops at the first error.
 std::uint8_t name_of_alternate(std::span<const std::byte> configuration, std::uint8_t interface,
                                std::uint8_t alternate);
 
@@ -48,7 +46,7 @@ constexpr Setup get_descriptor(DescriptorType type, std::uint8_t index, std::uin
 }
 constexpr Setup set_configuration(std::uint8_t configuration) { return {0x00, 9, configuration, 0, 0}; }
 
-/// HID 1.11, section 7.2: the high byte 3 of wValue selects a feature report.
+/// The value 3 in the high byte of wValue selects a feature report (HID 1.11, section 7.2).
 constexpr Setup get_feature_report(std::uint8_t interface, std::uint8_t id, std::uint16_t length) {
   return {0xA1, 0x01, static_cast<std::uint16_t>(0x0300 | id), interface, length};
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr char no_libusb[] = "libusb cannot be initialized. Check that /dev/bus/usb exists.";
 constexpr char open_elsewhere[] = "The device is open in another program. Close that program.";
 
-/// Opens each device with these identifiers and passes its serial number and handle to `take`. If `take` returns false,
-/// the handle is closed. Returns the error code of the last device that could not be opened, or 0.
+/// Opens each device with these identifiers and calls `take` with its serial number and handle. Closes the handle if
+/// `take` returns false. Returns 0, or the error code of the last device that could not be opened.
 template <class Take>
 int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t product_id, Take take) {
   libusb_device** list = nullptr;
@@ -35,8 +35,7 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
     std::array<unsigned char, 128> serial{};
     const int length =
         libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-    // Serial numbers from hidapi are also converted to plain text, so that both kinds of serial numbers can be
-    // compared.
+    // The conversion makes serial numbers from libusb and hidapi comparable.
     const std::string found = protocol::plain_text(
         {reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0))});
     if (!take(found, handle)) libusb_close(handle);
@@ -45,8 +44,7 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
   return reason;
 }
 
-/// True if the error code shows that the device is connected but cannot be opened. Other error codes show that the
-/// device is gone.
+/// Returns true if the device is connected but cannot be opened.
 bool shows_closed_device(int reason) {
   return reason == LIBUSB_ERROR_ACCESS || reason == LIBUSB_ERROR_NOT_SUPPORTED || reason == LIBUSB_ERROR_NOT_FOUND;
 }

@@ -1,4 +1,4 @@
-// An open libusb device, found by its identifiers and serial number.
+// Opens a libusb device by its identifiers and serial number.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ struct libusb_device_handle;
 
 namespace inkwell::device {
 
-/// Context and handle. The destructor releases all claimed interfaces.
+/// The destructor releases all claimed interfaces.
 class UsbHandle {
  public:
-  /// Throws NoPermission, InUse, or Error. Throws Disconnected if no such device is connected.
+  /// Throws NoPermission, InUse, or Error. Throws Disconnected if no matching device is connected.
   UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const std::string& serial_number);
   ~UsbHandle();
   UsbHandle(const UsbHandle&) = delete;
@@ -32,10 +32,10 @@ class UsbHandle {
   libusb_context* context_ = nullptr;
   libusb_device_handle* handle_ = nullptr;
   std::vector<int> claimed_;
-  std::vector<process::OwnDescriptor> own_;  ///< otherwise a forked child would keep the interfaces claimed
+  std::vector<process::OwnDescriptor> own_;  ///< closes the interfaces in forked children
 };
 
-/// Serial numbers of the connected devices. Throws NoPermission or InUse if one of these devices cannot be opened.
+/// Returns the serial numbers of the connected devices. Throws NoPermission or InUse if a device cannot be opened.
 std::vector<std::string> usb_serial_numbers(std::uint16_t vendor_id, std::uint16_t product_id);
 
 }  // namespace inkwell::device

@@ -25,10 +25,9 @@ namespace {
 
 namespace identity = protocol::usb;
 
-/// Usage page of the interface for poses and commands; the game controller interface has another usage page.
+/// The game controller interface has another usage page.
 constexpr unsigned short vendor_usage_page = 0xFF00;
 
-/// Largest feature report that the device declares.
 constexpr std::size_t feature_report_maximum = protocol::longest_report(protocol::ReportKind::feature);
 
 std::string narrow(const wchar_t* text) {
@@ -37,7 +36,7 @@ std::string narrow(const wchar_t* text) {
   return protocol::plain_text(result);
 }
 
-/// Reads the bulk interface through libusb. The HID interface remains with the kernel driver, which hidapi uses.
+/// Reads the bulk interface through libusb. hidapi uses the HID interface through the kernel driver.
 class BulkReader {
  public:
   BulkReader(const std::string& serial_number, TransferQueue& queue)
@@ -125,7 +124,7 @@ class BulkReader {
   std::thread thread_;
 };
 
-/// hidapi functions without a handle argument share one error text.
+/// All hidapi functions without a handle argument share one error text.
 std::mutex hidapi_mutex;
 const process::HeldAtFork hidapi_at_fork(hidapi_mutex);
 
@@ -143,14 +142,14 @@ bool is_listed(const std::string& path) {
   return false;
 }
 
-/// One of several handles of a device. hidapi stores the error text per handle, so each thread needs a separate handle.
+/// hidapi stores one error text per handle, so each thread needs a separate handle.
 class HidHandle {
  public:
   explicit HidHandle(const std::string& path) : device_(open(path), &hid_close) {}
 
   struct Result {
     int length;          ///< negative after a failure
-    std::string detail;  ///< the text of the failure
+    std::string detail;  ///< error text after a failure
   };
   template <class Call>
   Result call(Call call) {
@@ -184,7 +183,7 @@ class UsbTransport : public Transport {
     const auto result = inputs_.call([&](hid_device* device) {
       return hid_read_timeout(device, data(report), report.size(), static_cast<int>(timeout.count()));
     });
-    if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // a device does not refuse reads
+    if (result.length < 0) throw Disconnected(with_detail(unplugged, result.detail));  // only after a disconnection
     return static_cast<std::size_t>(result.length);
   }
   void write_report(std::span<const std::byte> report) override {
@@ -220,7 +219,7 @@ class UsbTransport : public Transport {
     return reinterpret_cast<const unsigned char*>(bytes.data());
   }
 
-  /// Windows requires a buffer of the largest feature report size; other systems accept this size.
+  /// Windows requires a buffer with the size of the largest feature report.
   HidHandle::Result request_feature(std::uint8_t id, std::span<std::byte> buffer) {
     buffer[0] = std::byte{id};
     return features_.call(
@@ -235,8 +234,8 @@ class UsbTransport : public Transport {
     throw Disconnected(with_detail(unplugged, result.detail));
   }
 
-  /// hidapi does not distinguish a refusal from an unplugged device. A connected device can refuse one request and
-  /// still answer another request. An unplugged device soon disappears from the system's list.
+  /// Distinguishes a refusal from a disconnection. A connected device still answers the information request, or it
+  /// remains in the system's device list.
   bool is_present() {
     constexpr int attempts = 10;
     std::array<std::byte, feature_report_maximum> buffer;
@@ -253,7 +252,7 @@ class UsbTransport : public Transport {
   Endpoint endpoint_;
   HidHandle inputs_, outputs_, features_;
   TransferQueue bulk_;
-  std::unique_ptr<BulkReader> scope_;  ///< set while the scope is claimed
+  std::unique_ptr<BulkReader> scope_;  ///< exists while the scope is claimed
 };
 
 }  // namespace
@@ -266,7 +265,7 @@ std::vector<Endpoint> find_usb_devices() {
   std::vector<Endpoint> endpoints;
   const auto list = list_devices();
   for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
-    // Other private projects use the same USB test identifiers, so the product name is checked.
+    // Other products use the same USB test identifiers.
     const std::string product = narrow(device->product_string);
     if (product != identity::product || device->usage_page != vendor_usage_page) continue;
     endpoints.push_back({Endpoint::Kind::usb, narrow(device->serial_number), product, device->path, "", 0});

@@ -1,4 +1,4 @@
-// Parses the answers of a USB/IP server. The caller supplies the bytes.
+// Parses the answers of a USB/IP server.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace inkwell::device {
 
-/// Fills the span with the next bytes from the server. Throws Error if the bytes do not arrive.
+/// Fills the span with received bytes. Throws Error if the bytes do not arrive.
 using ReceiveBytes = std::function<void(std::span<std::byte>)>;
 
 template <class Message>
@@ -32,13 +32,13 @@ struct UsbipDevice {
   std::uint16_t product_id = 0;
 };
 
-/// A longer list is refused, so that a server cannot make this program receive indefinitely.
+/// A server cannot make this program receive indefinitely, because a longer list is refused.
 inline constexpr std::uint32_t listed_devices_maximum = 256;
-/// Receives the device list. Throws Error if the server is not a USB/IP server.
+/// Receives the device list. Throws Error if the peer is not a USB/IP server.
 std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive);
 
-/// Receives the answer to an import request: the device id for transfers, or none if the device is unavailable. Throws
-/// the errors of receive_device_list().
+/// Receives the answer to an import request. Returns the device id for transfers, or std::nullopt if the device is not
+/// available. Throws Error if the peer is not a USB/IP server.
 std::optional<std::uint32_t> receive_import(const ReceiveBytes& receive);
 
 struct UsbipCompletion {
@@ -54,28 +54,28 @@ struct UsbipTransfer {
   OnUsbipCompletion on_completion;
 };
 
-/// The unanswered transfers. Not thread-safe.
+/// Transfers without an answer. Not thread-safe.
 class OpenTransfers {
  public:
   void add(std::uint32_t sequence, UsbipTransfer transfer) { transfers_.emplace(sequence, std::move(transfer)); }
   bool contains(std::uint32_t sequence) const { return transfers_.contains(sequence); }
-  /// The server may already have answered the transfer, so the transfer stays open until the unlink is answered.
+  /// The transfer stays open until the server has answered the unlink request, because its own answer may already be on
+  /// the way.
   void unlink(std::uint32_t unlink_sequence, std::uint32_t sequence) { unlinks_.emplace(unlink_sequence, sequence); }
 
-  /// Returns the number of data bytes after an answer. Throws Disconnected if the answer belongs to no open transfer.
+  /// Returns the number of data bytes that follow the answer. Throws Disconnected if no open transfer belongs to the
+  /// answer.
   std::size_t data_length_of(const usbip::ReturnSubmit& answer) const;
-  /// A completed transfer.
   struct Ended {
     OnUsbipCompletion on_completion;
     UsbipCompletion completion;
   };
   std::optional<Ended> take(const usbip::ReturnSubmit& answer, std::vector<std::byte> data);
-  /// Removes and returns all open transfers.
   std::vector<UsbipTransfer> take_all();
 
  private:
   std::unordered_map<std::uint32_t, UsbipTransfer> transfers_;
-  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< unlink sequence to transfer sequence
+  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< maps an unlink sequence to its transfer sequence
 };
 
 }  // namespace inkwell::device

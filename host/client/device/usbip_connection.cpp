@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Time limit until the import. A peer that is not a USB/IP server may never answer.
+/// A peer that is not a USB/IP server may never answer.
 constexpr auto reply_timeout = 3s;
 
 ReceiveBytes from(Socket& socket) {
@@ -49,7 +49,7 @@ UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string&
                     "the other program, or plug the cable in.",
                     bus_id, server.text()));
   device_ = *device;
-  socket_.wait_at_most(std::nullopt);  // after the import, silence only means that the device has no data
+  socket_.wait_at_most(std::nullopt);  // an imported device may send no data for a long time
 }
 
 UsbipConnection::~UsbipConnection() { close(); }
@@ -116,7 +116,7 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
     std::condition_variable changed;
     std::optional<Completion> completion;
   };
-  const auto waiting = std::make_shared<Waiting>();  // outlives this call if the answer arrives after the time-out
+  const auto waiting = std::make_shared<Waiting>();  // outlives this call after a time-out
   const auto sequence = submit(direction, 0, &setup, setup.length, data, [waiting](Completion completion) {
     const std::lock_guard lock(waiting->mutex);
     waiting->completion = std::move(completion);
@@ -171,7 +171,7 @@ void UsbipConnection::receive_answers() {
   for (const auto& transfer : abandoned) transfer.on_completion({-ENODEV, 0, {}});
 }
 
-/// The server closes the connection when the device disappears, and when the server exits.
+/// The server closes the connection when the device disappears or the server exits.
 void UsbipConnection::receive(std::span<std::byte> bytes) {
   try {
     socket_.receive(bytes);
@@ -182,8 +182,7 @@ void UsbipConnection::receive(std::span<std::byte> bytes) {
 
 void UsbipConnection::receive_answer() {
   const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
-  // The transfer stays open until its answer is complete. If the connection fails before that, the waiting call fails
-  // too.
+  // The transfer stays open until its answer is complete. If the connection fails earlier, the waiting call also fails.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);

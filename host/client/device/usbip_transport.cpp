@@ -22,11 +22,10 @@ using namespace std::chrono_literals;
 namespace identity = protocol::usb;
 
 constexpr int report_transfers = 32;
-constexpr std::size_t reports_kept = 1024;  // one second; then the oldest are dropped, which the sequence shows
+constexpr std::size_t reports_kept = 1024;  // poses of one second; a full queue drops the oldest report
 constexpr std::size_t writes_under_way = 16;
 constexpr std::size_t writes_in_lock_step = 1024;
-// A device counts as refusing commands if a command stays pending for this number of reports (one second of board
-// time), or for this wall time without reports.
+// A pending command is considered refused after this number of reports, or after this wall time without reports.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
 constexpr char takes_no_commands[] = "The device accepts no commands, although it sends poses. Reset the board.";
@@ -102,7 +101,7 @@ class UsbipTransport : public Transport {
       scope_claimed_ = true;
       request_bulk();
     }
-    // The server answers in order, so a refusal of the bulk request arrives before the answer to this request.
+    // The server answers in order. Its refusal of the bulk request therefore arrives before the answer to this request.
     try {
       carry_out([&] { connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18)); });
     } catch (...) {
@@ -117,8 +116,7 @@ class UsbipTransport : public Transport {
     for (int i = 1; i < bulk_transfers; ++i) request_bulk();
   }
 
-  /// The server releases the scope when a transfer was canceled and no transfer is pending. Completed transfers alone
-  /// do not release the scope.
+  /// The server releases the scope only after a transfer was canceled and no transfer is pending.
   void release_scope() override {
     std::unique_lock lock(bulk_mutex_);
     if (!std::exchange(scope_claimed_, false)) return;
@@ -148,9 +146,8 @@ class UsbipTransport : public Transport {
   bool is_in_lock_step() const { return endpoint_.lock_step != nullptr; }
   bool is_report_to_come() const { return reports_requested_ > 0 || reports_.size() > 0; }
 
-  /// Executes a control transfer. In lock step, board time passes during the transfer only while a report is requested.
-  /// The thread that reads reports cannot request a report during its own transfer, so this function requests the
-  /// report.
+  /// Executes a control transfer. In lock step, board time passes only while a report is requested. The thread that
+  /// reads reports cannot request one during its control transfer, so this function requests a report.
   template <class Transfer>
   std::invoke_result_t<Transfer> carry_out(Transfer transfer) {
     const bool is_out_of_step = is_in_lock_step() && reads_reports_ && !endpoint_.lock_step->is_in_step();
@@ -183,7 +180,7 @@ class UsbipTransport : public Transport {
   bool accepts_no_writes() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
 
   void wait_for_room(std::unique_lock<std::mutex>& lock) {
-    if (is_in_lock_step()) {  // waiting here might prevent the thread that reads reports from letting time pass
+    if (is_in_lock_step()) {  // A wait could block the thread that lets board time pass.
       if (lost_) throw Disconnected(unplugged);
       if (writes_ >= writes_in_lock_step)
         throw Error(
@@ -221,7 +218,6 @@ class UsbipTransport : public Transport {
     });
   }
 
-  /// Requires bulk_mutex_.
   void request_bulk() {
     const auto slot = bulk_under_way_.insert(bulk_under_way_.end(), 0);
     try {
@@ -250,12 +246,12 @@ class UsbipTransport : public Transport {
     if (!scope_claimed_) return;
     if (!done.data.empty()) bulk_.push(std::move(done.data));
     if (bulk_.size() < bulk_kept) return retry([this] { request_bulk(); });
-    // A virtual board waits for a streaming host that is silent, because the computer may be busy. The board does not
-    // wait for a host that cancels a request.
+    // A virtual board waits for a silent host, because the computer may be busy. The board does not wait after a
+    // canceled transfer.
     if (bulk_owed_++ == 0 && !bulk_under_way_.empty()) retry([this] { connection_.unlink(bulk_under_way_.back()); });
   }
 
-  /// Submitting from the receiving thread fails when the connection has failed. `lose` reports this failure.
+  /// Ignores a failed connection, because `lose` reports the failure.
   template <class Retried>
   void retry(Retried retried) {
     try {
@@ -288,24 +284,24 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
-  std::atomic<int> reports_requested_ = 0;  ///< pending requests
+  std::atomic<int> reports_requested_ = 0;  ///< number of pending requests
   std::atomic<bool> reads_reports_ = false;
   std::atomic<int> requests_out_of_step_ = 0;
   std::mutex bulk_mutex_;  ///< guards the next seven members
   std::condition_variable bulk_changed_;
   bool scope_claimed_ = false;
   bool bulk_denied_ = false;                 ///< another program has claimed the scope
-  bool bulk_lost_ = false;                   ///< the device is gone
-  bool bulk_taken_back_ = false;             ///< a transfer was canceled since the release was requested
-  int bulk_owed_ = 0;                        ///< transfers that are not pending because the reader is late
-  std::list<std::uint32_t> bulk_under_way_;  ///< sequences of the pending transfers, newest last
+  bool bulk_lost_ = false;                   ///< the device was disconnected
+  bool bulk_taken_back_ = false;             ///< a transfer was canceled after the request to release the scope
+  int bulk_owed_ = 0;                        ///< transfers to submit after the reader has read more data
+  std::list<std::uint32_t> bulk_under_way_;  ///< sequence numbers of the pending transfers, newest last
   std::mutex writes_mutex_;
   std::condition_variable writes_changed_;
   std::size_t writes_ = 0;
-  unsigned reports_since_taken_ = 0;  ///< while a write is pending
+  unsigned reports_since_taken_ = 0;
   std::uint64_t reports_come_ = 0;
   bool lost_ = false;
-  UsbipConnection connection_;  ///< last: its thread uses all other members
+  UsbipConnection connection_;  ///< declared last, because its thread uses all other members
 };
 
 }  // namespace
@@ -314,7 +310,7 @@ std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint) {
   return std::make_unique<UsbipTransport>(endpoint);
 }
 
-// The virtual board's USB/IP server reports this device path.
+// Device path that the USB/IP server of a virtual board reports.
 constexpr char virtual_board_path[] = "/inkwell_virtual_board/";
 
 std::vector<Endpoint> find_usbip_devices(const SocketAddress& server) {

@@ -56,7 +56,7 @@ struct Pipe {
   }
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
-  /// Call this after the board has inherited the write end of the pipe.
+  /// Call this after the board has inherited the write end.
   void keep_read_end() {
     close_write_end();
     own = process::OwnDescriptor(read_end);
@@ -99,7 +99,8 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   return arguments;
 }
 
-/// The board of the firmware in a flash file; empty if the file has no firmware for a known board.
+/// Returns the board name of the firmware in a flash file. Returns an empty text if the firmware or its board is
+/// unknown.
 std::string board_in(const std::filesystem::path& flash) {
   std::ifstream file(flash, std::ios::binary);
   protocol::ImageIdentity identity{};
@@ -118,7 +119,7 @@ std::filesystem::path firmware_for(const std::string& name) {
   return installation::firmware(board::image_name(*facts));
 }
 
-/// Parses the line that the program prints when it is ready; false for any other line.
+/// Parses the line that a ready board prints. Returns false for any other line.
 bool read_addresses(const std::string& line, SocketAddress& usbip, SocketAddress& control) {
   std::istringstream words(line);
   std::string ready, usbip_word, control_word;
@@ -142,7 +143,7 @@ struct VirtualBoard::Implementation {
   SocketAddress usbip, control;
   std::thread drain;
   mutable std::mutex mutex;
-  std::string newest_log;  ///< the last few kilobytes, for error messages
+  std::string newest_log;  ///< the last kilobytes of the log, for error messages
   bool exited = false;
   int exit_status = 0;
 
@@ -154,7 +155,7 @@ struct VirtualBoard::Implementation {
     process = fork();
     if (process < 0) throw Error("The virtual board cannot be started: the system allows no more processes.");
     if (process == 0) {
-      // Ctrl-C in the terminal must reach only the companion, which then stops the board.
+      // Ctrl-C in the terminal must not stop the board before the companion does.
       setpgid(0, 0);
       prctl(PR_SET_PDEATHSIG, SIGTERM);
       if (getppid() != parent) _exit(1);  // the parent has already exited
@@ -168,7 +169,7 @@ struct VirtualBoard::Implementation {
     drain = std::thread([this] { read_log(); });
   }
 
-  /// A full pipe would block the board, so its log is read while the board runs.
+  /// Reads the log continuously, because a full pipe would block the board.
   void read_log() {
     std::array<char, 4096> chunk;
     for (;;) {
@@ -213,7 +214,7 @@ struct VirtualBoard::Implementation {
     remove_stale_folders();
   }
 
-  /// Removes the sockets and the folder of a board that was killed.
+  /// Removes the sockets and the folder that a killed board leaves.
   void remove_stale_folders() {
     for (const auto& socket : {usbip, control}) {
       struct stat status {};
