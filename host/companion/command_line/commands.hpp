@@ -16,10 +16,10 @@
 
 namespace inkwell::command_line {
 
-/// Opens the window. Replays the recording, unless the file name is empty. Returns the exit code.
+/// Opens the window and returns the exit code. An empty file name disables the replay.
 using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
-/// Arguments of the functions that add commands.
+/// Arguments of the add_NAME_command() functions.
 struct Place {
   CLI::App& program;
   const DeviceOptions& device;
@@ -53,14 +53,13 @@ struct Place {
 INKWELL_COMMANDS(X)
 #undef X
 
-/// Adds the commands that are now in another program. Each one only reports its new name.
+/// Adds the moved commands, which only report their new names.
 void add_moved_commands(CLI::App& program);
 
-/// Adds the window options. Returns the function for commands that open the window.
+/// Adds the window options. Returns a function that opens the window.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
-/// Throws UsageError if a window option was given with a command that opens no window. Otherwise the program would
-/// ignore the option, including an invalid value.
+/// Throws UsageError if the user combines a window option with a command that opens no window.
 void refuse_window_options_in_vain(const CLI::App& program);
 
 }  // namespace inkwell::command_line

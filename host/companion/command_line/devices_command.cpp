@@ -33,8 +33,7 @@ struct Listed {
   std::string board;  ///< empty: not reported by the firmware, or the device did not answer
 };
 
-/// Devices that do not answer are also listed. Firmware with a different protocol version also answers the information
-/// request.
+/// The list includes devices that do not answer. The information request works with every protocol version.
 Listed query_arm(const Endpoint& endpoint) {
   Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};
   try {

@@ -37,7 +37,7 @@ bool has_crash(const BlackBoxReport& box) { return box.crash.exception != 0; }
 
 using Image = std::optional<crash::FirmwareImage>;
 
-/// Returns the image from --elf. Throws an error if the crashed firmware is a different image.
+/// Returns the image from --elf. Throws an error if the image differs from the crashed firmware.
 Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
   if (options.elf.empty()) return std::nullopt;
   crash::FirmwareImage image(options.elf);
@@ -125,7 +125,7 @@ int show_fault(const DeviceOptions& device_options, const FaultOptions& options)
   return 0;
 }
 
-/// Waits until the black box is complete. Recording takes 0.1 s of board time.
+/// Waits until the black box is complete.
 BlackBoxReport complete_black_box(device::Device& device) {
   constexpr std::int64_t patience_periods = protocol::servo_rate_Hz;
   const std::int64_t begin_periods = next_pose(device).time_periods;

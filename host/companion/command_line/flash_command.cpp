@@ -116,7 +116,7 @@ int flash(const DeviceOptions& options, FlashOptions given) {
   if (!given.board.empty()) {
     given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
   } else if (given.image.empty()) {
-    // There is no default image, because an image for the wrong board drives the wrong pins.
+    // The program requires an explicit image, because an image for the wrong board drives the wrong pins.
     if (given.by_probe && std::size(board::known_boards) > 1)
       throw UsageError(
           fmt::format("A debug probe cannot identify the board. Name the image, or choose the board with --board: {}.",

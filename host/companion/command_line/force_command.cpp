@@ -41,8 +41,8 @@ int switch_off(const DeviceOptions& options) {
   return 0;
 }
 
-/// Keeps the force on until an interrupt or the given time. Sends signs of life, because the board otherwise switches
-/// the force off.
+/// Keeps the force on for `seconds`. If `seconds` is 0, the force stays on until SIGINT. Without signs of life, the
+/// board would switch the force off.
 int keep_on(const DeviceOptions& options, double seconds) {
   const auto connection = connect(options, BoardPace::real_time);
   device::Device& device = *connection.device;

@@ -24,16 +24,16 @@ using protocol::Signal;
 constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double periods_per_ms = rate_Hz / 1000;
 constexpr std::int64_t periods_in(double seconds) { return static_cast<std::int64_t>(seconds * rate_Hz); }
-/// Settling time after the first force of a recording or vibration. Samples during the settling time are not evaluated.
+/// The evaluation ignores the samples of this settling time at the start of each recording and vibration.
 constexpr std::int64_t settling_periods = periods_in(0.02);
 constexpr std::int64_t ramp_periods = periods_in(0.06), vibration_periods = periods_in(0.2);
-/// Time to wait for the last samples of a vibration.
+/// Waiting time for the last samples of a vibration.
 constexpr std::int64_t sample_delay_periods = periods_in(0.01);
 
 /// Answers each pose with a force along x, and reads the scope between poses.
 class Program {
  public:
-  /// The force as a function of the control period.
+  /// Returns the force in newtons for a control period.
   using Law = std::function<double(std::int64_t period)>;
   using Read = std::function<void(const ScopeSamples&)>;
 
@@ -52,7 +52,7 @@ class Program {
     answer(pose, law(pose.time_periods));
   }
 
-  /// Poses that arrive during the selection are not answered.
+  /// Poses that are missed during the selection are not counted.
   void select(const std::vector<Signal>& signals) {
     device_.select_signals(signals);
     sequence_.reset();
@@ -62,7 +62,7 @@ class Program {
   std::int64_t poses_missed() const { return poses_missed_; }
 
  private:
-  /// Returns the newest pose, because poses that arrived during a request are too old to answer.
+  /// Returns the newest pose and discards older poses.
   Pose next() {
     Pose pose = next_pose(device_);
     while (const auto newer = device_.read_pose(0ms)) pose = *newer;
@@ -81,7 +81,7 @@ class Program {
   std::int64_t poses_missed_ = 0;
 };
 
-/// The force rises linearly, so each force value identifies its control period.
+/// The force rises linearly, so each force value occurs in only one control period.
 ForceDelay::Recording record_ramp(Program& program) {
   program.select({Signal::program_force_x_N});
   const std::int64_t begin = program.now();
@@ -104,7 +104,7 @@ ForceDelay::Recording record_ramp(Program& program) {
   return {shortest / periods_per_ms, longest / periods_per_ms};
 }
 
-/// A sine force, which starts in period 0. Also evaluates signals at the frequency of the sine.
+/// Sine force with phase 0 in period 0.
 class Sine {
  public:
   explicit Sine(double frequency_Hz) : frequency_Hz_(frequency_Hz) {}

@@ -29,11 +29,11 @@ struct ForceDelay {
   std::int64_t poses_missed = 0;  ///< missed by the program, except during requests
 };
 
-/// Maximum of all forces, including the vibrations.
+/// Largest force of the measurement.
 inline constexpr float delay_force_N = 0.5f;
 
-/// Requires that the force is on and a hand holds the stylus. Answers each pose with a force along x. Throws
-/// device::Error if the force goes off.
+/// The force must be on, and a hand must hold the stylus. Answers each pose with a force along x. Throws device::Error
+/// if the board switches the force off.
 ForceDelay measure_force_delay(device::Device& device, int recordings, const std::vector<double>& frequencies_Hz);
 
 }  // namespace inkwell::command_line

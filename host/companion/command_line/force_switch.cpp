@@ -18,10 +18,10 @@ using device::Pose;
 using protocol::Command;
 using protocol::State;
 
-/// Intervals in board time. The request is repeated, because an unreferenced device ignores the request.
+/// Intervals in board time. An unreferenced device ignores the request, so the program repeats the request.
 constexpr std::int64_t retry_periods = protocol::servo_rate_Hz / 10, patience_periods = 2 * protocol::servo_rate_Hz;
 
-/// Repeats the command until the desired state, a fault, or the time limit.
+/// Repeats the command until the desired state is reached, a fault occurs, or the time limit expires.
 template <class Wanted>
 Pose send_until(device::Device& device, Command command, Wanted wanted) {
   device.carry_out(command);
@@ -39,7 +39,7 @@ Pose send_until(device::Device& device, Command command, Wanted wanted) {
   return pose;
 }
 
-/// Clears the fault of a previous program that exited with the force on.
+/// Clears a fault that occurred because a previous program exited without switching the force off.
 void clear_what_a_host_left(device::Device& device) {
   Pose pose = next_pose(device);
   if (pose.state != State::fault || !device::is_left_by_a_host(pose.fault)) return;
@@ -61,7 +61,7 @@ std::string what_keeps_it_off(const Pose& pose) {
 
 Pose switch_force_off(device::Device& device) {
   device.switch_force_off();
-  // The queue may still contain poses from before the force was switched off.
+  // The queue may still contain older poses, in which the force is on.
   Pose pose = next_pose(device);
   const std::int64_t begin_periods = pose.time_periods;
   while (protocol::force_is_on(pose.state) && pose.time_periods - begin_periods < patience_periods)

@@ -9,11 +9,11 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force off, even if a different program switched the force on. Waits until the force is off, for at most
-/// two seconds of board time. Returns the newest pose.
+/// Switches the force off, even if a different program switched the force on. Waits at most two seconds of board time
+/// until the force is off. Returns the newest pose.
 device::Pose switch_force_off(device::Device& device);
 
-/// The force is on during the lifetime of this object. The owner must send signs of life.
+/// The force is on during the lifetime of this object. The owner must send signs of life to the board.
 class ForceSwitch {
  public:
   /// Waits until the force is on. Throws device::Error with the reason if the force cannot be switched on.
@@ -22,9 +22,9 @@ class ForceSwitch {
   ForceSwitch(const ForceSwitch&) = delete;
   ForceSwitch& operator=(const ForceSwitch&) = delete;
 
-  /// Calls switch_force_off(), except if a different program has taken over the arm. Throws device::Error.
+  /// Calls switch_force_off(), unless a different program has taken over the arm. Throws device::Error.
   device::Pose switch_off();
-  /// Returns the reason if this program has lost the force.
+  /// Returns the reason if the force is off or a different program has taken over the arm.
   std::optional<std::string> loss(const device::Pose& pose) const;
 
  private:
@@ -32,7 +32,7 @@ class ForceSwitch {
   bool may_be_on_ = true;
 };
 
-/// Returns a sentence with the state of the force. If the force is off, the sentence includes cause and remedy.
+/// Returns a sentence about the state of the force. If the force is off, the sentence includes cause and remedy.
 std::string force_sentence(const device::Pose& pose);
 
 }  // namespace inkwell::command_line

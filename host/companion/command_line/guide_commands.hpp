@@ -11,7 +11,7 @@
 
 namespace inkwell::command_line {
 
-/// The user's choices and consent, from the command-line options.
+/// Values of a guide's command-line options.
 struct GuideOptions {
   guides::Choices choices;
   Consent consent;

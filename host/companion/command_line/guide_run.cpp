@@ -25,8 +25,7 @@ using guides::Phase;
 
 constexpr auto silence_limit = 5s;
 
-/// Returns a line that the user typed, or nothing if no input is available. Throws UsageError if standard input is
-/// closed.
+/// Returns the typed line, or an empty value if no input is available. Throws UsageError if standard input is closed.
 std::optional<std::string> typed_line() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return std::nullopt;
@@ -40,7 +39,7 @@ std::optional<std::string> typed_line() {
   }
 }
 
-/// Shows the state of a guide on standard error, so that the --json output stays valid.
+/// Prints the guide's state to standard error, because standard output may contain the --json output.
 class Display {
  public:
   void show(const Guide& guide, bool prompts) {
@@ -89,7 +88,7 @@ class Display {
 
 class GuideRun {
  public:
-  /// Ctrl+C cancels the guide and leaves the motors off, instead of terminating the program.
+  /// Ctrl+C cancels the guide instead of terminating the program.
   GuideRun(GuidedDevice& device, Guide& guide, const Consent& options, bool json, const InterruptGuard& interrupt)
       : device_(device),
         guide_(guide),
@@ -133,14 +132,15 @@ class GuideRun {
     std::this_thread::sleep_for(1ms);
   }
 
-  /// --yes confirms only actions of the device. The user must press Enter or button 1 at the end of each manual task.
+  /// --yes confirms the actions of the device, but not the manual tasks. The user confirms each manual task with Enter
+  /// or button 1.
   bool agrees() {
     if (guide_.phase() == Phase::awaits_consent && consent_.yes) return true;
     if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
     return typed_line().has_value();
   }
 
-  /// Waits until the device has the parameters that the guide restored or applied.
+  /// Waits until the device has confirmed the guide's parameter changes.
   void settle() {
     auto limit = transaction_limit();
     while (!guide_.at_rest() && !limit.is_over(device_.session().newest_pose()) &&

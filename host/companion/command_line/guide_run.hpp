@@ -1,4 +1,4 @@
-// Runs guides on a terminal. The terminal shows the steps, a prompt before each motion, and measured values.
+// Runs guides on a terminal. The terminal shows steps, prompts and measured values.
 #pragma once
 
 #include <vector>
@@ -16,9 +16,9 @@ struct Consent {
   void add_to(CLI::App& command);
 };
 
-/// Runs guides one after another on the selected device, until one fails. After the last guide, stores the changes on
-/// the board if the user agrees. Returns the exit code. Throws device::Error if a guide fails. Throws UsageError if a
-/// guide requires consent and standard input is closed.
+/// Runs the guides in order on the selected device. Stops after a failed guide. After the last guide, stores the
+/// changes on the board if the user agrees. Returns the exit code. Throws device::Error if a guide fails. Throws
+/// UsageError if a guide requires consent and standard input is closed.
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
                const guides::Choices& choices);
 

@@ -39,7 +39,7 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
 
 void GuidedDevice::wait_for_device() {
   const auto begin = Clock::now();
-  // The limit for a virtual board is in board time, because a virtual board starts slowly on a busy computer.
+  // For a virtual board, the time limit is in board time, because a busy computer slows the board down.
   std::optional<device::ControlClient> control;
   if (board_) control.emplace(board_->control());
   const auto waited_s = [&]() -> double {

@@ -1,4 +1,4 @@
-// The device of a guide: a session and the received scope frames.
+// The session and the received scope frames of a guide.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class GuidedDevice {
   explicit GuidedDevice(const DeviceOptions& options);
 
   device::Session& session() { return *session_; }
-  /// The frames received since the last call.
+  /// Returns the frames received since the last call.
   std::vector<device::ScopeSamples> take_frames();
   void carry_out(const guides::UserTask& task);
   /// Stores the parameters on the board. Throws device::Error with the reason if the board does not store the

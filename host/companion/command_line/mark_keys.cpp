@@ -13,7 +13,7 @@ MarkKeys::MarkKeys(int descriptor) : descriptor_(descriptor) {
   termios terminal;
   if (tcgetattr(descriptor_, &terminal) != 0) return;
   terminal_before_ = terminal;
-  // Sets the terminal to deliver each key immediately and without echo. Ctrl-C still interrupts.
+  // Disables line buffering and echo of the terminal. Ctrl-C still interrupts.
   terminal.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   tcsetattr(descriptor_, TCSANOW, &terminal);
 }

@@ -8,8 +8,8 @@
 
 namespace inkwell::command_line {
 
-/// On a terminal each press of the space bar or the return key sets a numbered mark. On a pipe each line sets a mark
-/// with the line as its text.
+/// On a terminal, each press of the space bar or the return key sets a numbered mark. On a pipe, each line is the text
+/// of a mark.
 class MarkKeys {
  public:
   explicit MarkKeys(int descriptor);
@@ -18,7 +18,7 @@ class MarkKeys {
   MarkKeys(const MarkKeys&) = delete;
   MarkKeys& operator=(const MarkKeys&) = delete;
 
-  /// Returns the text of the next mark, or nothing. Does not wait.
+  /// Returns the text of the next mark; empty if there is no mark. Does not wait.
   std::optional<std::string> next();
 
  private:

@@ -22,7 +22,7 @@ struct DelayOptions {
   bool is_held = false;  ///< the user holds the stylus of a real arm
 };
 
-/// Sets the rate limit of the force to its maximum during a measurement, because a lower limit would affect the result.
+/// During a measurement, sets the rate limit of the force to the maximum.
 class FastForce {
  public:
   explicit FastForce(device::Device& device) : device_(device), stored_(device.parameters()[parameter]) {
@@ -45,7 +45,7 @@ class FastForce {
   const float stored_;
 };
 
-/// Makes a simulated hand hold the stylus in the middle of the box.
+/// Moves the simulated hand to the middle of the box, where the hand holds the stylus.
 void hold(device::OpenArm& arm) {
   constexpr device::Vector3 middle_m{0, 0, -0.03};
   auto pose = next_pose(*arm.device);

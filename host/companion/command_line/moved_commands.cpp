@@ -10,7 +10,7 @@ void add_moved_commands(CLI::App& program) {
         fmt::format("`inkwell {0}` is now `inkwell-lab {0}`, in the package inkwell-lab.", name);
     auto* command = program.add_subcommand(name, sentence);
     command->group("");  // not in the list of commands
-    // Ignores all arguments of the previous command.
+    // Accepts and ignores any arguments.
     command->set_help_flag();
     command->fallthrough(false);
     command->prefix_command();

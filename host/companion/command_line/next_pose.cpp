@@ -4,7 +4,7 @@
 
 namespace inkwell::command_line {
 
-// The limit counts waits instead of clock time, so that a suspended program does not time out.
+// The limit excludes the time during which the program is suspended.
 device::Pose next_pose(device::Device& device) {
   constexpr int waits = 10;
   constexpr std::chrono::milliseconds wait{200};

@@ -127,8 +127,8 @@ int restore_defaults(const DeviceOptions& options, bool store) {
   return 0;
 }
 
-/// Loads a file and reports unknown names. A name may belong to the force law of the
-/// device, so the device is opened before a name counts as unknown.
+/// Loads a file and reports unknown names. Opens the device first if necessary, because the device's force law may
+/// define more names.
 Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, const std::string& file) {
   std::optional<device::OpenArm> connection;
   auto loaded = device::load_parameters(file);
@@ -145,7 +145,7 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
   return {std::move(loaded), std::move(connection)};
 }
 
-/// Refuses to replace an existing file. The file may be the only copy of a calibration.
+/// Throws UsageError if the file exists, because the file may be the only copy of a calibration.
 void check_is_free(const std::string& file) {
   std::error_code code;
   if (std::filesystem::is_directory(file, code))
@@ -191,7 +191,7 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
   return 0;
 }
 
-/// Adds subcommands to `inkwell parameters`. A change has the flag --store.
+/// Adds subcommands to `inkwell parameters`. Subcommands that change parameters have the flag --store.
 struct Subcommands {
   CLI::App& command;
   const Place& place;

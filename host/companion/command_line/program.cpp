@@ -54,7 +54,7 @@ int run(int argument_count, char** arguments) {
   add_moved_commands(program);
 
   return run_program(program, argument_count, arguments, action, [&program] {
-    // After "--" CLI11 ignores a command, so the program would open the window.
+    // CLI11 ignores commands after "--", so the program would open the window.
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
           "\"--\" is not allowed before the command. Omit it, or put it after the command of `inkwell run`.");

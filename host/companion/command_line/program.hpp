@@ -1,5 +1,5 @@
-// The `inkwell` program. Without a command the program opens the window. The commands offer the functions of the window
-// to scripts.
+// The `inkwell` program. Without a command, the program opens the window. Scripts use the commands instead of the
+// window.
 #pragma once
 
 namespace inkwell::command_line {

@@ -1,4 +1,4 @@
-// Shows progress on standard error, so that the --json output on standard output stays valid.
+// Shows progress on standard error, because standard output may contain the --json output.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,11 @@
 
 namespace inkwell::command_line {
 
-/// Draws a bar on a terminal, and otherwise prints one line per new step. The text before the first colon identifies a
-/// step.
+/// On a terminal, draws a progress bar. In a pipe or a file, prints one line per step. The text before the first colon
+/// identifies a step.
 class ProgressBar {
  public:
-  /// `done` from 0 to 1. Without `done` no bar is shown, because the duration is unknown.
+  /// `done` is the progress from 0 to 1. Without `done`, no bar is drawn.
   void operator()(std::string_view step, std::optional<double> done);
   /// Leaves the bar on the screen and starts a new line.
   void end();

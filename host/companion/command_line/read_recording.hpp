@@ -1,4 +1,4 @@
-// Reads the recording that is an argument of a command.
+// Reads a recording for a command.
 #pragma once
 
 #include <string>

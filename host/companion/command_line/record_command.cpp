@@ -32,7 +32,7 @@ using nlohmann::ordered_json;
 using recording::RecorderStatus;
 
 constexpr auto read_timeout = 20ms;
-/// The limit counts waiting reads instead of clock time, so that a suspended program does not time out.
+/// The limit excludes the time during which the program is suspended.
 constexpr auto silence_limit = 2s;
 
 struct RecordOptions {
@@ -59,7 +59,7 @@ class RecordingThread {
   RecordingThread(const RecordingThread&) = delete;
   RecordingThread& operator=(const RecordingThread&) = delete;
 
-  /// Returns true if all samples have arrived. Throws device::Error if no more samples will arrive.
+  /// Returns true if all samples have arrived. Throws device::Error if the recording has failed.
   bool is_done() const {
     if (has_failed_) throw device::Error(failure_);
     return is_done_;
@@ -71,7 +71,7 @@ class RecordingThread {
       for (int silent_reads = 0; !stopping_ && !is_done_;) {
         auto samples = device_.read_scope(read_timeout);
         silent_reads = samples ? 0 : silent_reads + 1;
-        // This limit is twice the limit for poses, because the error for a silent board has priority.
+        // This limit is twice the pose limit, so that a silent board causes the error about missing poses.
         if (silent_reads * read_timeout > 2 * silence_limit)
           throw device::Error("The board sends poses but no samples. Start the recording again.");
         if (samples) take(*samples);
@@ -102,7 +102,7 @@ std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   return recording::parse_signals(options.signals);
 }
 
-/// Returns the number of control periods, or 0 for no limit. A time shorter than a period counts as one period.
+/// Returns the number of control periods, or 0 for no limit. Rounds times shorter than a period up to one period.
 std::uint64_t periods_of(const RecordOptions& options) {
   if (options.seconds == 0) return 0;
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(options.seconds * protocol::servo_rate_Hz + 0.5));
@@ -115,7 +115,7 @@ std::string progress_text(const RecorderStatus& status) {
   return text;
 }
 
-/// Returns the reason if the requested force was switched off.
+/// Returns the reason if the force was switched off during the recording.
 std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options,
                                RecordedSpan& span, std::optional<ForceSwitch>& force) {
   const InterruptGuard interrupt;
@@ -126,7 +126,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
   ProgressBar progress;
   const auto show = [&](const RecorderStatus& status) {
     if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C stops it.", std::nullopt);
-    // The last sample is one period before the end.
+    // The last sample is one period before the end of the recording.
     progress(progress_text(status),
              std::min(1.0, (status.duration_s + 1.0 / protocol::servo_rate_Hz) / options.seconds));
   };

@@ -1,4 +1,4 @@
-// Selects the samples that belong to a recording of a given length.
+// Limits a recording to a given length.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ class RecordedSpan {
   /// 0 means no limit.
   explicit RecordedSpan(std::uint64_t periods) : periods_(periods) {}
 
-  /// Removes samples after the end of the recording. Samples after a board restart are retained, but do not count
-  /// towards the length. The recorder reports the restart.
+  /// Removes samples after the end of the recording. Keeps samples after a board restart, but excludes these samples
+  /// from the length.
   void cut(device::ScopeSamples& samples);
-  /// True if the last samples of the recording have arrived.
+  /// Returns true if the recording is complete.
   bool is_over() const { return is_over_; }
   /// Returns the number of control periods that are missing at the end. `samples` and `lost` are the numbers of stored
   /// and lost samples.

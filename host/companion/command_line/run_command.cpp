@@ -27,7 +27,8 @@ constexpr int passed_on[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2}
 
 volatile std::sig_atomic_t program_process = 0, early_signal = 0;
 
-/// Forwards signals from other processes to the program. Signals from the terminal reach the program directly.
+/// Forwards signals from other processes to the started program. The terminal sends its signals directly to the
+/// program.
 void pass_on(int signal, siginfo_t* information, void*) {
   if (information->si_code == SI_KERNEL) return;
   if (program_process == 0)

@@ -23,7 +23,7 @@ void for_each_item(const SelfTestReport& report, Action action) {
     action(info(static_cast<SelfTestItem>(i)), report.entries[i]);
 }
 
-/// True if no item has failed and no test was aborted.
+/// Returns true if no item has failed and no test was aborted.
 bool is_well(const SelfTestReport& report) {
   bool is_well = true;
   for_each_item(report, [&](const auto&, const auto& entry) {

@@ -5,8 +5,8 @@
 
 namespace inkwell::command_line {
 
-/// Prints a warning if values are lost when the virtual board exits. The warning names the option that retains the
-/// values.
+/// Prints a warning if the virtual board will discard the values at its exit. The warning names the option that
+/// prevents this loss.
 void print_unstored(const DeviceOptions& options, bool is_stored);
 
 void add_store_commands(CLI::App& parameters, const Place& place);

@@ -17,13 +17,12 @@
 namespace inkwell::command_line {
 namespace {
 
-/// The completion generator recognizes the group by the word "Window", and does not complete these options after a
-/// command.
+/// The completion generator identifies the window options by the word "Window" in their group name.
 constexpr char window_group[] = "Window (without a command, or with replay)";
 constexpr std::string_view command_with_window = "replay";
 
-/// Returns the layout names in the format for help, manual page and completion. The option also accepts user-defined
-/// layouts.
+/// Returns the names of the built-in layouts in the format of the help text. User-defined layouts are valid but not
+/// listed.
 std::string layout_choices() {
   std::vector<std::string_view> names;
   for (const window::ScopeLayout& layout : window::built_in_layouts()) names.push_back(layout.name);

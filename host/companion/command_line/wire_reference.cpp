@@ -60,8 +60,7 @@ namespace {
 
 namespace layouts = protocol::layouts;
 
-/// True if there are no gaps between the fields. A field of a union or a bit field may start at the same offset as the
-/// previous field.
+/// Returns true if there are no gaps between the fields. Fields of a union and bit fields may have equal offsets.
 constexpr bool is_whole(const layouts::Struct& row) {
   std::size_t begin = 0, end = 0;
   for (const auto& field : row.fields) {

@@ -1,4 +1,4 @@
-// The layout of all wire structures, field by field, from the protocol headers.
+// Prints the wire structures of the protocol headers.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@ namespace inkwell::command_line {
 
 /// Prints the layout as Markdown.
 void print_wire();
-/// Returns the name of a signal encoding, as in the output of print_wire().
+/// Returns the name that print_wire() prints for a signal encoding.
 std::string_view name_of(protocol::SignalWire wire);
 
 }  // namespace inkwell::command_line
