@@ -75,7 +75,7 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
     display->had_input_ = true;
     if (display->on_key_) display->on_key_({key, scancode, action, modifiers});
   });
-  // The callbacks of ImGui's back end call these callbacks first.
+  // ImGui's callbacks call these callbacks first.
   static constexpr auto note_input = [](GLFWwindow* window) {
     static_cast<Display*>(glfwGetWindowUserPointer(window))->had_input_ = true;
   };
@@ -138,7 +138,7 @@ void write_screenshot(const std::filesystem::path& path, int width, int height) 
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGB;
-  // OpenGL stores the lowest row first, so a negative stride flips the picture.
+  // OpenGL stores the lowest row first, so the negative stride reverses the order of the rows.
   if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
     throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
 }

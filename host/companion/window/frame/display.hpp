@@ -1,4 +1,4 @@
-// The window of the operating system, with an OpenGL context.
+// An operating system window with an OpenGL context.
 #pragma once
 
 #include <filesystem>
@@ -24,8 +24,8 @@ class DisplayError : public std::runtime_error {
 
 class Display {
  public:
-  /// Throws DisplayError if there is no display or no OpenGL 3.3. `scale`: pixels per point, 1 for 96 dots per inch; 0
-  /// selects the scale of the main display.
+  /// Throws DisplayError if there is no display or no OpenGL 3.3. `scale` is the number of pixels per point (1/96
+  /// inch), or 0 for the scale of the main display.
   Display(ScreenSize points, float scale, const std::string& title);
   ~Display();
   Display(const Display&) = delete;
@@ -47,17 +47,17 @@ class Display {
   void close();
   void take_events();                      ///< processes the events of the user and the window system
   void wait_for_events(double at_most_s);  ///< waits for events and processes them
-  /// Makes `wait_for_events` return. May be called from any thread.
+  /// Makes `wait_for_events` return. Any thread may call this function.
   static void wake();
   /// Shows the drawn picture on the screen.
   void show();
 
-  /// True if there was an event since the last call.
+  /// Returns true if an event has occurred since the last call.
   bool take_input() { return std::exchange(had_input_, false); }
-  /// True if the window lost its content, so that the picture must be redrawn.
+  /// Returns true if the window must be drawn again.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
-  /// Sets the function that receives every key event of the window.
+  /// Sets the function that receives all key events.
   void on_key(std::function<void(const KeyEvent&)> take) { on_key_ = std::move(take); }
 
  private:

@@ -12,7 +12,7 @@ bool is_inside_character(char byte) { return (static_cast<unsigned char>(byte) &
 
 std::string with_ellipsis(std::string_view text, float room, const std::function<float(std::string_view)>& width_of) {
   if (width_of(text) <= room) return std::string(text);
-  // Removing single characters is fast enough for short labels and correct for every font.
+  // Removing one character at a time is fast enough for short labels.
   while (!text.empty()) {
     do text.remove_suffix(1);
     while (!text.empty() && is_inside_character(text.data()[text.size()]));

@@ -7,8 +7,8 @@
 
 namespace inkwell::window {
 
-/// Returns the text if its width is at most `room`. Otherwise returns the longest possible prefix with an ellipsis, or
-/// an empty text. `width_of` returns the width of a text. UTF-8 characters of the text are not split.
+/// Returns the text if its width is at most `room`. Shortens longer text with an ellipsis. Returns an empty text if not
+/// even one character has enough room. `width_of` returns the width of a text. Does not split UTF-8 characters.
 std::string with_ellipsis(std::string_view text, float room, const std::function<float(std::string_view)>& width_of);
 
 }  // namespace inkwell::window

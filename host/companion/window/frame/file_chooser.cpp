@@ -112,7 +112,7 @@ void FileChooser::draw_entries(const Style& style) {
   if (wanted) enter(*wanted);
 }
 
-/// Opens the typed folder, or checks and chooses the typed file.
+/// Opens the typed folder or chooses the typed file.
 void FileChooser::accept() {
   if (typed_.empty()) return;
   const fs::path typed = typed_path(folder_, typed_);

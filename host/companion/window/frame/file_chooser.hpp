@@ -1,4 +1,4 @@
-// The window's file dialog. The user can type a path, and must confirm the replacement of a file.
+// The window's file dialog. The user must confirm the replacement of an existing file.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct FileQuestion {
 class FileChooser {
  public:
   void ask(FileQuestion question);
-  /// Draws the dialog if the dialog is open. The first call after the user's choice returns the file.
+  /// Draws the open dialog. After the user's choice, returns the file once.
   std::optional<std::filesystem::path> draw(const Style& style);
 
  private:

@@ -41,7 +41,7 @@ FolderListing list_folder(const fs::path& folder, std::span<const std::string> e
   fs::directory_iterator entry(folder, error);
   if (error) return {{}, folder_problem(folder, error)};
   for (; entry != fs::directory_iterator(); entry.increment(error)) {
-    // Entries that are deleted during the listing, or that deny access, are omitted.
+    // Omits deleted entries and entries without access permission.
     std::error_code of_entry;
     const std::string name = entry->path().filename().string();
     const bool is_folder = entry->is_directory(of_entry);

@@ -1,5 +1,4 @@
-// Folder contents for the file chooser, and the interpretation of typed names. File system errors are returned as
-// sentences.
+// Lists folders and converts typed names for the file chooser. The functions return file system errors as sentences.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +23,16 @@ struct FolderListing {
   std::string problem;               ///< reason why the folder could not be read; empty on success
 };
 
-/// Lists all folders, and the files with the extensions in `endings`. If `endings` is empty, lists all files.
+/// Lists the contents of a folder. If `endings` is not empty, omits files with other extensions.
 FolderListing list_folder(const std::filesystem::path& folder, std::span<const std::string> endings);
 
 /// Converts typed text to a path. The path is relative to the folder unless the text starts with "/" or "~/".
 std::filesystem::path typed_path(const std::filesystem::path& folder, std::string_view typed);
 
-/// Appends the first extension of `endings` if the path has none of these extensions.
+/// Appends the first extension of `endings` if the path has no extension from `endings`.
 std::filesystem::path with_ending(std::filesystem::path path, std::span<const std::string> endings);
 
-/// Returns the reason why the file cannot be read or written; empty if no reason is known in advance.
+/// Returns the reason why the file cannot be read or written, or an empty text.
 std::string reading_problem(const std::filesystem::path& file);
 std::string writing_problem(const std::filesystem::path& file);
 

@@ -92,7 +92,7 @@ void FrameLoop::lay_out(Frame& frame) {
   imgui_.end();
 
   const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
-  // At a reduced frame rate, and for screenshots, frames are always antialiased.
+  // Screenshots and frames at a reduced rate are always antialiased.
   frame.smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed;
   PictureDigest canvas;
   canvas.add(content_.canvas_digest());
@@ -120,7 +120,7 @@ void FrameLoop::draw(const Frame& frame) {
   }
   if (display_.draws_in_software()) mark_.put();
   if (frame.is_last) write_screenshot(options_.screenshot, frame.size.width, frame.size.height);
-  // An answer must reflect all earlier events, and ImGui may apply the events in several frames.
+  // The answer waits until ImGui has applied all earlier events.
   if (!inspection_ || imgui_.has_waiting_events()) return;
   nlohmann::json known = content_.inspect();
   known["drawn_part"] = drawn / frame.picture.window.area();
@@ -139,7 +139,7 @@ void FrameLoop::draw_part(const Frame& frame, const Box& part) {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const ImVec4 ground = vector(content_.ground());
   glClearColor(ground.x, ground.y, ground.z, 1.0f);
-  // The scissor test slows down the clearing of a whole buffer.
+  // Clearing the whole buffer is faster without the scissor test.
   part == frame.picture.window ? glDisable(GL_SCISSOR_TEST) : glEnable(GL_SCISSOR_TEST);
   glScissor(pixels(part.left), height - pixels(part.bottom), pixels(part.right - part.left),
             pixels(part.bottom - part.top));
@@ -162,7 +162,7 @@ void FrameLoop::show(const Frame& frame) {
   if (!frame.is_lively) rhythm_.took(drawn_s - frame.now_s);
   display_.show();
   on_screen_ = frame.picture;
-  // The report contains only frames at the full rate.
+  // The report excludes frames at a reduced rate.
   if (frame.is_lively) frames_report_.add(frame.now_s - shown_s_, drawn_s - frame.now_s, content_.pose_age_s());
   shown_s_ = frame.now_s;
 }

@@ -34,17 +34,17 @@ class FrameContent {
  public:
   virtual ~FrameContent() = default;
 
-  /// Handles a key event, independent of the focus.
+  /// Handles a key event, regardless of the keyboard focus.
   virtual void key(const KeyEvent& event) = 0;
-  /// True if the content has changed visibly since the last frame. The function must be fast, because the idle loop
-  /// calls the function 60 times per second.
+  /// Returns true if the content has changed visibly since the last frame. The function must be fast, because the idle
+  /// loop calls the function 60 times per second.
   virtual bool needs_frame() const = 0;
 
   /// Lays out all panes between ImGui's NewFrame() and Render().
   virtual void lay_out(ImVec2 size, double now_s) = 0;
-  /// True if the laid-out frame contains motion and needs the full frame rate.
+  /// Returns true if the laid-out frame contains motion and needs the full frame rate.
   virtual bool is_moving() const = 0;
-  /// True if the loop must stop.
+  /// Returns true if the loop must stop.
   virtual bool is_over() const { return false; }
   /// Area of the scene, in screen coordinates.
   virtual Box canvas() const = 0;
@@ -56,9 +56,9 @@ class FrameContent {
   /// Paints the scene behind the panes. The depth and stencil buffers of the scene area are already clear.
   virtual void paint(const Canvas& canvas) = 0;
 
-  /// Returns the state of the laid-out frame for an inspection.
+  /// Returns the state of the frame for an inspection.
   virtual nlohmann::json inspect() const = 0;
-  /// Board time between the pose of this frame and the newest received pose; empty if no pose is shown.
+  /// Returns the board time between the drawn pose and the newest received pose; empty if no pose is drawn.
   virtual std::optional<double> pose_age_s() const = 0;
 };
 
@@ -77,7 +77,7 @@ class FrameLoop {
  public:
   FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options);
 
-  /// Returns when the window is closed, the content stops the loop, a signal arrives or the screenshot is written.
+  /// Runs until the window is closed, the content stops the loop, a signal arrives, or the screenshot is written.
   /// Throws DisplayError.
   void run();
 

@@ -9,7 +9,7 @@ namespace inkwell::window {
 void FramePacer::wait() {
   using Clock = std::chrono::steady_clock;
   const double now_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-  // After a late frame the schedule restarts, so that no burst of frames follows.
+  // A late frame restarts the schedule, which prevents a burst of frames.
   next_s_ = std::max(next_s_ + period_s_, now_s - period_s_);
   if (next_s_ > now_s) std::this_thread::sleep_for(std::chrono::duration<double>(next_s_ - now_s));
 

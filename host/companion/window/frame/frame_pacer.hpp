@@ -3,16 +3,16 @@
 
 namespace inkwell::window {
 
-/// Limits the frame rate by sleeping, because some displays do not limit the rate.
+/// Sleeps between frames, because some displays do not limit the frame rate.
 class FramePacer {
  public:
-  /// `keeps_up`: result of keeps_up() before the first measurement.
+  /// `keeps_up` is the initial result of keeps_up().
   FramePacer(double frames_per_second, bool keeps_up) : period_s_(1.0 / frames_per_second), keeps_up_(keeps_up) {}
   void wait();
-  /// Announces a pause until the next call of wait(). The pause does not count as a slow frame.
+  /// Excludes the time until the next call of wait() from the frame rate measurement.
   void rest() { half_second_began_s_ = 0.0; }
 
-  /// True while frames are on time. Permanently false after half a second of frames that were 20 % too slow.
+  /// Returns false once frames were 20 % too slow for half a second.
   bool keeps_up() const { return keeps_up_; }
 
  private:

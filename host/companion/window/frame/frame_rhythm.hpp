@@ -1,5 +1,5 @@
-// Decides when the window lays out and draws frames. Drawing is slow without a graphics card. Motion is therefore drawn
-// at the full rate, and scrolling signals are drawn at a few frames per second. An unchanged picture is not drawn.
+// Decides when the window lays out and draws frames. Without a graphics card, drawing is slow. The window draws motion
+// at the full rate and scrolling signals at a reduced rate. The window does not draw unchanged pictures.
 #pragma once
 
 namespace inkwell::window {
@@ -13,13 +13,13 @@ struct FrameEvidence {
 
 class FrameRhythm {
  public:
-  /// True if a frame must be laid out now. `something_happened`: there was input, or the device moves.
+  /// Returns true if a frame must be laid out now. `something_happened` is true after input or while the device moves.
   bool is_due(bool something_happened, double now_s) const;
-  /// True if the laid-out frame must be drawn.
+  /// Returns true if the laid-out frame must be drawn.
   bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
-  /// Records the drawing time of a frame at the reduced rate. Slow drawing reduces this rate further.
+  /// Sets the reduced rate according to the drawing time of a frame.
   void took(double drawing_s);
-  /// True while frames are drawn at the full rate.
+  /// Returns true while frames are drawn at the full rate.
   bool is_lively(double now_s) const { return now_s < lively_until_s_; }
 
   static constexpr double lively_for_s = 0.5;  ///< after the last input or motion

@@ -10,9 +10,9 @@ namespace inkwell::window {
 
 class FramesReport {
  public:
-  /// `display_period_s`: frame period of the display, the reference for pose ages.
+  /// `display_period_s` is the frame period of the display.
   explicit FramesReport(double display_period_s) : display_period_s_(display_period_s) {}
-  /// Adds a frame at the full rate. `pose_age_s`: board time between the drawn pose and the newest received pose.
+  /// Adds a frame at the full rate. `pose_age_s` is the board time between the drawn pose and the newest received pose.
   void add(double period_s, double drawing_s, std::optional<double> pose_age_s);
   std::string text() const;
 

@@ -23,7 +23,7 @@ DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
   const std::span corners(list.VtxBuffer.Data + command.VtxOffset + first, static_cast<std::size_t>(last - first) + 1);
   PictureDigest digest;
   digest.add_bytes(corners.data(), corners.size_bytes());
-  // Indices are relative to the first corner, because the number of previous corners may change.
+  // The digest uses relative vertex indices, because the number of earlier vertices may change.
   std::uint64_t order = 0;
   for (const ImDrawIdx index : indices) order = order * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(index - first);
   digest.add(order);
@@ -69,7 +69,7 @@ std::vector<DrawnPane> ImGuiFrames::panes() const {
 }
 
 void ImGuiFrames::draw(const Box& box) const {
-  // Clips all commands to the box. Lists without content in the box are not uploaded.
+  // Clips all draw commands to the box and omits draw lists outside the box.
   const ImDrawData& data = *ImGui::GetDrawData();
   std::vector<ImDrawList*> lists;
   std::vector<ImVec4> rectangles;

@@ -19,17 +19,17 @@ class ImGuiFrames {
   ImGuiFrames(const ImGuiFrames&) = delete;
   ImGuiFrames& operator=(const ImGuiFrames&) = delete;
 
-  /// Passes a key event of the window to ImGui, except for the keys that stop the force.
+  /// Passes a key event to ImGui if is_for_imgui() permits the event.
   void take_key(const KeyEvent& event) { keys_.take(event); }
 
   void begin();
-  /// True if a later frame will apply events that have arrived.
+  /// Returns true if ImGui has not yet applied all received events.
   bool has_waiting_events() const { return keys_.has_waiting_events(); }
   ImVec2 size() const;  ///< of the window, in screen coordinates
   void end();
   /// Returns the panes of the finished frame.
   std::vector<DrawnPane> panes() const;
-  /// Draws the part of the frame inside the box into the framebuffer.
+  /// Draws the frame into the framebuffer, clipped to the box.
   void draw(const Box& box) const;
 
  private:

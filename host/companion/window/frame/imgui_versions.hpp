@@ -25,8 +25,8 @@ inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeypadEnter;
 /// Returns the key index for functions such as ImGui::IsKeyPressed().
 inline ImGuiKey key_index(ImGuiKey key) { return key; }
 
-/// Allows later items to overlap an item. Call the first function before the item and the second function after the
-/// item.
+/// Allows later items to overlap an item. Call allow_overlap_before_item() before the item and
+/// allow_overlap_after_item() after the item.
 inline void allow_overlap_before_item() { ImGui::SetNextItemAllowOverlap(); }
 inline void allow_overlap_after_item() {}
 
@@ -50,8 +50,8 @@ inline constexpr ImGuiKey key_keypad_enter = ImGuiKey_KeyPadEnter;
 /// Returns the key index for functions such as ImGui::IsKeyPressed().
 inline int key_index(ImGuiKey key) { return ImGui::GetKeyIndex(key); }
 
-/// Allows later items to overlap an item. Call the first function before the item and the second function after the
-/// item.
+/// Allows later items to overlap an item. Call allow_overlap_before_item() before the item and
+/// allow_overlap_after_item() after the item.
 inline void allow_overlap_before_item() { ImGui::SetItemAllowOverlap(); }
 inline void allow_overlap_after_item() { ImGui::SetItemAllowOverlap(); }
 

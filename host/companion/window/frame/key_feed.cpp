@@ -25,7 +25,7 @@ bool can_cancel() {
 
 #if INKWELL_IMGUI_HAS_KEY_EVENTS
 
-// This back end queues key events and follows the keyboard layout, so no set-up is necessary.
+// ImGui 1.87 and later follows the keyboard layout without set-up.
 void set_up_keys() {}
 void note_tap(KeyTaps&, int) {}
 
@@ -35,7 +35,7 @@ QueuedInput kind_of(const ImGuiInputEvent& event) {
   if (event.Type != ImGuiInputEventType_Key) return QueuedInput::other;
   const ImGuiKey key = event.Key.Key;
   if ((key & ImGuiMod_Mask_) != 0) return QueuedInput::modifier;
-  // The back end also reports a modifier as a key.
+  // The back end reports each modifier twice, as a modifier and as a key.
   const bool is_modifier_key = key >= ImGuiKey_LeftCtrl && key <= ImGuiKey_RightSuper;
   return event.Key.Down && !is_modifier_key ? QueuedInput::key_press : QueuedInput::other;
 }
@@ -53,7 +53,7 @@ void start_frame(KeyTaps&) {
 
 #else
 
-// Called for every frame, because the user may change the layout at any time.
+// Called for every frame, because the user may change the keyboard layout at any time.
 void follow_keyboard_layout(ImGuiIO& io) {
   const KeyLetters keys = key_letters([](int key) { return glfwGetKeyName(key, 0); });
   for (const auto& [letter, shortcut] :
@@ -63,13 +63,13 @@ void follow_keyboard_layout(ImGuiIO& io) {
 }
 
 void set_up_keys() {
-  // This ImGui version activates controls only with the space bar.
+  // ImGui 1.86 activates controls with the space bar, so Enter is mapped to the space bar.
   ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
 }
 
 void note_tap(KeyTaps& taps, int key) {
   taps.note(key);
-  // The modifier keys are also recorded, because the user may release the keys before the next frame.
+  // Records pressed modifier keys, because the user may release the modifiers before the next frame.
   const bool* down = ImGui::GetIO().KeysDown;
   for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
                              GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
@@ -93,7 +93,7 @@ void start_frame(KeyTaps& taps) {
 }  // namespace
 
 KeyFeed::KeyFeed(GLFWwindow* window) : window_(window) {
-  // Hides the window's callback from the back end. Otherwise the back end would receive every key.
+  // Hides the window's key callback from the back end, which must receive only the filtered keys.
   const GLFWkeyfun callback = glfwSetKeyCallback(window_, nullptr);
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   glfwSetKeyCallback(window_, callback);

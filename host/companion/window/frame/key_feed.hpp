@@ -17,11 +17,11 @@ class KeyFeed {
   KeyFeed(const KeyFeed&) = delete;
   KeyFeed& operator=(const KeyFeed&) = delete;
 
-  /// Passes an event of the window to ImGui, except for the keys that stop the force.
+  /// Passes a key event to ImGui if is_for_imgui() permits the event.
   void take(const KeyEvent& event);
-  /// Calls ImGui::NewFrame() with the keys of this frame. Call after the NewFrame() of the back end.
+  /// Calls ImGui::NewFrame() with the keys of this frame. Call after ImGui_ImplGlfw_NewFrame().
   void begin_frame();
-  /// True if a later frame will apply events that have arrived.
+  /// Returns true if ImGui has not yet applied all received events.
   bool has_waiting_events() const;
 
  private:

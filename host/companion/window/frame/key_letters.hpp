@@ -1,4 +1,5 @@
-// Maps letters to keys, so that shortcuts follow the keyboard layout. The key names of GLFW follow the American layout.
+// Maps letters to keys, so that shortcuts follow the keyboard layout. GLFW names each key by its character in the
+// American layout.
 #pragma once
 
 #include <array>
@@ -8,8 +9,8 @@ namespace inkwell::window {
 /// The GLFW key of each letter from a to z.
 using KeyLetters = std::array<int, 26>;
 
-/// Returns the keys of the current layout. `name_of(key)` returns the character of a key, or null. If no key has the
-/// letter (Greek keyboard), the American key is used.
+/// Returns the keys of the current layout. `name_of(key)` returns the character of a key, or null. For letters that the
+/// layout lacks, returns the keys of the American layout.
 template <class NameOf>
 KeyLetters key_letters(const NameOf& name_of) {
   constexpr int key_a = 'A', key_z = 'Z';         // GLFW_KEY_A to GLFW_KEY_Z

@@ -1,5 +1,5 @@
-// Keeps a key and its modifiers together. ImGui 1.87 and later queues the key events, and combines the press of a key
-// and a later release of a modifier in the same frame. The key would then have no modifier.
+// Keeps a key and its modifiers together. ImGui 1.87 and later could apply a key press and the release of its modifier
+// in the same frame. ImGui would then ignore the modifier.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ enum class QueuedInput {
   other
 };
 
-/// Returns the number of queued events, from the oldest, that one frame may apply. The number ends before the first
-/// modifier that follows a key press.
+/// Returns the number of oldest events that one frame may apply. A frame must not apply a modifier event after a key
+/// press.
 inline std::size_t events_of_frame(std::span<const QueuedInput> queue) {
   const auto press = std::ranges::find(queue, QueuedInput::key_press);
   return static_cast<std::size_t>(std::find(press, queue.end(), QueuedInput::modifier) - queue.begin());

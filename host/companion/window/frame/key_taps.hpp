@@ -10,7 +10,7 @@ namespace inkwell::window {
 
 class KeyTaps {
  public:
-  /// Records that a key was pressed.
+  /// Records the press of a key.
   void note(int key) { noted_.push_back(key); }
 
   /// Marks the stored keys as pressed for one frame. Call before each frame.

@@ -14,13 +14,13 @@ struct ImGuiWindow;
 
 namespace inkwell::window {
 
-/// Moves the keyboard focus between the panes in drawing order, cyclically. Within a pane, the last focused item
-/// receives the focus. The focus does not move while a dialog or menu is open.
+/// Moves the keyboard focus through the panes in drawing order. In each pane, the last focused item receives the focus
+/// again. The focus does not move while a dialog or menu is open.
 class KeyboardTour {
  public:
-  /// Moves the focus to the pane with this name in the next frame. An empty name does not change the focus.
+  /// In the next frame, moves the focus to the pane with this name. An empty name does not change the focus.
   void go_to(std::string part) { wanted_ = std::move(part); }
-  /// Moves the focus to the next pane in the next frame.
+  /// In the next frame, moves the focus to the next or previous pane.
   void go_on(bool backwards) { steps_ += backwards ? -1 : 1; }
   /// Call between ImGui::NewFrame() and the first pane.
   void begin_frame();
@@ -36,7 +36,7 @@ class KeyboardTour {
   bool last_thing_is_gone_ = false;  ///< then the first item receives the focus
 };
 
-/// True if the keyboard, not the mouse, activated the last item.
+/// Returns true if the keyboard, not the mouse, activated the last item.
 bool is_pressed_by_keyboard();
 
 /// Number of key presses in each direction in this frame.

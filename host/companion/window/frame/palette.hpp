@@ -1,7 +1,7 @@
 // All colors of the window. The hues are from Okabe and Ito ("Color Universal Design", 2008). People with common color
-// deficiencies can distinguish these hues. No information is shown by hue alone. With WindowOptions::flat_colours, the
-// solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly these colors on the screen. Both
-// themes use the same scene colors.
+// deficiencies can distinguish these hues. The window shows no information by hue alone. With
+// WindowOptions::flat_colours, the solid parts of the scene (sphere, proxy, wall frames, force arrow) have exactly
+// these colors on the screen. Both themes use the same scene colors.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Finds the differences between two pictures. Only the differences are drawn, because drawing is slow without a
+// Finds the differences between two pictures. The window draws only the differences, because drawing is slow without a
 // graphics card.
 #pragma once
 
@@ -42,7 +42,7 @@ struct DrawnPicture {
   bool operator==(const DrawnPicture&) const = default;
 };
 
-/// Returns disjoint boxes of whole pixels. Outside of these boxes, `now` equals `before`.
+/// Returns disjoint boxes of whole pixels that contain all differences.
 std::vector<Box> changes_between(const DrawnPicture& before, const DrawnPicture& now);
 
 }  // namespace inkwell::window

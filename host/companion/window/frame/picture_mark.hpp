@@ -6,12 +6,12 @@
 
 namespace inkwell::window {
 
-/// Stores a number in the invisible alpha value of the first pixel. Reading the number waits for all drawing,
-/// so the mark is used only with software rendering.
+/// Stores a number in the invisible alpha value of the first pixel. To read the number, the CPU waits for the GPU, so
+/// the window uses the mark only with software rendering.
 class PictureMark {
  public:
   bool is_there() const;
-  /// Writes a number that differs from all previous numbers.
+  /// Writes a new number into the pixel.
   void put();
 
  private:

@@ -22,7 +22,7 @@ constexpr std::array<FontFiles, 3> font_files{{
     {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf"},
 }};
 
-// Latin and Greek letters, punctuation, arrows and marks.
+// Unicode ranges of Latin letters, Greek letters, punctuation, arrows and marks.
 constexpr ImWchar glyph_ranges[] = {0x0020, 0x00FF, 0x0370, 0x03FF, 0x2010, 0x2026, 0x2190, 0x2193, 0x21B6,
                                     0x21BB, 0x2212, 0x2212, 0x25A0, 0x25CF, 0x2713, 0x2717, 0};
 
@@ -33,7 +33,7 @@ ImFont* add_font(const char* file, float pixels) {
   return ImGui::GetIO().Fonts->AddFontFromFileTTF(file, pixels, &configuration, glyph_ranges);
 }
 
-// Gives all digits the same width, so that a changing number does not move its neighbors.
+// Sets the same width for all digits, so that a changing number does not move adjacent text.
 void make_digits_tabular(ImFont* font) {
   float widest = 0.0f;
   for (ImWchar digit = '0'; digit <= '9'; ++digit)

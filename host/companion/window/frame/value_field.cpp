@@ -16,7 +16,7 @@ constexpr float handle_points = 15.0f;
 constexpr float fast = 10.0f;
 constexpr float fine = 0.1f;
 
-// Draws six dots, the usual symbol of a drag handle.
+// Draws a drag handle with six dots.
 void draw_grip(ImVec2 corner, ImVec2 size, Colour colour, const Style& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 centre{corner.x + 0.5f * size.x, corner.y + 0.5f * size.y};
@@ -43,7 +43,7 @@ void draw_ground(ImVec2 corner, ImVec2 end, float part, bool is_typed_in, const 
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  // The line is at the bottom and does not cross the number.
+  // The short line at the bottom marks the value without crossing the number.
   list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
 }
 

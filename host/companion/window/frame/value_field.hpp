@@ -11,7 +11,7 @@
 
 namespace inkwell::window {
 
-/// Actions of the user on a field in this frame.
+/// User actions on a field in one frame.
 struct ValueEdit {
   bool drag_begins = false;
   std::optional<float> dragged_to;
@@ -24,7 +24,7 @@ class ValueFields {
  public:
   /// Draws a field with a drag handle and a number. The filled part of the background shows the value within its range.
   /// Dragging changes the value, ten times faster with Shift and ten times slower with Ctrl. Escape restores the
-  /// previous text. The answers of `--inspect` call the field `name` and its handle "<name> handle".
+  /// previous text. In inspections, the handle has the name "<name> handle".
   ValueEdit draw(const char* id, const std::string& name, float value, const ValueRange& range, float width,
                  const Style& style);
 

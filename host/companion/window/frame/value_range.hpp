@@ -14,7 +14,7 @@ struct ValueRange {
   bool contains(float value) const { return value >= minimum && value <= maximum; }
   /// Returns the position in the range: 0 at the minimum, 1 at the maximum.
   float part_of(float value) const;
-  /// Returns the value after a drag by this number of points. 1000 points cover the whole range.
+  /// Returns the value after a drag by `points`. A drag by 1000 points covers the whole range.
   float dragged(float from, float points) const;
   std::string text_of(float value) const;
 };

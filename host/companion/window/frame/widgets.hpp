@@ -17,31 +17,31 @@ void right_text(Colour colour, std::string_view content, float width);
 /// Returns the text, shortened with an ellipsis if necessary. Default: the current font.
 std::string fitted(std::string_view content, float width, ImFont* font = nullptr);
 
-/// Draws a triangle with an exclamation mark and returns its width.
+/// Draws a warning triangle and returns the triangle's width.
 float warning_sign(ImVec2 corner, Colour colour, const Style& style);
 
 /// Prevents the up and down arrow keys from moving the focus away from the last item.
 void keep_vertical_arrows();
 
-/// True while a dialog dims the rest of the window.
+/// Returns true while a dialog is open.
 bool is_dialog_open();
 
-/// Puts the next item on the same line if this width is available, and on a new line otherwise.
+/// Starts a new line if the current line has less than `width` left.
 void same_line_if_room(float width);
 
 /// Shows a tooltip while the mouse hovers over the last item.
 void help_on_hover(std::string_view title, std::string_view help, const Style& style);
 
-/// An ImGui button. This widget and all following widgets have names for inspections.
+/// An ImGui button with a name for inspections.
 bool button(const char* label, ImVec2 size = {0, 0});
-/// A button without a background, except while the mouse hovers over the button.
+/// A flat button. The background appears while the mouse hovers over the button.
 bool quiet_button(const char* label, const Style& style);
 /// A button in a custom color, such as the stop button.
 bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size);
 /// A button with a visible on/off state.
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
 
-/// Calls ImGui::BeginCombo() with this width. An ellipsis shortens long text.
+/// Calls ImGui::BeginCombo() with this width. An ellipsis replaces the end of long text.
 bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags = 0);
 
 /// Begins a window that fills a rectangle and cannot be moved or closed. The window has no background, because the
