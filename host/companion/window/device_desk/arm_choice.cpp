@@ -13,7 +13,7 @@ std::optional<device::Endpoint> ArmChoice::pick(const std::vector<device::Endpoi
     return match == found.end() ? std::nullopt : std::optional(*match);
   };
   if (!wanted_.empty()) return named(wanted_);
-  // Servers do not report the serial number of an arm before the arm is opened.
+  // A USB/IP server does not list the serial numbers of its arms.
   const bool have_numbers = std::ranges::none_of(found, &std::string::empty, &device::Endpoint::serial_number);
   if (!have_numbers) return found.front();
   saw_several_ |= found.size() > 1;

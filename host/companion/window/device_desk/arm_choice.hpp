@@ -1,5 +1,5 @@
-// Chooses the arm that the window connects to. Without a choice by the user, an arm is used only if no other arm is
-// connected. Otherwise the force could act on the wrong hand.
+// Chooses the arm for the window. If several arms are connected, the user must choose, so that the force does not act
+// on the wrong hand.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class ArmChoice {
   /// An empty serial number accepts any arm.
   explicit ArmChoice(std::string wanted_serial_number) : wanted_(std::move(wanted_serial_number)) {}
 
-  /// Returns an empty value if the arm is not connected. Throws device::NoDevice if the user has to choose.
+  /// Returns an empty value if the arm is not connected. Throws device::NoDevice if the user must choose an arm.
   std::optional<device::Endpoint> pick(const std::vector<device::Endpoint>& found);
 
  private:

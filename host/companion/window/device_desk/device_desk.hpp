@@ -14,7 +14,7 @@
 
 namespace inkwell::window {
 
-/// Snapshot of the device data, constant while a frame is drawn.
+/// Snapshot of the device data for one frame.
 struct DeviceView {
   device::SessionStatus status;
   std::optional<device::Pose> pose;  ///< newest pose; empty while not connected
@@ -39,7 +39,7 @@ class DeviceDesk {
   const DeviceView& refresh();
   const DeviceView& view() const { return view_; }
   device::Session& session() { return *session_; }
-  /// Returns the current pose, which may be newer than the view. Empty while not connected.
+  /// Returns the current pose, which may be newer than the pose in view(). Empty while not connected.
   std::optional<device::Pose> newest_pose() const { return session_->newest_pose(); }
 
   /// Requests a device for the next call of follow_choice(). An empty serial number requests any device.
@@ -51,9 +51,9 @@ class DeviceDesk {
   /// Searches for devices continuously while `searching` is true.
   void keep_searching(bool searching) { is_searching_ = searching; }
 
-  /// Selects the streamed signals of the current device and of later devices.
+  /// Selects the streamed signals for the current device and all later devices.
   void select_signals(std::vector<protocol::Signal> signals);
-  /// Events of the devices since the window was opened.
+  /// Returns all device events since the window was opened.
   const device::EventLog& events() const { return events_; }
   /// Returns the scope frames that arrived since the last call.
   std::vector<device::ScopeSamples> take_scope();

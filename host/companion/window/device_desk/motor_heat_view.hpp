@@ -1,4 +1,4 @@
-// Motor heat, evaluated for display.
+// Evaluates the motor heat for display.
 #pragma once
 
 #include <string>

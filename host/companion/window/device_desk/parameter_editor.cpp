@@ -159,7 +159,7 @@ std::string name_ending(std::string_view unit) {
 std::string label_of(const protocol::ParameterInfo& info) {
   std::string_view name = info.name;
   if (const std::string ending = name_ending(info.unit); name.ends_with(ending)) name.remove_suffix(ending.size());
-  // "box_minimum_x" is listed in the group "Box", so the label omits the first word.
+  // In the group "Box", the label of "box_minimum_x" is "Minimum x".
   const std::string_view first_word = info.group.substr(0, info.group.find(' '));
   if (name.starts_with(first_word) && name.size() > first_word.size() + 1 && name[first_word.size()] == '_' &&
       std::isalpha(static_cast<unsigned char>(name[first_word.size() + 1])) != 0)

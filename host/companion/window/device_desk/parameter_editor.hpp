@@ -13,7 +13,7 @@
 
 namespace inkwell::window {
 
-/// Shows the device's values and the edits that the device has not confirmed yet.
+/// Contains the device's values and the unconfirmed edits.
 class ParameterEditor {
  public:
   /// Call after each read of the device's parameters.
@@ -33,7 +33,7 @@ class ParameterEditor {
   void begin_step(std::string title);
   void edit(std::span<const device::ParameterChange> changes, double now_s);
   void end_step();
-  /// Applies all changes as a separate undo step.
+  /// Applies all changes as one undo step.
   void apply(std::string title, std::span<const device::ParameterChange> changes, double now_s);
 
   bool can_undo() const { return position_ > 0; }
@@ -72,7 +72,7 @@ class ParameterEditor {
   std::optional<Step> open_step_;
 };
 
-/// Returns the name in words, without group and unit: "wall_stiffness_N_per_m" -> "Wall stiffness".
+/// Returns the name in words without the unit, such as "Wall stiffness" for "wall_stiffness_N_per_m".
 std::string label_of(const protocol::ParameterInfo& info);
 /// Returns the name in words with the group, such as "Box minimum x".
 std::string full_label_of(protocol::ParameterInfo info);

@@ -27,7 +27,8 @@ void ReturnedValues::follow(const DeviceView& view, double now_s) {
     is_shown_ = now_s - shown_since_s_ < repeat_interval_s;
     return;
   }
-  // The user no longer has to decide about a value that has changed since the reconnection.
+  // Removes values that have changed since the reconnection, because the user no longer has to decide about these
+  // values.
   std::erase_if(rows_, [&](const Row& row) { return (*view.parameters)[row.parameter] != row.now; });
   is_shown_ = !rows_.empty();
 }

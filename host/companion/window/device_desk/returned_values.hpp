@@ -1,4 +1,5 @@
-// Parameter values before and after a reconnection. If the values differ, the user decides which values are used.
+// Parameter values before and after a reconnection. If the values differ, the user chooses between the old values and
+// the new values.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +20,12 @@ class ReturnedValues {
 
   /// Call once per frame.
   void follow(const DeviceView& view, double now_s);
-  /// True while the card is shown. If the values are equal, the card closes after a few seconds. Otherwise the card
-  /// remains until the user decides or the values change.
+  /// Returns true while the card is shown. A card with equal values closes after a few seconds. A card with different
+  /// values remains until the user decides or the values change.
   bool is_shown() const { return is_shown_; }
-  /// True while the user has to decide which values are used.
+  /// Returns true while the user must choose between the values.
   bool waits_for_user() const { return is_shown_ && !rows_.empty(); }
-  /// Returns the changed values; empty if no value has changed.
+  /// Returns the parameters with changed values.
   const std::vector<Row>& rows() const { return rows_; }
   /// Returns the changes that restore the previous values.
   std::vector<device::ParameterChange> changes_back() const;

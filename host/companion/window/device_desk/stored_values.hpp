@@ -1,4 +1,4 @@
-// The device's stored values, evaluated for display.
+// Evaluates the device's stored values for display.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace inkwell::window {
 /// Returns the parameters whose values are not stored; empty while the stored values are unknown.
 std::vector<protocol::Parameter> not_stored(const DeviceView& view);
 
-/// Returns a title: "3 values are not stored", "All values are stored" or "All values are defaults".
+/// Returns a title such as "3 values are not stored".
 std::string stored_title(const DeviceView& view);
 
-/// Returns the reason why the board refuses to store or erase values, and the remedy; empty: no refusal.
+/// Returns the reason and the remedy if the board refuses to store or erase values.
 std::string why_storing_waits(const DeviceView& view);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Search for faults, conversion of input fields to a request, and texts about faults.
+// Functions for the fault search, the input fields and the texts of the faults pane.
 #pragma once
 
 #include <string>
@@ -11,26 +11,26 @@
 
 namespace inkwell::window {
 
-/// Returns the reason why no fault can be injected, and the remedy; empty if faults can be injected.
+/// Returns the reason and the remedy if no fault can be injected.
 std::string_view obstacle(const device::SessionStatus& status, bool knows_control_port);
 
 /// Returns a title such as "Bridge legs".
 std::string_view title_of(protocol::InjectionPart part);
 
-/// True if each word of the search occurs in the fault's name, part or help. The search ignores case. An empty search
-/// matches every fault.
+/// Returns true if each word of the search occurs in the fault's name, part or help. The search ignores case. An empty
+/// search matches every fault.
 bool is_found(const protocol::InjectionInfo& row, std::string_view search);
 
-/// Returns the names of all wires into which faults can be injected.
+/// Returns the names of all wires for fault injection.
 std::vector<std::string_view> wires();
 
-/// Contents of the input fields. An empty field selects the default of the board.
+/// Contents of the input fields. An empty input field selects the board's default.
 struct TypedInjection {
   protocol::InjectedFault fault;
   std::string of, amount, after_s, for_s;
 };
 
-/// Converts the fields to a request. Throws device::Error if a field is not a number. The board checks the request.
+/// Converts the fields to a request. Throws device::Error if a field is not a number.
 protocol::InjectionRequest request_of(const TypedInjection& typed);
 
 /// Returns a text such as "motor 2, 0.01"; empty if the fault has neither location nor amount.

@@ -76,7 +76,7 @@ bool FaultForm::draw_field(const Field& field, std::string& typed, const Style& 
   ImGui::SameLine();
   ImGui::SetCursorPosX(left + label_part * width);
   ImGui::SetNextItemWidth((1.0f - label_part) * width - field.right_room);
-  // Waits until Enter is released. Otherwise the input field would process the key press.
+  // Waits until Enter is released, because the input field would otherwise process Enter.
   if (takes_keyboard_ && !is_enter_down()) {
     takes_keyboard_ = false;
     ImGui::SetKeyboardFocusHere();

@@ -1,4 +1,4 @@
-// The input fields of a fault (location, amount, times) and the button that injects the fault.
+// The input fields and the injection button for a fault.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ class FaultForm {
   FaultForm(protocol::InjectedFault fault, std::string of) : typed_{fault, std::move(of), {}, {}, {}} {}
 
   const TypedInjection& typed() const { return typed_; }
-  /// Moves the keyboard focus to the first field in the next frame.
+  /// In the next frame, moves the keyboard focus to the first field.
   void take_keyboard() { takes_keyboard_ = true; }
   /// Returns true if the user injects the fault.
   bool draw(const Style& style);
@@ -29,7 +29,7 @@ class FaultForm {
     float right_room;  ///< free width to the right of the field
   };
 
-  // These functions return true if the user pressed Enter in a field.
+  // Returns true if the user pressed Enter in a field.
   bool draw_place(const Style& style);
   bool draw_field(const Field& field, std::string& typed, const Style& style);
   bool draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,

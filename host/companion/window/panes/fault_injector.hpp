@@ -1,4 +1,4 @@
-// Injects faults into a virtual board and polls its active faults. A separate thread communicates with the board, so
+// Injects faults into a virtual board and polls the active faults. A separate thread communicates with the board, so
 // that the window never blocks.
 #pragma once
 
@@ -34,9 +34,9 @@ class FaultInjector {
   void heal(const std::string& fault, const std::string& of);
   void heal_all();
 
-  /// Returns answers and errors since the last call. Of consecutive answers, only the newest answer is returned.
+  /// Returns answers and errors since the last call. Omits outdated answers.
   std::vector<News> take_news();
-  /// True if there is an error, or an answer that differs from the last answer.
+  /// Returns true after an error or an answer with different faults.
   bool has_changed() const;
 
  private:

@@ -11,12 +11,11 @@ namespace {
 
 using Phase = LoggedInjection::Phase;
 
-/// A fault is recorded without a time after this number of answers. After a reset, the period count of an earlier fault
-/// may never be reached.
+/// After this number of answers, the log records a fault without a time. After a reset, the board may never reach the
+/// period count of an earlier fault.
 constexpr int patience_answers = 8;
 
-/// True if the fault may stop the control interrupt. A stopped control interrupt does not count periods until the
-/// firmware restarts.
+/// Returns true if the fault may stop the control interrupt, which counts the periods.
 bool stops_the_count(const device::Injection& injection) {
   const auto fault = protocol::find_injection(injection.fault);
   if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts continue
@@ -50,7 +49,7 @@ void FaultLog::end_those_gone(const device::Injections& now) {
   for (LoggedInjection& each : faults_)
     if (std::ranges::find(now.faults, each.injection.number, &device::Injection::number) == now.faults.end())
       each.phase = Phase::over;
-  // Removes faults that were healed before their start time.
+  // Removes faults that the user canceled before the start time.
   std::erase_if(faults_, [&](const LoggedInjection& each) {
     return each.phase == Phase::over && each.injection.at_s > now.board_time_s;
   });
@@ -73,8 +72,8 @@ bool FaultLog::Pending::was_in(unsigned number) const { return std::ranges::find
 double FaultLog::period_s(const device::Injections& now) const {
   constexpr double nominal_s = 1.0 / protocol::servo_rate_Hz, drift_maximum = 0.02;
   if (!newest_ || newest_->period >= now.period) return nominal_s;
-  // The period is measured, because an injected fault can change the crystal frequency. After a board reset, the
-  // nominal period is used.
+  // Measures the control period, because an injected fault can change the crystal frequency. After a board reset,
+  // returns the nominal period.
   const double measured_s =
       (now.period_at_s - newest_->period_at_s) / static_cast<double>(now.period - newest_->period);
   return std::abs(measured_s / nominal_s - 1.0) < drift_maximum ? measured_s : nominal_s;
@@ -82,7 +81,7 @@ double FaultLog::period_s(const device::Injections& now) const {
 
 void FaultLog::place_pending(const device::Injections& now) {
   if (!pending_) return;
-  // The board's period count has 64 bits. The period count of the fault may have wrapped at 32 bits.
+  // Compares 32 bits, because the fault's period count may have wrapped.
   const auto at_periods = static_cast<std::uint32_t>(pending_->fault.at_periods);
   const auto periods_ago = static_cast<std::int32_t>(static_cast<std::uint32_t>(now.period) - at_periods);
   const double length_s = period_s(now);

@@ -1,4 +1,4 @@
-// Log of injected faults and of the faults that the firmware detected afterwards.
+// Log of injected faults and detected faults.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,9 @@ class FaultLog {
   /// Maximum number of past faults in the log.
   static constexpr std::size_t over_maximum = 4;
 
-  /// Adds an injected fault. A short fault can be missing in the next answer of the board.
+  /// Adds an injected fault. A short fault may end before the next answer of the board.
   void add(const device::Injection& injection);
-  /// Processes an answer of the board. If the board time is lower than in the last answer, the board is different and
-  /// the log is cleared.
+  /// Processes an answer of the board. Clears the log if the board time has decreased since the last answer.
   void take(const device::Injections& now);
   /// Records a fault of the device. The log assigns the fault to injected faults once the board has reported a later
   /// period count.

@@ -1,4 +1,4 @@
-// The pane injects faults into a virtual board and shows the faults that the firmware detects.
+// The pane injects faults into a virtual board and shows the detected faults.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -30,8 +30,7 @@ using InjectionPhase = LoggedInjection::Phase;
 
 constexpr const char* heading = "Fault injection";
 constexpr float log_part_maximum = 0.42f;  // of the pane's height
-constexpr float low_points = 440.0f;       // a lower pane scrolls completely instead of part by part
-                                           // separately
+constexpr float low_points = 440.0f;       // a lower pane scrolls as a whole
 
 // Draws a word in a small font inside a frame.
 void draw_badge(std::string_view word, const Style& style) {

@@ -40,7 +40,7 @@ class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
       : desk_(around.desk), control_(around.control), simulated_arm_(around.simulated_arm) {}
-  /// Cancels a running guide, so that the force is switched off and trial parameters are restored.
+  /// Cancels a running guide, switches the force off and restores trial parameters.
   ~GuidesPane() override { GuidesPane::cancel(); }
 
   std::string_view title() const override { return "Guides"; }
@@ -217,7 +217,6 @@ void GuidesPane::draw_checks(const Style& style) {
     right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
                0.42f * width);
     if (check.expected.empty()) continue;
-    // The text and its color both show the result.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
          fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
   }
@@ -230,7 +229,6 @@ void GuidesPane::draw_result(const Style& style) {
                applied ? "Finished. The device uses the proposed values." : guide_->outcome());
   if (applied) draw_what_lasts(style);
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
-  // Proposals are drawn first, followed by the curves and the log of the measurement.
   if (guide_->phase() == Phase::finished && !guide_->findings().proposals.empty()) draw_proposals(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});

@@ -1,5 +1,5 @@
-// The pane lists events with UTC time and board time. A replay shows the events of the recording. Without a replay, the
-// pane shows the device's events since the window was opened.
+// The pane lists events with UTC time and board time. During a replay, the pane shows the events of the recording.
+// Otherwise the pane shows the events of the device.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -34,7 +34,7 @@ struct LogRow {
   std::optional<double> board_s;  ///< empty: no device was connected
 };
 
-/// Extracts "22:15:34.123" from "2026-11-23T22:15:34.123Z"; empty for any other format.
+/// Returns "22:15:34.123" for "2026-11-23T22:15:34.123Z"; empty for other formats.
 std::string_view time_of_day(std::string_view clock_utc) {
   constexpr std::size_t date_length = 11, time_length = 12;
   return clock_utc.size() < date_length + time_length ? std::string_view{} : clock_utc.substr(date_length, time_length);

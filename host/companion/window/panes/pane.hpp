@@ -37,7 +37,7 @@ struct PaneSurroundings {
   std::filesystem::path parameters_to_send;  ///< file that is sent once a device is connected; empty: none
   /// Control socket of the virtual board; empty for a real device.
   std::optional<device::SocketAddress> control;
-  /// Simulated arm; empty: the arm in the device's parameters.
+  /// Parameters of the simulated arm. Default: the device's parameters.
   std::optional<protocol::ParameterSet> simulated_arm;
   /// Starts the replay of a recording. Throws device::Error if the recording cannot be read.
   std::function<void(const std::filesystem::path&)> replay;
@@ -90,11 +90,11 @@ class Pane {
   virtual PaneStream stream() const { return {}; }
   /// Returns a short state text for the tab; empty if the pane is idle.
   virtual std::string running() const { return {}; }
-  /// True if values in the pane are not stored. The tab has a mark while the pane is not shown.
+  /// Returns true if the pane has unstored values. The tab of a hidden pane with unstored values has a mark.
   virtual bool has_values_to_store() const { return false; }
-  /// True if the content changes without input.
+  /// Returns true if the content changes without input.
   virtual bool is_moving() const { return false; }
-  /// The window initially shows the first pane that returns true. Default: the first pane.
+  /// Returns true if the window should initially show this pane. Default: the first pane.
   virtual bool is_shown_at_start() const { return false; }
 };
 

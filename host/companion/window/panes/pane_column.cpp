@@ -107,7 +107,7 @@ float PaneColumn::draw_tabs(ImVec2 origin, float width, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
   begin_pane("tabs", origin, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  // The width of a tab is the width of its title plus an equal share of the spare width.
+  // Each tab has the width of its title plus an equal share of the spare width.
   const auto count = static_cast<float>(panes_.size());
   float spare = ImGui::GetContentRegionAvail().x - (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
   for (const auto& pane : panes_) spare -= title_width(*pane, style);

@@ -1,4 +1,4 @@
-// The right column: tabs and the selected pane.
+// The right column with the tabs and the selected pane.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,12 @@ class PaneColumn {
   void follow(const PaneNews& news);
   void draw(ImVec2 origin, ImVec2 size, PaneFrame frame);
   void cancel();
-  /// Shows the pane of this tab if the tab exists. Tabs are counted from 0. Returns the name of the pane that should
-  /// receive the keyboard focus; empty if the pane has set the focus.
+  /// Shows the pane of this tab, counted from 0. Returns the pane's name if the caller must set the keyboard focus, and
+  /// otherwise an empty text.
   std::string show(std::size_t tab);
 
-  /// Returns the stream of the first pane with a reservation. Without a reservation, the stream contains the
-  /// signals of the scope and of the shown pane, up to the size limit of a selection.
+  /// Returns the stream of the first pane with a reservation. Without a reservation, returns the signals of the scope
+  /// and of the shown pane, up to the size limit of the stream.
   PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
   bool is_moving() const;
 

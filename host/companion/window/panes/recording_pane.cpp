@@ -73,10 +73,10 @@ class RecordingPane final : public Pane {
       : desk_(around.desk), replay_(around.replay), starts_with_replay_(around.starts_with_replay) {}
 
   std::string_view title() const override { return "Recording"; }
-  /// Stops the recording when the device is disconnected, and writes the device's events to the recording.
+  /// Writes the device's events to the recording. Stops the recording when the device is disconnected.
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
-  /// The scope's signals remain in the stream and are recorded with the other signals.
+  /// The recording includes the signals of the scope.
   PaneStream stream() const override { return recorder_ ? PaneStream{signals_, true} : PaneStream{}; }
   std::string running() const override {
     return recorder_ ? clock_text(recorder_->status().duration_s) : std::string();

@@ -21,7 +21,7 @@ constexpr std::size_t listed_maximum = 12;
 constexpr const char* restore_question = "restore stored values";
 constexpr const char* reset_question = "factory reset";
 
-/// Lists values line by line, such as "Wall stiffness: 1500 N/m, stored: 800".
+/// Returns one line per value, such as "Wall stiffness: 1500 N/m, stored: 800".
 std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& view) {
   std::string lines;
   for (std::size_t i = 0; i < std::min(waiting.size(), listed_maximum); ++i) {

@@ -10,10 +10,11 @@
 
 namespace inkwell::window {
 
-/// Draws the button that stores the values on the board. The tooltip shows why the board cannot store values now.
+/// Draws the button that stores the values on the board. If the board refuses to store values, the tooltip shows the
+/// reason.
 void store_button(DeviceDesk& desk, ImVec2 size, const Style& style);
 
-/// Draws a hollow dot, which marks a value that is not stored.
+/// Draws a hollow dot as the mark of an unstored value.
 void not_stored_mark(ImVec2 centre, const Style& style);
 
 /// The bar at the bottom of a pane.

@@ -310,7 +310,6 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
       ++changed;
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
-  // A title starts directly after the arrow, to the left of the rows.
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(5)});
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);
