@@ -1,4 +1,4 @@
-// Splits a line at sharp turns, because ImGui's miter joints make a line invisible at a reversal.
+// Splits a line at sharp turns, because ImGui draws sharp turns with invisible joints.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Removes invisible points of a line. Without a graphics card, the number of triangles determines the cost of a plot.
+// Removes points of a line that have no visible effect. Without a graphics card, the drawing time depends on the number
+// of triangles.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +9,8 @@
 
 namespace inkwell::window {
 
-/// Receives points in pixels and keeps the points at which the line bends. The distance between a removed point and the
-/// remaining line is at most about `invisible_pixels`. Where x decreases, only points that almost equal the previous
-/// point are removed.
+/// Keeps the points at which a line bends. The distance between a removed point and the drawn line is at most about
+/// `invisible_pixels`. Where x decreases, removes only points close to the previous point.
 template <class Point>
 class LineThinning {
  public:
@@ -40,7 +40,7 @@ class LineThinning {
     waits_ = true;
   }
 
-  /// Returns the remaining points, including the last point, and starts a new line.
+  /// Returns the thinned line and starts a new line.
   std::vector<Point> take() {
     if (waits_) kept_.push_back(waiting_);
     waits_ = false;

@@ -1,4 +1,4 @@
-// Draws grids, axis numbers and lines on ImGui draw lists.
+// Draws grids, axis numbers and lines into ImGui draw lists.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace inkwell::window {
 
-/// A rectangle on the screen, with a range on each axis.
+/// A screen rectangle with a range for each axis.
 struct PlotArea {
   ImVec2 minimum;  ///< top left corner
   ImVec2 maximum;  ///< bottom right corner
@@ -27,10 +27,10 @@ struct PlotArea {
   float to_y(double value) const { return maximum.y - static_cast<float>(y.part(value)) * height(); }
 };
 
-/// Returns the thickness in whole pixels, because ImGui then needs only a third of the triangles.
+/// Returns the thickness in whole pixels, for which ImGui needs only a third of the triangles.
 inline float line_thickness(const Style& style) { return std::round(style.points(1.5f)); }
 
-/// Collects the points of a line and draws them at each gap.
+/// Draws a line that may have gaps.
 class Polyline {
  public:
   Polyline(ImDrawList& list, ImU32 colour, float thickness) : list_(list), colour_(colour), thickness_(thickness) {}
@@ -53,7 +53,7 @@ class Polyline {
 };
 
 /// Draws the background, the grid and the numbers at the axes. `x_unit` and `y_unit` are drawn at the ends of the axes.
-/// `x_is_logarithm`: x values are exponents of ten, and the axis shows the powers.
+/// If `x_is_logarithm` is true, x values are exponents of ten, and the axis shows the powers.
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
                const std::string& y_unit, bool x_is_logarithm = false);
 

@@ -72,7 +72,7 @@ AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
     range_ = wanted;
     small_since_s_ = now_s;
   } else if (!fits) {
-    // The range grows immediately. A bound does not change if the data are within the bound.
+    // The range grows immediately.
     range_ = range_.extent() > 0.0
                  ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}
                  : wanted;

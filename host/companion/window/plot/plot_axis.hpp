@@ -16,15 +16,14 @@ struct AxisRange {
   double part(double value) const { return (value - minimum) / extent(); }
 };
 
-/// Returns about `wanted` ticks within the range, at a distance of 1, 2 or 5 times a power of ten.
+/// Returns about `wanted` ticks within the range. The distance between ticks is 1, 2 or 5 times a power of ten.
 std::vector<double> ticks(const AxisRange& range, int wanted);
 
-/// Returns the height of an axis for a signal that is constantly zero, such as 2 cm for lengths. Returns 2 for an
-/// unknown unit.
+/// Returns the axis extent for a constant zero signal, such as 0.02 for the unit "m". Returns 2 for an unknown unit.
 double extent_around_zero(std::string_view unit);
 
-/// Returns the smallest range with round bounds that contains the data and a margin. The range around a constant is a
-/// fifth of its value. The range for constant zero or missing data (NaN) is `around_zero`.
+/// Returns the smallest range with round bounds that contains the data and a margin. For a constant signal, the extent
+/// is about a fifth of the value. For a constant zero signal or missing data (NaN), the extent is `around_zero`.
 AxisRange enclosing_range(double minimum, double maximum, double around_zero = 2.0);
 
 /// Formats a tick value with enough digits to distinguish adjacent ticks, such as "0.25", "1500", "2e-06".

@@ -25,7 +25,7 @@ struct Camera {
   glm::vec3 direction() const;  ///< viewing direction
   glm::mat4 view() const;
   glm::mat4 projection(float aspect_ratio) const;
-  /// Returns the size in meters of a pixel at the depth of a point.
+  /// Returns the size of a pixel at the depth of `at_m`, in meters.
   float metres_per_pixel(glm::vec3 at_m, float view_height_pixels) const;
   /// Returns the ray through a pixel; (0,0) is the top left corner.
   Ray ray(glm::vec2 pixel, glm::vec2 view_size_pixels) const;
@@ -42,7 +42,7 @@ glm::vec3 on_view_plane(const Camera& camera, const Ray& ray, glm::vec3 point_m)
 /// Returns the t for which `point + t * direction` is nearest to the ray; `direction` is a unit vector.
 float nearest_on_line(const Ray& ray, glm::vec3 point, glm::vec3 direction);
 
-/// Returns a camera that shows the whole box from a position slightly above.
+/// Returns a camera that shows the whole box from slightly above.
 Camera look_at_box(glm::vec3 minimum_m, glm::vec3 maximum_m);
 
 }  // namespace inkwell::window

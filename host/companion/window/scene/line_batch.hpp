@@ -1,5 +1,5 @@
-// Antialiased lines with a fixed width in pixels, drawn as bands with soft edges. Multisampling would be too slow
-// without a graphics card.
+// Draws antialiased lines as bands with soft edges. The width of the lines is in pixels. Multisampling would be too
+// slow without a graphics card.
 #pragma once
 
 #include <vector>
@@ -18,9 +18,9 @@ class LineBatch {
   LineBatch(const LineBatch&) = delete;
   LineBatch& operator=(const LineBatch&) = delete;
 
-  /// Adds a line between two points in view space. The color and its alpha are interpolated.
+  /// Adds a line between two points in view space. Interpolates color and alpha along the line.
   void add(glm::vec3 from, glm::vec3 to, glm::vec4 from_colour, glm::vec4 to_colour, float width_pixels);
-  /// Draws the lines in the order of addition, and clears the batch.
+  /// Draws all lines in order and clears the batch.
   void draw(const glm::mat4& to_clip, glm::vec2 viewport_pixels);
 
  private:

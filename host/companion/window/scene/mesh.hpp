@@ -21,14 +21,13 @@ struct Mesh {
 /// Unit sphere around the origin.
 Mesh sphere(int rings, int segments);
 
-/// Cone or cylinder about the z axis, from z = 0 to z = 1, with flat ends. The radius is 1 at z = 0 and `end_radius` at
-/// z = 1.
+/// Cone or cylinder with flat ends from z = 0 to z = 1. The radius is 1 at z = 0 and `end_radius` at z = 1.
 Mesh tapered_cylinder(float end_radius, int segments);
 
-/// Helical spring about the z axis, from z = 0 to z = 1, with coil radius 1.
+/// Helical spring with coil radius 1 from z = 0 to z = 1.
 Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_around);
 
-/// Returns the transformation that maps a mesh from z = 0 to z = 1 onto the line between two points.
+/// Returns the transformation that maps the z axis from 0 to 1 onto the line between two points.
 glm::mat4 between(glm::vec3 from, glm::vec3 to, float radius);
 
 }  // namespace inkwell::window

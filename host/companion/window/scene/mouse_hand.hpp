@@ -1,4 +1,4 @@
-// The mouse as the simulated hand of a virtual board. A separate thread communicates with the board, so that
+// Moves the simulated hand of a virtual board with the mouse. A separate thread communicates with the board, so that
 // the window never blocks.
 #pragma once
 
@@ -20,7 +20,7 @@ inline constexpr double hand_stiffness_N_per_m = 150.0;
 inline constexpr double hand_damping_Ns_per_m = 2.0;
 inline constexpr float hand_pull_maximum_N = 2.8f;
 
-/// Limits the distance between target and probe, because the force of the hand is limited.
+/// Limits the distance between the hand's target and the probe.
 glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m);
 
 class MouseHand {

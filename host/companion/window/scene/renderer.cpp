@@ -23,7 +23,7 @@ struct WallPicture {
   float border_alpha, grid_alpha, face_alpha;
 };
 
-/// Returns the pictures of the walls in the order in which they are drawn.
+/// Returns the walls in drawing order.
 std::vector<WallPicture> wall_pictures(const SceneModel& scene, const Camera& camera, const SceneLook& look) {
   const glm::mat3 to_view = workspace_to_view(scene.frame);
   std::vector<WallPicture> pictures;
@@ -95,7 +95,7 @@ void Renderer::draw_sky(const Palette& palette) const {
 }
 
 void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
-  // The lines fade with the distance from the middle.
+  // The floor lines fade with the distance from the middle.
   const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
   const glm::vec4 colour = to_vector(look.palette.floor_line);
   const int count = static_cast<int>(floor_radius_m / floor_grid_m);
@@ -120,7 +120,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
 }
 
 void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) const {
-  // The stencil buffer darkens each pixel of the shadow only once, even where bodies overlap.
+  // The stencil buffer prevents overlapping bodies from darkening a shadow pixel twice.
   glm::mat4 flattened{1.0f};
   flattened[1][1] = 0.0f;
   flattened[3][1] = scene.floor_height_m + 0.0005f;

@@ -31,7 +31,7 @@ class Renderer {
 
  private:
   void show_target(const Viewport& viewport) const;
-  /// Returns false if the target has this size and a valid picture.
+  /// Sets the size of the target. Returns true if the size has changed.
   bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;

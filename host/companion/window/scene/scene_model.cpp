@@ -27,8 +27,8 @@ glm::vec3 up_of(control::Frame frame) {
 
 glm::mat3 workspace_to_view(control::Frame frame) {
   if (frame == control::Frame::omni) return glm::mat3{1.0f};
-  // In the frame `paper`, x points from the base to the user, y to the right of the user, and z up. Each column is an
-  // axis in view space.
+  // In the frame `paper`, x points from the base to the user, y to the right of the user, and z up. Each matrix column
+  // is an axis in view space.
   return {glm::vec3{0, 0, 1}, glm::vec3{1, 0, 0}, glm::vec3{0, 1, 0}};
 }
 

@@ -1,4 +1,4 @@
-// Geometry of the scene, computed from pose and parameters with the firmware's code (inkwell_control).
+// Computes the scene geometry with the firmware's code (inkwell_control).
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct WallView {
   bool pushes_back;     ///< in contact, and the force is on
 };
 
-/// Geometry of the scene. All vectors are in workspace axes and meters.
+/// Geometry of the scene. All vectors are in workspace axes.
 struct SceneModel {
   glm::vec3 shoulder_m;
   glm::vec3 elbow_m;
@@ -42,20 +42,20 @@ struct SceneModel {
   control::Frame frame;
 };
 
-/// Computes the scene for a pose. Without a referenced pose, the stylus is drawn in the inkwell.
+/// Computes the scene for a pose. Without a referenced pose, the stylus is in the inkwell.
 SceneModel build_scene(const std::optional<device::Pose>& pose, const protocol::ParameterSet& parameters);
 
-/// True if the two poses look different in the scene.
+/// Returns true if the two poses look different in the scene.
 bool differs_visibly(const std::optional<device::Pose>& a, const std::optional<device::Pose>& b);
 
-/// Returns the rotation from workspace axes to view space for a frame.
+/// Returns the rotation matrix from workspace axes to view space.
 glm::mat3 workspace_to_view(control::Frame frame);
 
 /// Returns the parameter that sets the position of a wall.
 protocol::Parameter wall_parameter(int axis, bool upper);
 
-/// Returns the position of a dragged wall, rounded to millimeters. The position is within the parameter's range, and
-/// the sphere fits between the two walls.
+/// Returns the position of a dragged wall, rounded to millimeters. The position is within the parameter's range and
+/// leaves room for the sphere between the walls.
 float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool upper, float wanted_m);
 
 }  // namespace inkwell::window

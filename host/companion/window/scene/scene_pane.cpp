@@ -36,7 +36,7 @@ Box plate_of(const Style& style, ImVec2 position, const std::string& content) {
   return {position.x - pad, position.y - pad * 0.5f, position.x + taken.x + pad, position.y + taken.y + pad * 0.5f};
 }
 
-// Draws a label on a background, so that the label is legible in front of any picture.
+// Draws a label with a background.
 void plate(ImDrawList& list, const Style& style, ImVec2 position, Colour colour, const std::string& content) {
   const Box box = plate_of(style, position, content);
   list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, packed(style.palette->pane.with_alpha(205)),
@@ -202,7 +202,7 @@ void ScenePane::note_handles() const {
                on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
 }
 
-// Draws the label below the proxy. The label has a tooltip.
+// Draws the label and the tooltip of the proxy.
 void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
   const glm::vec2 proxy = to_glm(on_screen(scene_.proxy_m));
   const float radius =
@@ -219,7 +219,7 @@ void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
     help_on_hover("Proxy", about_the_proxy, style);
 }
 
-// Draws the handles of the walls. The label of the marked wall shows its position.
+// Draws the handles of the walls. The label shows the position of the marked wall.
 void ScenePane::draw_wall_handles(ImDrawList& list, const Style& style) const {
   const Palette& palette = *style.palette;
   for (int wall = 0; wall < 6; ++wall) {
@@ -236,13 +236,13 @@ void ScenePane::draw_wall_handles(ImDrawList& list, const Style& style) const {
   }
 }
 
-// Draws the magnitude of the force at the tip of its arrow. Returns the rectangle of the label.
+// Draws the force value at the tip of the force arrow. Returns the rectangle of the label.
 Box ScenePane::draw_force_label(ImDrawList& list, const Style& style) const {
   const float force_N = glm::length(scene_.force_N);
   if (force_N <= 0.02f) return {};
   const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
   const std::string label = fmt::format("{:.2f} N", force_N);
-  // The label is on the side opposite to the shaft of the arrow.
+  // The label must not cover the arrow.
   const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
   const float left =
       to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
@@ -251,12 +251,12 @@ Box ScenePane::draw_force_label(ImDrawList& list, const Style& style) const {
   return plate_of(style, corner, label);
 }
 
-// Draws the force of the simulated hand above the label of the arm's force.
+// Draws the force value of the simulated hand. The two force labels do not overlap.
 void ScenePane::draw_hand_label(ImDrawList& list, const Style& style, const Box& force_plate) const {
   if (!hand_view_) return;
   const float pull_N = static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
   if (pull_N <= 0.25f) return;
-  // The label is on the side opposite to the sphere.
+  // The label must not cover the sphere.
   const ImVec2 target = on_screen(hand_view_->target_m);
   const std::string label = fmt::format("hand {:.1f} N", pull_N);
   const bool to_the_left = target.x < on_screen(scene_.probe_m).x;
@@ -268,7 +268,7 @@ void ScenePane::draw_hand_label(ImDrawList& list, const Style& style, const Box&
   plate(list, style, corner, style.palette->text_quiet, label);
 }
 
-// Draws the position at the lower right, and the help to the left of the position if it fits.
+// Draws the probe position at the lower right. A wide pane also shows a help text.
 void ScenePane::draw_footer(ImDrawList& list, const ScenePaneInput& input) const {
   const Style& style = input.style;
   float room_x = origin_.x + size_.x - style.points(16);

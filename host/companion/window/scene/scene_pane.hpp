@@ -46,7 +46,7 @@ class ScenePane {
   enum class Drag : std::uint8_t { none, orbit, pan, hand, wall };
 
   void handle_mouse(const ScenePaneInput& input);
-  /// Shift with the arrow keys rotates the view, Ctrl+Shift moves the view, and Ctrl moves the simulated hand.
+  /// The arrow keys rotate the view with Shift, move the view with Ctrl+Shift, and move the simulated hand with Ctrl.
   void handle_keys(const ScenePaneInput& input);
   void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
   void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);

@@ -33,7 +33,7 @@ class Builder {
   std::vector<Solid> solids_;
 };
 
-// The arm description defines lengths and angles. Thicknesses are chosen for appearance.
+// The arm description defines lengths and angles. The thicknesses of the links are chosen for appearance.
 void add_arm(Builder& builder, const SceneModel& scene, glm::vec3 up, const Palette& palette) {
   const glm::vec3 foot = scene.shoulder_m + up * (scene.floor_height_m - glm::dot(scene.shoulder_m, up));
   const glm::vec3 link_3 = glm::normalize(scene.probe_m - scene.elbow_m);

@@ -1,4 +1,4 @@
-// Shaders of the scene. The shaders must be fast on a CPU without a graphics card.
+// Shaders of the scene. The shaders must be fast on computers without a graphics card.
 #pragma once
 
 namespace inkwell::window::shaders {
@@ -19,7 +19,7 @@ in vec3 shade;
 out vec4 colour;
 void main() { colour = vec4(shade, 1.0); })";
 
-/// Draws all bodies. Positions and normals are already in view space.
+/// Draws all bodies. Positions and normals of the bodies are in view space.
 inline constexpr char solid_vertex[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -71,7 +71,7 @@ uniform vec4 base_colour;
 out vec4 colour;
 void main() { colour = base_colour; })";
 
-/// Draws a rectangle from a corner and two edges. `position_m` is the position along the edges, in meters.
+/// Draws a rectangle with the given corner and edges. `position_m` is the position along the edges, in meters.
 inline constexpr char wall_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
@@ -97,8 +97,8 @@ void main() {
   colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
 
-/// Draws lines as bands. The vertices are in clip space. The distance across a band is in pixels and is therefore
-/// interpolated without perspective correction.
+/// Draws lines as bands. The vertices are in clip space. The distance across a band is in pixels, which requires
+/// interpolation without perspective correction.
 inline constexpr char line_vertex[] = R"(#version 330 core
 layout(location = 0) in vec4 position;
 layout(location = 1) in vec4 end_colour;

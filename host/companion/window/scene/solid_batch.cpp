@@ -32,8 +32,8 @@ void SolidBatch::append(const Solid& solid, bool opaque) {
   const Mesh& mesh = meshes_[static_cast<std::size_t>(solid.shape)];
   const auto first = static_cast<std::uint16_t>(corners_.size());
   const glm::mat3 turn{solid.placement};
-  // Bodies are scaled only along their axes. Normals need the inverse transpose of the matrix. Division by the squared
-  // scale computes the inverse transpose.
+  // Transforms normals with the inverse transpose of the matrix. Bodies are scaled only along their axes, so a division
+  // by the squared scale is sufficient.
   const glm::vec3 stretch_squared{glm::dot(turn[0], turn[0]), glm::dot(turn[1], turn[1]), glm::dot(turn[2], turn[2])};
   for (const Vertex& vertex : mesh.vertices)
     corners_.push_back({glm::vec3{solid.placement * glm::vec4{vertex.position, 1.0f}},

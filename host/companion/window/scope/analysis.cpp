@@ -73,7 +73,7 @@ Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t
 }
 
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel) {
-  // New noise samples rarely exceed the previous extremes by more than this fraction of the range.
+  // Noise rarely exceeds its previous range by more than this fraction.
   constexpr float noise_part = 0.25f;
   const float margin = std::max(static_cast<float>(value_of_a_pixel), noise_part * (before.maximum - before.minimum));
   return newest.minimum < before.minimum - margin || newest.maximum > before.maximum + margin;

@@ -8,7 +8,7 @@
 
 namespace inkwell::window {
 
-/// Statistics without the lost samples. If no sample remains, `count` is 0 and all other members are NaN.
+/// Statistics of the received samples. Without received samples, `count` is 0 and all other members are NaN.
 struct Statistics {
   std::uint64_t count;
   double minimum;
@@ -20,18 +20,18 @@ struct Statistics {
 
 Statistics statistics(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// Amplitude spectrum in the signal's unit: amplitudes[i] at the frequency i * resolution_Hz.
+/// Amplitude spectrum in the signal's unit. The frequency of amplitudes[i] is i * resolution_Hz.
 struct Spectrum {
   double resolution_Hz = 0.0;
   std::vector<double> amplitudes;
 };
 
-/// Returns the spectrum of the newest samples in [first, last). The mean is removed, and a Hann window is applied. The
-/// number of samples is a power of two, at most 32768. The spectrum is empty for fewer than 16 samples or if a sample
-/// was lost.
+/// Returns the spectrum of the newest samples in [first, last). Removes the mean and applies a Hann window. The number
+/// of samples is a power of two, at most 32768. The spectrum is empty if a sample was lost or if there are fewer than
+/// 16 samples.
 Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
-/// True if the newest samples exceed the previous range of the signal by more than typical noise.
+/// Returns true if the newest samples exceed the previous range of the signal by more than typical noise.
 bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
 
 }  // namespace inkwell::window

@@ -1,4 +1,4 @@
-// Two cursors of the time plots, for measuring time and value differences.
+// Two cursors that measure time and value differences in the time plots.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ class Cursors {
 
   /// Draws the cursors and handles dragging. The last ImGui item must be the time plot.
   void draw(const PlotArea& area, const Style& style);
-  /// Moves the first (0) or second (1) cursor by `steps` percent of the span.
+  /// Moves the first (0) or second (1) cursor by `steps` percent of the displayed time span.
   void step(std::size_t cursor, int steps);
-  /// True while the user drags a cursor. A cursor drag disables plot dragging.
+  /// Returns true while the user drags a cursor. A cursor drag disables plot dragging.
   bool is_dragged() const { return dragged_ >= 0; }
 
   /// Returns the values of a signal at both cursors; NaN if a value is unknown.

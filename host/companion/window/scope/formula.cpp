@@ -36,7 +36,7 @@ std::vector<std::string_view> names_in(std::string_view text) {
   return names;
 }
 
-/// True if the text contains an assignment. muParser would execute the assignment.
+/// Returns true if the text contains an assignment, which muParser would execute.
 bool assigns(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool compares_before = i > 0 && std::string_view("<>!=").find(text[i - 1]) != std::string_view::npos;

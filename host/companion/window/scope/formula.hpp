@@ -25,8 +25,8 @@ struct Formula {
 /// Returns the signals in the text, without repetitions.
 std::vector<protocol::Signal> inputs_of(std::string_view text);
 
-/// Derives the unit if the text only adds and subtracts signals with the same unit. Otherwise returns an empty text,
-/// and the user has to enter the unit.
+/// Returns the unit if the text only adds and subtracts signals with the same unit. For other formulas, returns an
+/// empty text.
 std::string find_unit(std::string_view text);
 
 /// Returns the error of the formula and the remedy; empty if the formula is valid.
@@ -35,7 +35,7 @@ std::string refusal_of(const Formula& formula);
 /// Evaluates a formula for consecutive control periods.
 class FormulaValues {
  public:
-  /// Requires a formula for which refusal_of() is empty.
+  /// Requires a valid formula (refusal_of() is empty).
   explicit FormulaValues(const Formula& formula);
   FormulaValues(FormulaValues&&) noexcept;
   FormulaValues& operator=(FormulaValues&&) noexcept;

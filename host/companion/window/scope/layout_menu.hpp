@@ -1,4 +1,4 @@
-// The menu selects the layout of the scope. The user can also save, rename and delete layouts.
+// The menu selects, saves, renames and deletes layouts of the scope.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class LayoutMenu {
   void draw_choices(ScopeLayout& layout);
   void open_name_dialog(NameTask task, const std::string& suggestion);
   void draw_name(ScopeLayout& layout, const Style& style);
-  /// Applies the typed name. Returns false and shows the reason if the name is invalid.
+  /// Applies the typed name. If the name is invalid, shows the reason and returns false.
   bool save_name(ScopeLayout& layout);
 
   OwnLayouts own_;

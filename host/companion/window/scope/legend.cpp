@@ -25,7 +25,7 @@ std::size_t first_on_y_axis(const ScopePlot& plot) {
   return plot.kind == PlotKind::xy && plot.signals.size() > 1 ? 1 : 0;
 }
 
-// Returns the signal names. The names omit the unit if all signals have the same unit.
+// Returns the signal names. If all signals have the same unit, the names do not contain the unit.
 std::vector<std::string> names_on_y_axis(const ScopePlot& plot) {
   const bool unit_is_known = !common_unit(plot).empty();
   std::vector<std::string> names;
@@ -55,7 +55,7 @@ class LegendLabels {
   LegendLabels(const ScopePlot& plot, const PlotFrame& frame, float room)
       : plot_(plot), frame_(frame), room_(room), names_(names_on_y_axis(plot)) {
     if (fits(names_)) return;
-    // In a narrow plot, each label is only the last word of the name.
+    // In a narrow plot, each label contains only the last word of the signal name.
     if (const std::vector<std::string> words = last_words(plot); words.size() > 1 && are_different(words))
       names_ = words;
     if (fits(names_)) return;
@@ -63,8 +63,7 @@ class LegendLabels {
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
-  /// Adds the values at the cursors and their difference while the cursors are shown. A narrow plot has room only for
-  /// the difference, and a very narrow plot for neither.
+  /// While cursors are shown, adds the values at the cursors if the plot is wide enough.
   std::vector<std::string> labels() const {
     if (!frame_.cursors.are_shown() || plot_.kind != PlotKind::time) return names_;
     for (const bool in_full : {true, false}) {

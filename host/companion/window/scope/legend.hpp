@@ -10,10 +10,10 @@
 
 namespace inkwell::window {
 
-/// Formats a number with four digits; returns a dash for NaN.
+/// Returns a number with four digits, or a dash for NaN.
 std::string formatted(double value);
 
-/// Returns the name without the unit: "force_N" -> "force".
+/// Returns the name without the unit, such as "force" for "force_N".
 std::string short_name(const ScopeSignal& signal);
 
 /// Returns the common unit of all signals on the y axis; empty if the units differ.

@@ -13,7 +13,7 @@
 
 namespace inkwell::window {
 
-/// Data of a frame for all plots of the scope.
+/// Data of one frame for all plots.
 struct PlotFrame {
   const Style& style;
   Timeline& timeline;  ///< the mouse moves its displayed section
@@ -24,7 +24,7 @@ struct PlotFrame {
   bool& has_motion;          ///< set to true if a signal leaves its range, but not for scrolling
 };
 
-/// View of a plot. The state persists between frames.
+/// View of a plot. The view retains its state between frames.
 class PlotView {
  public:
   explicit PlotView(ScopePlot plot) : plot_(std::move(plot)) {}

@@ -1,4 +1,4 @@
-// Layouts: the plots of the scope and their signals.
+// Layouts of the scope with their plots and signals.
 #pragma once
 
 // To add a layout, add a row to built_in_layouts() in host/companion/window/scope/scope_layout.cpp.
@@ -51,7 +51,7 @@ std::span<const ScopeLayout> built_in_layouts();
 /// Returns the built-in layout with this name, or the first built-in layout if no layout has this name.
 const ScopeLayout& built_in_layout(std::string_view name);
 
-/// Layouts that the user has saved.
+/// Layouts saved by the user.
 class OwnLayouts {
  public:
   OwnLayouts() = default;
@@ -60,8 +60,8 @@ class OwnLayouts {
   std::span<const ScopeLayout> all() const { return layouts_; }
   const ScopeLayout* find(std::string_view name) const;
 
-  /// Returns the reason why no layout can be saved under this name; empty if the name is valid. Saving under the name
-  /// of a user layout replaces this layout.
+  /// Returns the reason why the name is invalid for a layout, or an empty text. A saved layout replaces the user layout
+  /// with the same name.
   static std::string refusal(std::string_view name);
   void save(ScopeLayout layout);
   /// Renames the layout. Returns an error message; empty on success.
@@ -78,14 +78,15 @@ class OwnLayouts {
 const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own);
 /// Returns all layout names, separated by commas.
 std::string layout_names(const OwnLayouts& own);
-/// Returns the user layout or built-in layout with this name, or the first built-in layout.
+/// Returns the layout with this name, or the first built-in layout if the name is unknown.
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
 
 /// Finds a device signal or a formula by name.
 std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas);
-/// Replaces the formula named `before` in the layout and all plots. If no formula has this name, adds the new formula.
+/// Replaces the formula named `before` in the layout and in all plots. If no formula has this name, adds the new
+/// formula.
 void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before);
-/// Removes the formula from the layout and all plots. Removes plots without signals.
+/// Removes the formula from the layout and from all plots. Removes plots without signals.
 void remove_formula(ScopeLayout& layout, std::string_view name);
 /// Returns the formulas that the plots show, without repetitions.
 std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);
@@ -93,7 +94,7 @@ std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);
 /// Returns advice for a plot without data; empty if the plot shows data.
 std::string hint_for(const ScopePlot& plot, const SignalHistory& history);
 
-/// Returns the signals of the layout without repetitions, up to the stream's limit.
+/// Returns each signal of the layout once, up to the size limit of the stream.
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout);
 
 }  // namespace inkwell::window

@@ -94,7 +94,7 @@ void ScopePane::follow_layout() {
 }
 
 void ScopePane::draw_plots(PlotFrame& frame) {
-  // A small pane shows only as many rows as are legible, and the user can scroll.
+  // If the pane is too small for all rows, the user can scroll.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -1,4 +1,4 @@
-// The scope: time, xy and spectrum plots of signals.
+// The scope shows time plots, xy plots and spectra of signals.
 #pragma once
 
 #include <memory>
@@ -24,26 +24,26 @@ class ScopePane {
   ~ScopePane();
 
   void draw(ImVec2 origin, ImVec2 size, const Style& style);
-  /// Adds samples from the device or a recording. A paused scope discards received samples. `over`: samples of an
-  /// overlaid recording for the same periods; null: no overlay.
+  /// Adds samples from the device or a recording. A paused scope discards received samples. `over` contains the samples
+  /// of the overlaid recording, or is null.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
     timeline_.receive(samples, over);
   }
-  /// Clears the history. Call before samples that do not directly follow the previous samples.
+  /// Clears the history. Call if the next samples do not directly follow the previous samples.
   void restart() { timeline_.restart(); }
   double span_s() const { return timeline_.span_s(); }
 
   /// Returns the signals that the plots and the trigger need.
   std::vector<protocol::Signal> signals() const;
-  /// Returns the settings to save.
+  /// Returns the current scope settings.
   ScopeSettings settings() const;
-  /// True if a signal exceeded its previous range since the last call. Scrolling does not count as motion.
+  /// Returns true if a signal exceeded its previous range since the last call.
   bool take_motion() { return std::exchange(has_motion_, false); }
 
  private:
   /// Creates the views of new plots. Unchanged plots retain their views.
   void follow_layout();
-  /// Shift with the arrow keys moves and zooms the time range. Ctrl with the arrow keys moves the cursors.
+  /// The arrow keys move and zoom the time range with Shift, and move the cursors with Ctrl.
   void take_keys();
   void draw_controls(const Style& style);
   void draw_plots(PlotFrame& frame);

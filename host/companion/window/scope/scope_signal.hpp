@@ -1,4 +1,4 @@
-// A signal in a plot: a device signal or the result of a formula.
+// A plotted signal, which is a device signal or the result of a formula.
 #pragma once
 
 #include <memory>
@@ -35,8 +35,7 @@ class ScopeSignal {
   std::shared_ptr<const Formula> formula_;
 };
 
-/// True for a setpoint, such as a current reference. A setpoint is drawn in front of the noisy signals that follow the
-/// setpoint.
+/// Returns true for a setpoint, such as a current reference. Setpoints are drawn in front of measured signals.
 bool is_reference(const ScopeSignal& signal);
 /// Returns the indices of the signals in drawing order.
 std::vector<std::size_t> drawing_order(const std::vector<ScopeSignal>& signals);
@@ -46,7 +45,7 @@ struct SignalGroup {
   std::string_view title;
   std::vector<protocol::Signal> signals;
 };
-/// Returns the streamable signals in groups. Each word of the search must occur in the name, the help or the group
+/// Returns the streamable signals in groups. Each word of the search must occur in the name, help text, unit or group
 /// title of a signal. An empty search matches every signal.
 std::vector<SignalGroup> signal_groups(std::string_view search);
 

@@ -13,8 +13,8 @@ constexpr int bits_per_level = 4;
 constexpr std::size_t branching = std::size_t{1} << bits_per_level;
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
-// Returns the smaller number and ignores NaN (a lost sample). The compiler does not inline the slower functions fmin()
-// and fmax().
+// Ignores NaN, which represents a lost sample. fmin() and fmax() are slower, because the compiler does not inline these
+// functions.
 float smaller(float a, float b) { return b < a || a != a ? b : a; }
 float larger(float a, float b) { return b > a || a != a ? b : a; }
 Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), larger(a.maximum, b.maximum)}; }

@@ -1,7 +1,6 @@
-// The last minutes of the scope's signals, stored for fast drawing of any section. Each signal has a ring buffer of
-// samples. Additional ring buffers contain the minimum and maximum of sample blocks. The block sizes are the powers of
-// 16. The extremes of a section need only a few dozen look-ups. The cost of a plot therefore depends on the number of
-// pixels instead of the number of samples.
+// Stores the last minutes of the scope's signals for fast drawing. Each signal has a ring buffer of samples. Additional
+// ring buffers contain the minimum and maximum of each block of samples. The block sizes are powers of 16. The drawing
+// time of a plot depends on the number of pixels, not on the number of samples.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@
 
 namespace inkwell::window {
 
-/// Minimum and maximum of several samples. Minimum and maximum are NaN if every sample was lost.
+/// Minimum and maximum of several samples, or NaN if all samples were lost.
 struct Extremes {
   float minimum;
   float maximum;
@@ -27,7 +26,7 @@ struct Extremes {
 
 class SignalSeries {
  public:
-  /// `capacity`: a power of 16 times a power of 2, at least 16. `first`: index of the first appended sample.
+  /// `capacity` must be a power of two and at least 16. `first` is the index of the first appended sample.
   explicit SignalSeries(std::size_t capacity, std::uint64_t first = 0);
 
   void append(float value);
@@ -51,7 +50,7 @@ class SignalSeries {
   std::vector<Level> levels_;  // levels_[k]: blocks of 16^(k+1) samples
 };
 
-/// Samples from one source: the device or a recording.
+/// Samples from the device or from a recording.
 class SignalLane {
  public:
   explicit SignalLane(std::size_t capacity) : capacity_(capacity) {}
@@ -59,9 +58,9 @@ class SignalLane {
   const std::vector<protocol::Signal>& signals() const { return signals_; }
   /// Clears the samples and sets new signals. The next sample has the index `first`.
   void restart(std::vector<protocol::Signal> signals, std::uint64_t first);
-  /// Sets the formulas and computes their results, including the results for the stored samples.
+  /// Sets the formulas and computes their results for the stored samples.
   void derive(const std::vector<ScopeSignal>& formulas);
-  /// Appends samples. `values` contains all signals of the first period, then of the second period, and so on.
+  /// Appends samples. `values` contains the values of all signals, period by period.
   void append(std::span<const float> values);
   void append_lost(std::uint64_t count);
 
@@ -95,8 +94,8 @@ class SignalHistory {
   explicit SignalHistory(std::size_t capacity = std::size_t{1} << 21)
       : capacity_(capacity), shown_(capacity), over_(capacity) {}
 
-  /// Appends samples. If `samples` contains different signals, the history is cleared first. Lost samples are stored as
-  /// NaN. `over`: samples of the overlaid recording for the same periods; null: no overlay.
+  /// Appends samples. If the signals have changed, clears the history first. Stores lost samples as NaN. `over`
+  /// contains the samples of the overlaid recording, or is null.
   void append(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   void clear();
   /// Sets the formulas that are computed in addition to the signals.
@@ -112,8 +111,8 @@ class SignalHistory {
   SignalLane shown_, over_;
 };
 
-/// Divides [first, last) into `columns` columns and returns the extremes of each column. The column widths differ by at
-/// most one sample, or by at most 1/16 for wide columns. Each sample belongs to exactly one column.
+/// Divides [first, last) into `columns` columns and returns the extremes of each column. The column widths are nearly
+/// equal. Each sample belongs to exactly one column.
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
 
 }  // namespace inkwell::window

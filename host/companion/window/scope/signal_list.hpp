@@ -15,7 +15,7 @@ inline constexpr std::string_view nothing_found =
 
 void draw_search(std::string& search, const Style& style);
 
-/// Returns the name of the signal that was dropped onto the last item, if any.
+/// Returns the name of the signal that the user dropped onto the last item, or an empty value.
 std::optional<std::string> dropped_signal();
 
 class SignalList {
@@ -23,8 +23,7 @@ class SignalList {
   bool is_shown() const { return is_shown_; }
   void toggle() { is_shown_ = !is_shown_; }
 
-  /// Draws the list to the left of the next item, unless the list is hidden. Draws the formula dialog if the dialog is
-  /// open.
+  /// Draws the visible list to the left of the next item. Draws the open formula dialog.
   void draw(ScopeLayout& layout, const Style& style);
 
  private:
@@ -33,7 +32,7 @@ class SignalList {
   void ask_about(const Formula& formula);
   void draw_dialog(ScopeLayout& layout, const Style& style);
   void draw_fields(const Style& style);
-  /// Returns the contents of the fields.
+  /// Returns the formula in the input fields.
   Formula typed() const;
 
   bool is_shown_ = false;

@@ -89,7 +89,7 @@ class TimeView final : public PlotView {
                  frame.style.points(1));
   }
 
-  // The wheel zooms, a drag moves into the past, and a double click returns to the newest samples.
+  // The mouse wheel zooms, a drag moves the displayed section, and a double click returns to the newest samples.
   static void take_mouse(const PlotArea& area, PlotFrame& frame) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)

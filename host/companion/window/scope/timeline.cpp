@@ -54,7 +54,7 @@ Stretch Timeline::stretch() {
       return {first, first + span, static_cast<double>(*event)};
     }
   }
-  // The section moves in whole steps, so that each sample stays in its column. Otherwise scrolling lines would flicker.
+  // The section moves in whole steps, so that scrolling lines do not flicker.
   const double part = std::max(1.0, std::floor(span / parts_of_span));
   const double last = std::floor(end / part) * part;
   return {last - span, last, last};

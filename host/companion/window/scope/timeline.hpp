@@ -23,12 +23,12 @@ class Timeline {
  public:
   Timeline(double span_s, const TriggerSettings& trigger) : trigger_settings_(trigger), span_s_(span_s) {}
 
-  /// Adds samples from the device or a recording. A paused timeline discards received samples. `over`: samples of an
-  /// overlaid recording for the same periods; null: no overlay.
+  /// Adds samples from the device or a recording. A paused timeline discards received samples. `over` contains the
+  /// samples of the overlaid recording, or is null.
   void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
   /// Sets the formulas that are computed in addition to the received signals.
   void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
-  /// Clears the history. Call before samples that do not directly follow the previous samples.
+  /// Clears the history. Call if the next samples do not directly follow the previous samples.
   void restart();
   const SignalHistory& history() const { return history_; }
 
@@ -37,13 +37,15 @@ class Timeline {
 
   double span_s() const { return span_s_; }
   void set_span_s(double span_s) { span_s_ = span_s; }
-  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While paused, the sample at the mouse position
-  /// does not move. `right_part`: distance of the mouse from the right end, as a fraction of the span.
+  /// Zooms by steps of the mouse wheel. Positive steps reduce the span. While the timeline is paused, the sample at the
+  /// mouse position does not move. `right_part` is the distance of the mouse from the right end, as a fraction of the
+  /// span.
   void zoom(double steps, double right_part);
 
   bool is_paused() const { return paused_; }
   void pause(bool paused);
-  /// Pauses, and moves the displayed section by a fraction of the span. Positive values move into the past.
+  /// Pauses the timeline and moves the displayed section by a fraction of the span. A positive fraction moves the
+  /// section into the past.
   void drag(double part);
 
   const TriggerSettings& trigger() const { return trigger_settings_; }

@@ -24,7 +24,7 @@ void Trigger::arm() {
 
 void Trigger::advance(const SignalSeries& series, const TriggerSettings& settings, double span) {
   if (settings.mode == TriggerMode::off) return;
-  // After arm() or a restart of the history, only new samples are searched.
+  // After arm() or a restart of the history, the search starts with the next sample.
   if (next_checked_ > series.end()) next_checked_ = series.end();
   if (settings.mode == TriggerMode::single && event_) return;
   const auto after = static_cast<std::uint64_t>(span * (1.0 - static_cast<double>(settings.pre_trigger)));

@@ -24,7 +24,7 @@ struct TriggerSettings {
   bool operator==(const TriggerSettings&) const = default;
 };
 
-/// Returns the first index in [first, last) at which the signal has crossed the level since the previous sample.
+/// Returns the index of the first sample in [first, last) after a level crossing.
 std::optional<std::uint64_t> find_crossing(const SignalSeries& series, std::uint64_t first, std::uint64_t last,
                                            float level, TriggerEdge edge);
 
@@ -34,7 +34,7 @@ class Trigger {
   void arm();  ///< clears the event
   /// Examines the new samples of the series. `span` is the displayed number of samples.
   void advance(const SignalSeries& series, const TriggerSettings& settings, double span);
-  /// Returns the index of the last event with a complete span; empty: no event.
+  /// Returns the index of the last event with a complete span; empty if there is no event.
   std::optional<std::uint64_t> event() const { return event_; }
 
  private:

@@ -35,7 +35,7 @@ class XyView final : public PlotView {
   }
 
  private:
-  /// Draws the signals of a source. `over`: the overlaid recording, in paler colors.
+  /// Draws the signals. If `over` is true, draws the overlaid recording in paler colors.
   void draw_lane(ImDrawList& list, const PlotArea& area, const PlotFrame& frame, bool over, std::uint64_t first,
                  std::uint64_t last) const {
     const SignalHistory& history = frame.timeline.history();
@@ -52,7 +52,7 @@ class XyView final : public PlotView {
     }
   }
 
-  /// Draws the name above the end of the x axis.
+  /// Draws the signal name above the end of the x axis.
   void draw_name_of_x(ImDrawList& list, const PlotArea& area, const Style& style) const {
     ImFont* font = style.fonts.caption;
     const std::string name = fitted(short_name(plot_.signals.front()), area.width() - style.points(8), font);
