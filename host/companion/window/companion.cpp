@@ -80,7 +80,7 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (io.WantTextInput) return;
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
-  // Key repetition is ignored, because each step may move a motor.
+  // Key repetition is disabled, because each undo step may move a motor.
   const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(key_index(key), false); };
   if (is_tapped(ImGuiKey_Z)) {
     if (io.KeyShift) {

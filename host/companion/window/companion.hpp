@@ -27,16 +27,16 @@ namespace inkwell::window {
 
 class Companion final : public FrameContent {
  public:
-  /// `problem`: error of the last start of a virtual board; empty: no error.
+  /// `problem` is the error message of the last virtual board start, or empty.
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
-  /// Handles the keys. Escape, F12 and the space bar switch the force off immediately. The space bar has no effect in
-  /// text fields.
+  /// Handles the keys. Escape, F12 and the space bar switch the force off immediately. In text fields, the space bar
+  /// only types a space.
   void key(const KeyEvent& event) override;
   bool needs_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
-  /// True once the user requests a virtual board. The window restarts with the virtual board.
+  /// Returns true after the user has requested a virtual board. The caller then restarts the window.
   bool is_over() const override { return wants_virtual_board_; }
   Box canvas() const override;
   std::uint64_t canvas_digest() const override;
@@ -45,7 +45,7 @@ class Companion final : public FrameContent {
   nlohmann::json inspect() const override;
   std::optional<double> pose_age_s() const override;
 
-  /// Returns the settings to save.
+  /// Returns the current window settings.
   WindowSettings settings() const;
 
  private:
@@ -55,8 +55,8 @@ class Companion final : public FrameContent {
   /// Moves the splitters while Alt and an arrow key are pressed.
   void move_borders(const WindowLayout& layout, ImVec2 window);
 
-  /// Returns the height that the layout reserves for the banner. The height does not change while a mouse button is
-  /// down, because a dragged item must not move.
+  /// Returns the height that the layout reserves for the banner. The height is constant while a mouse button is down,
+  /// so that the layout does not shift during a drag.
   float banner_room(float banner_height);
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
   /// Returns true if the user switches the force on.
@@ -66,7 +66,7 @@ class Companion final : public FrameContent {
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
 
-  /// True if the connection card is shown.
+  /// Returns true if the connection card is shown.
   bool has_card() const;
   void draw_card(const WindowLayout& layout);
   void update_firmware();
@@ -74,7 +74,7 @@ class Companion final : public FrameContent {
   void use_theme(Theme theme);
   void stop();
 
-  /// Returns the parameters of the replayed recording. Without a replay, returns the parameters of the device.
+  /// Returns the parameter editor of the replayed recording or, without a replay, of the device.
   ParameterEditor& shown_parameters() { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
   const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
 

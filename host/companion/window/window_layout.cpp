@@ -11,7 +11,7 @@ constexpr float splitter_points = 5.0f;
 constexpr float scene_minimum_points = 240.0f;
 constexpr float column_part_maximum = 0.5f;  // of the window's width
 
-/// Returns the height of the scope in screen coordinates. `room` is the height for scene and scope.
+/// Returns the height of the scope in screen coordinates. `room` is the common height of scene and scope.
 float scope_height_of(float room, const WindowSettings& settings, float scale) {
   const float minimum = WindowSettings::scope_height_minimum * scale;
   return std::floor(
@@ -56,7 +56,7 @@ void drag_column_splitter(float dragged_points, ImVec2 window, float scale, Wind
 
 void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings) {
   if (dragged_points == 0.0f) return;
-  // The drag starts from the displayed height, because a limit may have changed the saved height.
+  // The drag starts at the displayed height, which may differ from the saved height.
   const float shown = scope_height_of(layout.room, settings, scale);
   settings.scope_part = std::clamp((shown - dragged_points * scale) / layout.room, WindowSettings::scope_part_minimum,
                                    WindowSettings::scope_part_maximum);

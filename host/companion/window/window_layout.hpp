@@ -12,7 +12,7 @@ struct Rectangle {
   ImVec2 size{1, 1};
 };
 
-/// All rectangles in screen coordinates.
+/// All rectangles are in screen coordinates.
 struct WindowLayout {
   Rectangle status, banner, scene, replay, scope, column;
   Rectangle column_splitter;  ///< left of the column
@@ -22,7 +22,7 @@ struct WindowLayout {
   ImVec2 middle_of_scene() const;
 };
 
-/// Heights in screen coordinates; 0 if the item is not shown.
+/// Heights in screen coordinates. Hidden items have the height 0.
 struct LayoutNeeds {
   float status_height;
   float banner_height;

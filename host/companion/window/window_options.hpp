@@ -23,25 +23,24 @@ struct ReplayRequest {
 };
 
 struct WindowOptions {
-  /// Lists the available arms. Mandatory. Called from background threads about once per second while no device is
-  /// connected or the device list is open. The window shows the message of a thrown device::Error.
+  /// Lists the available arms. Mandatory. Background threads call this function about once per second while no device
+  /// is connected or the device list is open. The window shows the message of a thrown device::Error.
   std::function<std::vector<device::Endpoint>()> list_devices;
-  /// Connects only to the arm with this serial number. If the serial number is empty, the user chooses between several
-  /// arms.
+  /// The window connects only to the arm with this serial number. If the serial number is empty, the user chooses an
+  /// arm.
   std::string serial_number;
-  /// Control socket of a virtual board, for the simulated hand and the stylus buttons.
+  /// Control socket of a virtual board. The window uses the socket for the simulated hand and the stylus buttons.
   std::optional<device::SocketAddress> virtual_board_control;
 
-  /// Starts a virtual board and sets these options for the virtual board. Null if a virtual board is already used or
-  /// not available. Called in the window's thread; throws device::Error.
+  /// Starts a virtual board and sets the options for this board. Null if a virtual board is in use or unavailable.
+  /// Called in the window's thread; throws device::Error.
   std::function<void(WindowOptions&)> start_virtual_board = {};
 
-  /// Simulated arm of the virtual board, for the simulated hand of the guides. Default: the arm in the device's
-  /// parameters.
+  /// Parameters of the simulated arm for the guides. Default: the device's parameters.
   std::optional<protocol::ParameterSet> simulated_arm;
 
-  /// Firmware image for updates; empty: no updates are offered. `board` is the address of the board. An empty serial
-  /// number selects the chosen board.
+  /// Firmware image for updates; empty if the window offers no updates. `board` is the address of the board. If the
+  /// serial number in `board` is empty, the window updates the chosen board.
   std::filesystem::path firmware;
   device::Address board;
 
@@ -50,7 +49,7 @@ struct WindowOptions {
   std::optional<Theme> theme;    ///< default: the saved theme
   float scale = 0.0f;            ///< scale of fonts, spacing and window; 0 uses the scale of the display
   bool persist_settings = true;  ///< read and write the settings in the user's configuration directory
-  /// Draws the scene without lighting, so that solid pixels have exactly the colors of palette.hpp.
+  /// Disables lighting in the scene, so that solid bodies have exactly the colors of palette.hpp.
   bool flat_colours = false;
   std::string layout;  ///< initial layout of the scope, e.g. "paper"; empty: the saved layout
 

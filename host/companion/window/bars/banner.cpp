@@ -20,7 +20,7 @@ float banner_text_width(float width, const Style& style, const Banner& banner) {
                                                                         : banner_margin_points));
 }
 
-/// Returns a banner that offers an optional update if the firmware versions differ.
+/// Returns an update banner if the firmware versions differ.
 std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpdater::Sight& firmware) {
   const std::string& version = view.status.information->firmware_version;
   if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||

@@ -11,7 +11,6 @@
 
 namespace inkwell::window {
 
-/// The banner reports a fault, force during a replay, a different driver, a hot motor, or different firmware.
 enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
 
 struct Banner {

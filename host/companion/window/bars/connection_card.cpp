@@ -37,7 +37,7 @@ bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer
   return asks;
 }
 
-/// Returns the serial number that the user chose.
+/// Returns the serial number of the chosen device.
 std::optional<std::string> draw_choice(const Style& style, const DeviceView& view) {
   std::optional<std::string> chosen;
   for (const device::Endpoint& endpoint : view.listed) {
@@ -66,7 +66,7 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     outcome.firmware = draw_firmware_part(style, firmware);
   } else {
     text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
-    // A search error replaces the message that no device was found.
+    // An error of the device search has priority over the session's message.
     const std::string& message = view.list_error.empty() ? view.status.message : view.list_error;
     wrapped_text(palette.text_quiet, message.empty()
                                          ? "Plug in the USB cable of the arm. The window then connects automatically."

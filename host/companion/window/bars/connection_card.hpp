@@ -13,7 +13,7 @@ namespace inkwell::window {
 const char* connection_title(const device::SessionStatus& status);
 Colour connection_colour(device::Connection connection, const Palette& palette);
 
-/// Offers a virtual board while no device is connected.
+/// Offer of a virtual board while no device is connected.
 struct VirtualBoardOffer {
   bool is_made;
   const std::string& problem;  ///< error of the last start of a virtual board; empty: no error
@@ -23,8 +23,7 @@ struct ConnectionCardOutcome {
   bool starts_virtual_board = false;
   std::optional<std::string> chosen_serial_number{};
 };
-/// Draws a card in the middle of the scene. The card shows the progress of an update, or the reason and remedy for a
-/// missing connection.
+/// Draws a card in the middle of the scene. The card shows the update progress or the connection error.
 ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
                                            const FirmwareUpdater::Sight& firmware, const VirtualBoardOffer& offer);
 

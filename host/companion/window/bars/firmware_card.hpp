@@ -11,7 +11,7 @@ struct FirmwareCardOutcome {
   bool update = false, dismiss = false;
 };
 
-/// True if the card has to show an update, an update result, or a board in boot loader mode.
+/// Returns true during an update, after an update, or if a board is in boot loader mode.
 bool has_firmware_card(const FirmwareUpdater::Sight& sight, const DeviceView& view);
 /// Draws the state of the update on the card.
 FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater::Sight& sight);

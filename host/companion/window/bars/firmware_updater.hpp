@@ -1,4 +1,4 @@
-// Writes this companion's firmware to a board in the background.
+// Updates the board's firmware in a background thread.
 #pragma once
 
 #include <condition_variable>
@@ -18,7 +18,7 @@ namespace inkwell::window {
 
 class FirmwareUpdater {
  public:
-  /// `awaits_consent`: the board's firmware is newer, and a second call of begin() permits the downgrade.
+  /// In the phase `awaits_consent`, the board's firmware is newer. A second call of begin() permits the downgrade.
   enum class Phase : std::uint8_t { idle, runs, awaits_consent, failed, done };
   /// State of the updater during a frame.
   struct Sight {
@@ -31,8 +31,8 @@ class FirmwareUpdater {
     std::string version{};  ///< version of the image; empty: no image
   };
 
-  /// Boards without a reported name receive `image`. The file is read again for each update. `address` is the address
-  /// of the board.
+  /// `image` is the default for boards without a reported name. Each update reads the image file again. `address` is
+  /// the address of the board.
   FirmwareUpdater(std::filesystem::path image, device::Address address);
   /// Waits for the end of a running update, because an interrupted update leaves incomplete firmware on the board.
   ~FirmwareUpdater() = default;
@@ -42,7 +42,7 @@ class FirmwareUpdater {
   /// Call once per frame with the name of the connected board. The updater stores the name, because a board with
   /// incomplete firmware does not report its name.
   void meet(const std::string& board_name);
-  /// Starts an update, unless an update is running. An empty `serial_number` selects the only board.
+  /// Starts an update, unless an update is running. An empty `serial_number` selects the only connected board.
   void begin(const std::string& serial_number);
   /// Closes the message.
   void dismiss();
@@ -52,7 +52,7 @@ class FirmwareUpdater {
   void work(const std::stop_token& stop);
   void update(const std::string& serial_number, bool allows_downgrade);
   void search();
-  /// Reads the image that is offered to the connected board.
+  /// Reads the image for the connected board.
   void read_offer();
   firmware_update::Image image_for(const std::string& board_name) const;
   void set(Phase phase, const std::string& message, double done);

@@ -17,7 +17,7 @@ struct Gauge {
   bool warns = false;  ///< shown by a symbol and by the color
 };
 
-/// Returns the state, control load, supply, motor heat, pose rate and losses.
+/// Returns all gauges of the status bar.
 std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette);
 
 void draw_gauge(const Gauge& gauge, ImVec2 corner, ImVec2 size, const Style& style);

@@ -124,7 +124,7 @@ void ReplayBar::draw_controls(const Style& style) {
     help_on_hover("Ignored content", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
 }
 
-/// Draws the controls of the overlaid recording: name, alignment, open and close.
+/// Draws the controls for the overlaid recording.
 void ReplayBar::draw_over(const Style& style) {
   if (!over_) {
     if (button("Overlay", {style.points(74), 0}))
@@ -171,7 +171,7 @@ void ReplayBar::draw_over(const Style& style) {
     }
 }
 
-/// Draws the whole recording as a line with its marks. A click or a drag changes the position.
+/// Draws the replay track with the marks of the recording. A click or a drag changes the replay position.
 void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   const Palette& palette = *style.palette;
   const auto& recording = replay_->recording();

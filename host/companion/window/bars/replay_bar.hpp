@@ -31,14 +31,14 @@ class ReplayBar {
   }
   bool is_playing() const { return replay_ && replay_->is_playing(); }
 
-  /// Call once per frame. Passes the samples of the elapsed time to the scope.
+  /// Call once per frame. Passes the samples since the last call to the scope.
   void follow(double now_s, ScopePane& scope);
   std::optional<device::Pose> pose() const { return replay_->pose(); }
   /// Returns an editor for the recorded parameters. The edits are not sent to any device.
   ParameterEditor& editor() { return editor_; }
   const ParameterEditor& editor() const { return editor_; }
 
-  /// Draws the bar and handles the buttons. The button Close closes the recording.
+  /// Draws the bar and handles the buttons. The Close button closes the recording.
   void draw(ImVec2 origin, ImVec2 size, const Style& style, ScopePane& scope);
 
  private:

@@ -18,7 +18,7 @@ constexpr float card_points = 340.0f;
 constexpr float card_margin_points = 12.0f;
 constexpr float padding_points = 14.0f;
 constexpr float top_points = 48.0f;  // below the buttons of the scene
-/// The half row at the end indicates that the list can be scrolled. In a low scene, the card shows fewer rows.
+/// A half-visible last row indicates that the list can be scrolled.
 constexpr float rows_maximum = 5.5f, rows_minimum = 1.5f;
 constexpr float around_rows_points = 150.0f;
 

@@ -25,7 +25,6 @@ constexpr float margin_points = 12.0f;
 constexpr float item_points = 38.0f;  // height of the buttons and of a gauge row
 constexpr float row_points = 46.0f;
 constexpr float gap_points = 8.0f;
-// Widths of the buttons at the right end.
 constexpr float stop_points = 100.0f;
 constexpr float force_points = 114.0f;
 constexpr float scope_points = 60.0f;
@@ -54,7 +53,7 @@ std::vector<FlowPosition> positions_of(float width, const Style& style) {
   return flow(widths, row - style.points(buttons_points - margin_points), row, style.points(gap_points));
 }
 
-// Draws the STOP button. The button reacts to the press instead of the release, even while a dialog captures the mouse.
+// Draws the STOP button. The button reacts when the mouse button is pressed. The button works while a dialog is open.
 bool stop_button(ImVec2 size, const Style& style) {
   const Palette& palette = *style.palette;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -152,7 +151,7 @@ float StatusBar::height(float width, const Style& style) const {
   return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
-/// Draws the buttons to the left of `corner`. The STOP button is at the right end.
+/// Draws the buttons to the left of `corner`.
 void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
                              StatusBarOutcome& outcome) const {
   const Palette& palette = *style.palette;

@@ -1,4 +1,4 @@
-// The bar at the top: device, gauges, force button and stop button.
+// The status bar with device, gauges, force button and stop button.
 #pragma once
 
 #include <cstdint>
