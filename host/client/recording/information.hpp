@@ -27,7 +27,8 @@ struct Information {
   bool simulation = false;
   /// The device's protocol::ForceLawReport: rows of parameters and signals in addition to the tables. Null if unknown.
   std::shared_ptr<const std::vector<std::byte>> force_law;
-  protocol::ParameterSet parameters{};
+  /// A parameter that an older recording does not contain has its default.
+  protocol::ParameterSet parameters = protocol::default_parameters();
   std::vector<protocol::Signal> signals;
   /// Control periods from one sample to the next: 1 for the scope, more for a black box.
   std::uint32_t step_periods = 1;

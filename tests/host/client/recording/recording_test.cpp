@@ -518,6 +518,15 @@ TEST_CASE("a recording of an earlier version, whose periods fall where the count
   for (const auto& mark : recording.marks) CHECK(mark.period == wrap + 1);
 }
 
+TEST_CASE("a parameter that is newer than the recording has its default") {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# parameter wall_stiffness_N_per_m = 432.5\n"
+                                        "time_s,force_N\n0.00005,1.5\n";
+  const auto parameters = read(directory / "a.csv").information.parameters;
+  CHECK(parameters[Parameter::wall_stiffness_N_per_m] == 432.5f);
+  CHECK(parameters[Parameter::force_limit_N] == protocol::default_parameters()[Parameter::force_limit_N]);
+}
+
 TEST_CASE("marks of a recording without samples have no time") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# mark 5025 = knock\ntime_s,force_N\n";
